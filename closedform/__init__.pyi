@@ -20,6 +20,8 @@ from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.coupled import coupled as coupled
 from closedform.lemmas.drives import parallelogram_drive as parallelogram_drive
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
+from closedform.lemmas.leeway import Carrying as Carrying
+from closedform.lemmas.leeway import within_tilt as within_tilt
 from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch

@@ -10,7 +10,8 @@ from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles
 from closedform.scaffold.maker import followed, norm, times
 from closedform.scaffold.source import source
-from closedform.scaffold.subproblems import ELBOW, SubproblemMaker
+from closedform.scaffold.subproblems import SubproblemMaker
+from closedform.scaffold.wrists import ELBOW
 
 NAME = "arm_angle"
 SIDES = "{+1: 'front', -1: 'back'}"

@@ -16,33 +16,26 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.mechanics.arm import Group, Row
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
 from closedform.scaffold.ellipse import Ellipse, folds
-from closedform.scaffold.maker import FLIP, Maker, Solved, Z, norm, point, times, turning
+from closedform.scaffold.maker import Solved, Z, followed, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
+from closedform.scaffold.wrists import SIDE, WristMaker
 
 
 @dataclass
-class SubproblemMaker(Maker):
+class SubproblemMaker(WristMaker):
     """Writes the lines for an arm of single joints."""
 
-    unknowns: dict[int, str] = field(default_factory=dict)
-    lifted: str = ""
-    """The pair of the first joint of a wrist."""
-    more: str = ""
-    """Further arguments of the lemma of a wrist, besides its angles."""
     tool: str = ""
     """The direction of the last axis, if it determines the first joint."""
     along: sp.Expr = sp.S.Zero
     """Its component along the parallel axes in between."""
-
-    def vector(self, name: str, value: str, label: str = "") -> None:
-        """Name a vector, by default by the name of the variable."""
-        self.add(f"{name} = ik.vector('{label or name}', {value})")
+    solved_as: dict[int, tuple[str, str, sp.Expr]] = field(default_factory=dict)
+    """Of a joint that was solved with an offset: the unknown, its pair, and the offset."""
 
     def give(self, joint: Single) -> None:
         """Take a joint as an input."""
@@ -59,6 +52,9 @@ class SubproblemMaker(Maker):
         self._see_the_last_axis(arm, R)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
+        if wrist == 3 and not self.is_normal(ends):
+            tool = followed(M, arm.tool[:3, :3].T)
+            self._within_tilt(before, ends, tool)
         for k, (pair, end) in enumerate(solved.turned, 1):
             if not pair and end == sp.eye(3):
                 continue
@@ -70,6 +66,25 @@ class SubproblemMaker(Maker):
         if len(self.arm.joints) < 6:
             self.add(f"ik.reached({solved.rest if wrist == 3 else ''})")
         return solved.structure
+
+    def _within_tilt(self, before: Sequence[Single], ends: Sequence[Single], M: str) -> None:
+        """Keep the last axis within the limits of an oblique wrist where joints are singular."""
+        if not before or any(joint.slides for joint in before):
+            return
+        shown, pairs = [], []
+        for joint in before:
+            unknown, pair, ahead = self.solved_as.get(
+                joint.number, (self.unknown(joint), f"pair{joint.number}", sp.S.Zero)
+            )
+            T = rotation("z", -ahead)
+            motion = f"{source(T * joint.shift)}, {source(T * joint.end)}"
+            shown.append(f"Carrying({unknown}, {pair}, {motion})")
+            pairs.append(pair)
+        g, w = ends[0].end.T * Z, ends[1].end * Z
+        level, across = g[2] * w[2], norm(g[:2, 0]) * norm(w[:2, 0])
+        limits = f"({source(level - across)}, {source(level + across)})"
+        arguments = f"[{', '.join(shown)}], p, ({M})[:, 2], {limits}, [{', '.join(self.levers)}]"
+        self.add(f"{', '.join(pairs)}, = within_tilt(ik, {arguments})")
 
     def solved_point(self, arm: Singles) -> str:
         """Solve three joints for the position of the tool."""
@@ -192,7 +207,7 @@ class SubproblemMaker(Maker):
             self.require(
                 one.end == sp.eye(3), "its first two axes are opposite", "Turn a frame by pi."
             )
-            self.two_links([one.turn, two.turn], [one.shift[:2, 0], u[:2, 0]], "p[0]", "p[1]")
+            self._two_links_of(one, two, one.shift, u, "p")
             bend = self.less(self.pairs[1], u[:2, 0])
             first, second = self.pairs
             a, b = (source(norm(w[:2, 0])) for w in (one.shift, u))
@@ -203,6 +218,19 @@ class SubproblemMaker(Maker):
         second = self._rotate(two, source(u[:2, 0]), q)
         rest = f"turned({second}).T * q - {source(u)}"
         return Solved("a turret and a joint", [(pair, one.end), (second, two.end)], rest)
+
+    def _two_links_of(
+        self, first: Single, second: Single, u: sp.Matrix, v: sp.Matrix, at: str
+    ) -> None:
+        """Solve two parallel joints, with links ``u`` and ``v``, for a point of their plane."""
+        turns, links = [first.turn, second.turn], [u[:2, 0], v[:2, 0]]
+        self.two_links(turns, links, f"{at}[0]", f"{at}[1]")
+        before = sp.S.Zero
+        for joint, pair, w in zip((first, second), self.pairs, links, strict=True):
+            ahead = sp.atan2(w[1], w[0])
+            self.solved_as[joint.number] = (pair[:-1], pair, ahead - before)
+            before = ahead
+        self.levers.append(f"{self.pairs[1]}.s")
 
     def _seen_in_plane(self, one: Single, beside: sp.Expr, toward: str = "") -> tuple[str, str]:
         """Solve a joint by how far ``p`` is along the next axis; name the point in that frame."""
@@ -250,7 +278,7 @@ class SubproblemMaker(Maker):
         lengths = ", ".join(source(norm(w[:2, 0])) for w in (u, v))
         self.add(f"links = Links(lambda pair: {reached}, {lengths})")
         _, pair = self._seen_in_plane(one, u[2] + v[2], "links")
-        self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        self._two_links_of(two, three, u, v, "q")
         bend = self.less(self.pairs[1], v[:2, 0])
         return Solved(
             f"axes {two.number} and {three.number} parallel",
@@ -415,152 +443,8 @@ class SubproblemMaker(Maker):
         )
         return self._turn(joint, (a, b, c), scale=scale, by_size=True)
 
-    def _turn(
-        self,
-        joint: Single,
-        sides: tuple[Any, Any, Any],
-        toward: str = "",
-        *,
-        scale: str = "",
-        by_size: bool = False,
-        choice: str = "",
-    ) -> str:
-        name, pair = self.unknown(joint), f"pair{joint.number}"
-        per = "/ik.size" if by_size else ""
-        shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
-        more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
-        self.solve(
-            "turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
-        )
-        return pair
-
-    def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
-        name, pair = self.unknown(joint), f"pair{joint.number}"
-        more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
-        self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
-        return pair
-
-    def unknown(self, joint: Single) -> str:
-        """The angle of a joint as it turns the frame; its name is kept for later equations."""
-        if joint.number not in self.unknowns:
-            self.unknowns[joint.number] = self.angle(joint.turn)
-        return self.unknowns[joint.number]
-
-    # The joints that turn the tool
-
-    def orientation(self, joints: Sequence[Single], M: str) -> None:
-        """Solve the joints for the rotation that the others leave to them."""
-        if len(joints) == 3:
-            self._wrist(joints, M)
-            return
-        if len(joints) == 2:
-            first, last = joints
-            self.require(
-                not parallel(first),
-                f"axes {first.number} and {last.number} are parallel",
-                "The axes of the last two joints must not be parallel.",
-            )
-            w = source((first.end * Z)[:2, 0])
-            pair = self._rotate(first, w, f"{M}[:, 2]", scale="1")
-            inside = times(first.end.T, f"(turned({pair}).T * {M})")
-            self.add(f"onward = ik.matrix('onward', {inside})")
-            M = "onward"
-        self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
-
-    def _wrist(self, joints: Sequence[Single], M: str) -> None:
-        first, middle, last = joints
-        if self.is_normal(joints):
-            self.normal_wrist(joints, M, self.more)
-            return
-        self.wrist_about(first, middle, last, M, "")
-
-    def normal_wrist(
-        self, joints: Sequence[Single], M: str, more: str = "", choice: str = FLIP
-    ) -> None:
-        """Solve three joints, neighbours at right angles, for the rotation that is left to them."""
-        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
-        groups[-1] = Group(groups[-1].rows, sp.eye(3))
-        numbers = [j.number for j in joints]
-        turn = joints[0].turn
-        pair, epsilon = self.wrist(turn, groups, M, sp.eye(3), numbers, more, choice)
-        self.lifted = self._less_by_angle(pair, epsilon)
-
-    def is_normal(self, wrist: Sequence[Single]) -> bool:
-        """Whether the neighbours among three axes are at right angles."""
-        return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
-
-    def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
-        """The pair of an angle without the constant that was added to it."""
-        if epsilon == 0:
-            return pair
-        sine, cosine = source(sp.sin(-epsilon)), source(sp.cos(epsilon))
-        return f"({pair} + Pair({sine}, {cosine}))"
-
-    def wrist_about(
-        self, first: Single, middle: Single, last: Single, M: str, onward: str = ""
-    ) -> None:
-        """Solve three joints whose axes have any angle for the rotation that is left to them.
-
-        ``onward`` is the rotation after the first joint, if it is not a constant.
-        """
-        w = middle.end * Z
-        self.add(f"M = ik.matrix('M_wrist', {M})")
-        if onward:
-            self.add(f"onto = ik.matrix('onto', {onward})")
-            g = sp.Matrix([sp.Symbol(f"onto[2, {i}]") for i in range(3)])
-            between = "onto"
-        else:
-            g, between = first.end.T * Z, source(first.end)
-        sense = 0 if onward else self._can_align(g, w)
-        if sense:
-            x, pair = self._tilt(middle, g, w, sense)
-        else:
-            a, b = (sp.expand(e) for e in turning(w, g))
-            c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
-            x, pair = self.unknown(middle), self._turn(middle, (a, b, c), scale="1", choice=FLIP)
-        self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
-        of = "" if sense > 0 else "-"
-        because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
-        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
-        self.add(f"over = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
-        self.add("onward = ik.matrix('onward', over.T * M)")
-        up = "" if sense > 0 else "-"
-        lift = self.unknown(first)
-        each = f"{{{lift}: (-over[0, k], -over[1, k]), {x}: {up}over[2, k]}} for k in (0, 1)"
-        self.solve("spin", f"{self.unknown(last)}, onward, [{each}]", f"pair{last.number}")
-        self.lifted = lifted
-
-    def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:
-        """Whether the first and the last axis can point the same way (1), or opposite ways (-1)."""
-        if sp.simplify(g[2] - w[2]) == 0:
-            return 1
-        return -1 if sp.simplify(g[2] + w[2]) == 0 else 0
-
-    def _tilt(self, joint: Single, g: sp.Matrix, w: sp.Matrix, sense: int) -> tuple[str, str]:
-        """Solve the middle joint of a wrist of equal angles; its unknown is zero at alignment."""
-        a, b = (sp.simplify(e) for e in turning(w, g))
-        k = sp.simplify(1 - g[2] ** 2)
-        if a == 0 and sp.simplify(b - k) == 0:
-            offset = sp.S.Zero
-        elif a == 0 and sp.simplify(b + k) == 0:
-            offset = sp.pi
-        else:
-            offset = sp.atan2(a, b)
-        x = self.angle(joint.turn - offset + (sp.pi if sense < 0 else 0))
-        name = f"tilted{joint.number}"
-        more = ", sense=-1" if sense < 0 else ""
-        self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
-        back = offset - (sp.pi if sense < 0 else 0)
-        pair = f"pair{joint.number}"
-        turned = self._less_by_angle(name, -back)
-        self.add(f"{pair} = {turned}")
-        return x, pair
-
 
 LINE = "{+1: 'first', -1: 'second'}"
-SIDE = "{+1: 'left', -1: 'right'}"
-ELBOW = "{+1: 'up', -1: 'down'}"
-"""A branch of a joint that a distance determines is an elbow."""
 
 
 __all__ = ["SubproblemMaker"]

@@ -41,7 +41,10 @@ JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
-CHAIN = ("Reaching", "arm_angle", "rotation", "sign_of", "turned", *chain_lemmas())
+CHAIN = (
+    "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_tilt",
+    *chain_lemmas(),
+)  # fmt: skip
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair", "Paper",
     "from_dh", "from_screws", "parallelogram_drive", "real",

@@ -1,0 +1,186 @@
+"""Proposes the chain for the joints of a wrist, whose axes meet at any angles.
+
+Three axes that meet in a point reach every direction if neighbours are at right angles, and are
+then those of Euler's angles.  Otherwise the angle between the first and the last axis gives the
+middle joint, and two rotations of vectors give the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.mechanics.arm import Group, Row
+from closedform.scaffold.chainlinks import Single, parallel
+from closedform.scaffold.maker import FLIP, Maker, Z, times, turning
+from closedform.scaffold.source import source
+
+SIDE = "{+1: 'left', -1: 'right'}"
+ELBOW = "{+1: 'up', -1: 'down'}"
+"""A branch of a joint that a distance determines is an elbow."""
+
+
+@dataclass
+class WristMaker(Maker):
+    """Writes the lines that turn single joints, and those of a wrist."""
+
+    unknowns: dict[int, str] = field(default_factory=dict)
+    lifted: str = ""
+    """The pair of the first joint of a wrist."""
+    more: str = ""
+    """Further arguments of the lemma of a wrist, besides its angles."""
+    levers: list[str] = field(default_factory=list)
+    """Numbers that vanish where the joints that were solved are singular."""
+
+    def vector(self, name: str, value: str, label: str = "") -> None:
+        """Name a vector, by default by the name of the variable."""
+        self.add(f"{name} = ik.vector('{label or name}', {value})")
+
+    def _turn(
+        self,
+        joint: Single,
+        sides: tuple[Any, Any, Any],
+        toward: str = "",
+        *,
+        scale: str = "",
+        by_size: bool = False,
+        choice: str = "",
+    ) -> str:
+        name, pair = self.unknown(joint), f"pair{joint.number}"
+        per = "/ik.size" if by_size else ""
+        shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
+        more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
+        self.solve(
+            "turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
+        )
+        self.levers.append(f"{pair}.lever/ik.size")
+        return pair
+
+    def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
+        name, pair = self.unknown(joint), f"pair{joint.number}"
+        more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
+        self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
+        self.levers.append(f"sqrt(({v})[0]**2 + ({v})[1]**2)/ik.size")
+        return pair
+
+    def unknown(self, joint: Single) -> str:
+        """The angle of a joint as it turns the frame; its name is kept for later equations."""
+        if joint.number not in self.unknowns:
+            self.unknowns[joint.number] = self.angle(joint.turn)
+        return self.unknowns[joint.number]
+
+    # The joints that turn the tool
+
+    def orientation(self, joints: Sequence[Single], M: str) -> None:
+        """Solve the joints for the rotation that the others leave to them."""
+        if len(joints) == 3:
+            self._wrist(joints, M)
+            return
+        if len(joints) == 2:
+            first, last = joints
+            self.require(
+                not parallel(first),
+                f"axes {first.number} and {last.number} are parallel",
+                "The axes of the last two joints must not be parallel.",
+            )
+            w = source((first.end * Z)[:2, 0])
+            pair = self._rotate(first, w, f"{M}[:, 2]", scale="1")
+            inside = times(first.end.T, f"(turned({pair}).T * {M})")
+            self.add(f"onward = ik.matrix('onward', {inside})")
+            M = "onward"
+        self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
+
+    def _wrist(self, joints: Sequence[Single], M: str) -> None:
+        first, middle, last = joints
+        if self.is_normal(joints):
+            self.normal_wrist(joints, M, self.more)
+            return
+        self.wrist_about(first, middle, last, M, "")
+
+    def normal_wrist(
+        self, joints: Sequence[Single], M: str, more: str = "", choice: str = FLIP
+    ) -> None:
+        """Solve three joints, neighbours at right angles, for the rotation that is left to them."""
+        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
+        groups[-1] = Group(groups[-1].rows, sp.eye(3))
+        numbers = [j.number for j in joints]
+        turn = joints[0].turn
+        pair, epsilon = self.wrist(turn, groups, M, sp.eye(3), numbers, more, choice)
+        self.lifted = self._less_by_angle(pair, epsilon)
+
+    def is_normal(self, wrist: Sequence[Single]) -> bool:
+        """Whether the neighbours among three axes are at right angles."""
+        return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
+
+    def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
+        """The pair of an angle without the constant that was added to it."""
+        if epsilon == 0:
+            return pair
+        sine, cosine = source(sp.sin(-epsilon)), source(sp.cos(epsilon))
+        return f"({pair} + Pair({sine}, {cosine}))"
+
+    def wrist_about(
+        self, first: Single, middle: Single, last: Single, M: str, onward: str = ""
+    ) -> None:
+        """Solve three joints whose axes have any angle for the rotation that is left to them.
+
+        ``onward`` is the rotation after the first joint, if it is not a constant.
+        """
+        w = middle.end * Z
+        self.add(f"M = ik.matrix('M_wrist', {M})")
+        if onward:
+            self.add(f"onto = ik.matrix('onto', {onward})")
+            g = sp.Matrix([sp.Symbol(f"onto[2, {i}]") for i in range(3)])
+            between = "onto"
+        else:
+            g, between = first.end.T * Z, source(first.end)
+        sense = 0 if onward else self._can_align(g, w)
+        if sense:
+            x, pair = self._tilt(middle, g, w, sense)
+        else:
+            a, b = (sp.expand(e) for e in turning(w, g))
+            c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
+            x, pair = self.unknown(middle), self._turn(middle, (a, b, c), scale="1", choice=FLIP)
+        self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
+        of = "" if sense > 0 else "-"
+        because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
+        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
+        self.add(f"over = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
+        self.add("onward = ik.matrix('onward', over.T * M)")
+        up = "" if sense > 0 else "-"
+        lift = self.unknown(first)
+        each = f"{{{lift}: (-over[0, k], -over[1, k]), {x}: {up}over[2, k]}} for k in (0, 1)"
+        self.solve("spin", f"{self.unknown(last)}, onward, [{each}]", f"pair{last.number}")
+        self.lifted = lifted
+
+    def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:
+        """Whether the first and the last axis can point the same way (1), or opposite ways (-1)."""
+        if sp.simplify(g[2] - w[2]) == 0:
+            return 1
+        return -1 if sp.simplify(g[2] + w[2]) == 0 else 0
+
+    def _tilt(self, joint: Single, g: sp.Matrix, w: sp.Matrix, sense: int) -> tuple[str, str]:
+        """Solve the middle joint of a wrist of equal angles; its unknown is zero at alignment."""
+        a, b = (sp.simplify(e) for e in turning(w, g))
+        k = sp.simplify(1 - g[2] ** 2)
+        if a == 0 and sp.simplify(b - k) == 0:
+            offset = sp.S.Zero
+        elif a == 0 and sp.simplify(b + k) == 0:
+            offset = sp.pi
+        else:
+            offset = sp.atan2(a, b)
+        x = self.angle(joint.turn - offset + (sp.pi if sense < 0 else 0))
+        name = f"tilted{joint.number}"
+        more = ", sense=-1" if sense < 0 else ""
+        self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
+        back = offset - (sp.pi if sense < 0 else 0)
+        pair = f"pair{joint.number}"
+        turned = self._less_by_angle(name, -back)
+        self.add(f"{pair} = {turned}")
+        return x, pair
+
+
+__all__ = ["ELBOW", "SIDE", "WristMaker"]

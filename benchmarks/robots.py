@@ -8,8 +8,8 @@ nanoseconds are those of one call of the printed C, with all branches, at random
 from __future__ import annotations
 
 import argparse
+import os
 import tempfile
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -85,12 +85,17 @@ class Robot:
         return new(self.path.stem, kind, self.path, modified=self.modified, search=search)
 
 
+def seconds_of_computing() -> float:
+    """Those of this process and of the ended ones that it started, as ``new`` does."""
+    return sum(os.times()[:4])
+
+
 def rows(robot: Robot) -> Iterator[str]:
     """The lines of the table: a second one if the arm angle can be an input."""
-    start = time.process_time()
+    start = seconds_of_computing()
     script = robot.script()
     yield row(robot, script, start)
-    start = time.process_time()
+    start = seconds_of_computing()
     script = robot.script(ARM_ANGLE)
     if script.structure:
         yield row(robot, script, start)
@@ -107,7 +112,7 @@ def row(robot: Robot, script: Script, start: float) -> str:
         (source,) = pipeline.find([str(path)])
         d = pipeline.load(source)
         proof = prove(d)
-        seconds = time.process_time() - start
+        seconds = seconds_of_computing() - start
         done = pages(d, proof, ["c"])
         pipeline.write(Path(folder), {**done.files, **shared_files([done.share], ["c"])})
         taken = nanoseconds(d, Path(folder, "c"))

@@ -5,16 +5,14 @@ from typing import Any
 
 import sympy as sp
 
-import closedform
 from closedform.check.runners.python import module
 from closedform.emit.backend import Mechanism
 from closedform.emit.backends import numpy
-from closedform.lazy import homes
-from closedform.lemmas.chain import Chain
-from closedform.mechanics.arm import Serial, from_dh
+from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof
+from closedform.scaffold.trial import solved
 
 
 def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tuple:
@@ -29,28 +27,11 @@ def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tupl
     return d, from_dh(d, table)
 
 
-def solved(d: Derivation, serial: Serial, lines: str) -> Chain:
-    """The chain that the lines build, as the script that holds them does."""
-    task = serial.coordinates()
-    if task is not None:
-        d.task = list(task.names)
-    angles = ["yaw"] if task is not None and "yaw" in task.names else []
-    ik = Chain(d, serial.pose if task is None else task.values, angles=angles)
-    exec("from sympy import *", known := {})
-    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
-    exec(
-        lines,
-        known
-        | {j.name: j for j in ik.joints}
-        | {p.symbol.name: p.symbol for p in d.parameters}
-        | {"ik": ik},
-    )
-    ik.finish("All.")
-    return ik
-
-
 def printed(d: Derivation, folder: Path) -> Any:
     """The NumPy module of a derivation."""
     pages = numpy.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
     write(folder, {**pages, **numpy.BACKEND.shared([])})
     return module(folder / "numpy", d.name)
+
+
+__all__ = ["arm", "printed", "solved"]

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from closedform.cli.commands import main
+from closedform.scaffold import new
+from closedform.scaffold.known import KnownMaker
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
@@ -307,3 +309,51 @@ def test_directions_in_decimals_are_made_exact(
         np.testing.assert_allclose(pose[:, 3], T[:, 3], atol=1e-14)
         np.testing.assert_allclose(pose, T, atol=1e-4)
         np.testing.assert_allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-14)
+
+
+PUMA = """\
+a, alpha, d, theta
+0, pi/2, 0, t1
+2, 0, 1/2, t2
+1/5, -pi/2, 0, t3
+0, pi/2, 2, t4
+0, -pi/2, 0, t5
+0, 0, 0, t6
+"""
+
+
+def test_if_the_proof_of_a_chain_fails_the_next_one_is_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The offset of the shoulder gets the wrong sign in the first chain that fits."""
+    whole = KnownMaker.whole
+
+    def wrong(maker: KnownMaker) -> str:
+        found = whole(maker)
+        maker.lines[:] = [
+            line.replace(", Rational(1, 2), ", ", -Rational(1, 2), ") for line in maker.lines
+        ]
+        return found
+
+    monkeypatch.setattr(KnownMaker, "whole", wrong)
+    (tmp_path / "table.csv").write_text(PUMA, "utf-8")
+    command = ["new", "bent", "--from", "dh", str(tmp_path / "table.csv"), "-o", str(tmp_path)]
+    assert main([*command, "--explain"]) == 0
+    said = capsys.readouterr().out
+    assert (
+        "tried: a known structure: no, because its proof fails: the equation solved for t1" in said
+    )
+    assert "taken: spherical wrist, axes 2 and 3 parallel" in said
+    assert "axes 2 and 3 parallel" in (tmp_path / "bent.py").read_text("utf-8")
+
+
+def test_no_chain_is_written_whose_proof_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(new, "fault", lambda *_: "it is made to fail")
+    (tmp_path / "table.csv").write_text(PUMA, "utf-8")
+    command = ["new", "bent", "--from", "dh", str(tmp_path / "table.csv"), "-o", str(tmp_path)]
+    assert main(command) == 0
+    said = capsys.readouterr()
+    assert "no inverse, because its proof fails: it is made to fail" in said.out
+    assert "report the table" in said.err

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 import sympy as sp
@@ -226,12 +227,7 @@ def test_the_proof_decides_and_not_the_proposal() -> None:
     joints, _, rows = KNOWN["turret and two parallel joints"]
     d, serial = arm(joints, rows)
     found = propose(serial)
-    wrong = type(found)(
-        found.structure,
-        tuple(line.replace("-p[1]", "p[1]") for line in found.lines),
-        found.lemmas,
-        found.branches,
-    )
+    wrong = replace(found, lines=tuple(line.replace("-p[1]", "p[1]") for line in found.lines))
     assert wrong != found
     ik = Chain(d, serial.export(d))
     run(wrong, ik)

@@ -11,6 +11,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loop_script import loop_script
 from closedform.scaffold.loops import read_loop
 from closedform.scaffold.mjcf import read_mjcf
+from closedform.scaffold.proposal import Tried
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
 from closedform.scaffold.source import file_name, literal, source
@@ -41,6 +43,7 @@ from closedform.scaffold.tables import (
     read_screws,
 )
 from closedform.scaffold.tree import DEFAULT, Choice
+from closedform.scaffold.trial import fault
 from closedform.scaffold.urdf import read_urdf
 
 LINE = 100
@@ -51,6 +54,7 @@ LONGER = (
     "Allow more time with --timeout, or name lengths and angles in the table, which keeps the "
     "expressions short.  The forward map is in this script; to derive it may take long too."
 )
+FAILED = "Write the chain yourself, and report the table: a proposed chain should be proved."
 IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script of the same name would shadow."""
 
@@ -145,29 +149,20 @@ def _comment(text: str) -> str:
 def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     """The script, with the proposed inverse or a place for one."""
     origin = file_name(origin)
-    d = Derivation(name, name, Paper("own", "own", ()), "")
-    negative = [
-        n
-        for n, given in table.parameters.items()
-        if given.get("value", "1").startswith("-") or given.get("unit") == "rad"
-    ]
-    for symbol in table.parameters:
-        d.parameter(symbol, value=1, unit="", meaning="", nonnegative=symbol not in negative)
-    for joint, kind in table.joints.items():
-        d.joint(joint, kind)  # type: ignore[arg-type]
-    known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
+    negative = _negative(table)
 
-    def searched(say: Callable[[str], None]) -> _Inverse:
-        told = replace(search, say=say)
+    def made(told: Search) -> tuple[Derivation, Serial]:
         told.progress("deriving the forward map")
-        arm = _arm(d, table, known)
-        told.progress("looking for a regular posture")
-        arm.require_regular(name)
-        told.progress("looking for an inverse")
-        return _inverse_lines(arm, told)
+        d = Derivation(name, name, Paper("own", "own", ()), "")
+        for symbol in table.parameters:
+            d.parameter(symbol, value=1, unit="", meaning="", nonnegative=symbol not in negative)
+        for joint, kind in table.joints.items():
+            d.joint(joint, kind)  # type: ignore[arg-type]
+        known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
+        return d, _arm(d, table, known)
 
     try:
-        inverse = bounded(search.timeout, searched, search.progress)
+        inverse = _searched(name, made, search)
     except LimitError:
         reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
         inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
@@ -216,6 +211,15 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         inverse.structure,
         inverse.lemmas,
     )
+
+
+def _negative(table: Table) -> list[str]:
+    """The parameters that may be negative: angles, and those whose value is."""
+    return [
+        n
+        for n, given in table.parameters.items()
+        if given.get("value", "1").startswith("-") or given.get("unit") == "rad"
+    ]
 
 
 def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
@@ -314,15 +318,52 @@ class _Inverse:
     advice: str = ""
     structure: str = ""
     lemmas: tuple[str, ...] = ()
+    name: str = ""
+    chain: str = ""
+    """The name of the chain that was taken, and the lines that solve it."""
 
 
-def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
+def _searched(
+    name: str, made: Callable[[Search], tuple[Derivation, Serial]], search: Search
+) -> _Inverse:
+    """The lines of the first chain that is proved; it counts too if the time ends the proof."""
+    refused: list[Tried] = []
+
+    def proposed(say: Callable[[str], None]) -> _Inverse:
+        told = replace(search, say=say)
+        arm = made(told)[1]
+        told.progress("looking for a regular posture")
+        arm.require_regular(name)
+        told.progress("looking for an inverse")
+        return _inverse_lines(arm, told, refused)
+
+    def fault_of(chain: str, say: Callable[[str], None]) -> str:
+        told = replace(search, say=say)
+        d, arm = made(told)
+        told.progress("proving the inverse")
+        return fault(d, arm, chain)
+
+    while True:
+        inverse = bounded(search.timeout, proposed, search.progress)
+        if not inverse.structure:
+            return inverse
+        try:
+            wrong = bounded(search.timeout, partial(fault_of, inverse.chain), search.progress)
+        except LimitError:
+            return inverse
+        if not wrong:
+            return inverse
+        error = NoChainError(f"its proof fails: {wrong}", FAILED)
+        refused.append(Tried(inverse.name, error))
+
+
+def _inverse_lines(arm: Serial, search: Search, refused: Sequence[Tried]) -> _Inverse:
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
     explained = recognised(arm) if search.explain else []
     try:
-        found = propose(arm, search.given, search.progress)
+        found = propose(arm, search.given, search.progress, refused)
     except NoChainError as error:
         explained += [f"tried: {t.name}: no, because {t.error.found}" for t in error.tried]
         return _without_inverse(error.found, error.needed, chain, explained)
@@ -337,7 +378,9 @@ def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
         'ik.finish("All solutions of the inverse kinematics.")',
     ]
     outcome = f"an inverse with {count} is proposed ({found.structure})"
-    return _Inverse(lines, outcome, explained, "", found.structure, found.lemmas)
+    return _Inverse(
+        lines, outcome, explained, "", found.structure, found.lemmas, found.name, found.source
+    )
 
 
 def _without_inverse(

@@ -34,8 +34,12 @@ class Tried:
 
 @dataclass(frozen=True)
 class Proposal:
-    """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain."""
+    """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain.
 
+    ``name`` is that of the chain among those that are tried.
+    """
+
+    name: str
     structure: str
     lines: tuple[str, ...]
     lemmas: tuple[str, ...]

@@ -29,14 +29,18 @@ from closedform.scaffold.subproblems import SubproblemMaker
 
 
 def propose(
-    arm: Serial, given: str = "", progress: Callable[[str], None] = lambda _: None
+    arm: Serial,
+    given: str = "",
+    progress: Callable[[str], None] = lambda _: None,
+    refused: Sequence[Tried] = (),
 ) -> Proposal:
-    """The chain for an arm; raises :class:`NoChainError` if none is known.
+    """The first chain for an arm that is not ``refused``; :class:`NoChainError` if none is known.
 
     Of an arm of seven joints one is ``given``, by default one that makes the chain short, or
     ``arm_angle``.
     """
-    tried: list[Tried] = []
+    tried: list[Tried] = [*refused]
+    never = {t.name for t in refused}
     names = {ARM_ANGLE, *(j.name for j in arm.joints)}
     if given and (len(arm.joints) != 7 or given not in names):
         raise NoChainError(
@@ -46,7 +50,7 @@ def propose(
     for degree in (2, 4):
         left = {t.name for t in tried if t.error.degree == degree}
         for name, maker, structure in _candidates(arm, given):
-            if degree > 2 and name not in left:
+            if name in never or (degree > 2 and name not in left):
                 continue
             progress(f"trying {name}")
             maker.degree = degree
@@ -57,8 +61,8 @@ def propose(
                 continue
             tried = [t for t in tried if t.name != name]
             lemmas = tuple(dict.fromkeys(maker.used))
-            return Proposal(found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
-    raise _refusal(arm, tried)
+            return Proposal(name, found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
+    raise refused[0].error.after(tried) if refused else _refusal(arm, tried)
 
 
 def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:

@@ -46,13 +46,14 @@ def _relation(a: Single, b: Single) -> str:
 
 
 def general_degree(arm: Serial) -> str:
-    """A sentence on the degree of an arm of six joints for which no chain is known; else empty."""
+    """Sentences on the degree of an arm of six joints for which no chain is known; else empty."""
     whole: Singles = singles(arm)
     if len(whole.joints) != 6 or any(j.slides for j in whole.joints):
         return ""
     return (
-        "An arm of six joints without three axes that meet or are parallel has no closed form: its "
-        "solutions are the roots of a polynomial of degree 16.  Use ssik for a numeric inverse."
+        "In general the solutions of six joints that turn are the roots of a polynomial of degree "
+        "16, and there is no closed form; the degree for this arm was not computed.  Use ssik for "
+        "a numeric inverse."
     )
 
 

@@ -45,10 +45,17 @@ CHAIN = (
     "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
+LINKED = ("Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair")
 AUTHOR = (
-    "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair", "Paper",
-    "from_dh", "from_screws", "parallelogram_drive", "real",
-)  # fmt: skip
+    "Chain",
+    "Derivation",
+    "Paper",
+    *LINKED,
+    "from_dh",
+    "from_screws",
+    "parallelogram_drive",
+    "real",
+)
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",

@@ -431,6 +431,9 @@ class Chain:
 
     def _angle_of(self, total: sp.Expr) -> sp.Expr:
         """A sum of solved angles, with half turns that some of them have in some branches."""
+        whole = [s for s, (_, flip) in self.halves.items() if flip == 0]
+        if any(total in (s, -s) for s in whole):
+            return substitute(total, self.values)
         half = [self.halves[s] for s in total.free_symbols if s in self.halves]
         pair = self.pair_of(total, {s: found for s, (found, _) in self.halves.items()})
         if pair is None:

@@ -430,6 +430,7 @@ def zyz(
         )
         lemma, aligned = angles.lemma, angles.aligned
         halves = {first: (angles.first, angles.flip), last: (angles.last, angles.flip)}
+        halves[middle] = _tilt(R, angles.first, sigma), sp.S.Zero
         s, c = (choose(aligned, e, sigma * e) for e in (angles.first.s, angles.first.c))
         pair, means = named(chain, first, Pair(s, c))
     else:
@@ -440,6 +441,7 @@ def zyz(
         found, near, unit = _within_reach(reaching, R, h, first, sigma, aligned)
         pair, means = named(chain, first, found)
         lemma, _ = zyz_lemma(R, (first, middle, last), pair)
+        halves[middle] = _tilt(R, pair, sp.S.One), sp.S.Zero
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     cases = [
         Degenerate(
@@ -452,6 +454,11 @@ def zyz(
         for turned in _aligned(real("psi"))
     ]
     return Applied(lemma, pair, means, given, tuple(cases), halves)
+
+
+def _tilt(R: sp.Matrix, first: Pair, side: sp.Expr) -> Pair:
+    """The pair of the middle angle, for sums that contain it; ``side`` is the sign of its sine."""
+    return Pair(side * (first.c * R[0, 2] + first.s * R[1, 2]), R[2, 2])
 
 
 def _within_reach(

@@ -288,3 +288,56 @@ def test_links_that_are_not_there_are_named(ur5: Path) -> None:
         read_urdf(ur5, Choice(tool="wrist"))
     with pytest.raises(TableError, match="w1 is not carried by tool0; its root is base"):
         read_urdf(ur5, Choice("tool0", "w1"))
+
+
+def joint(name: str, parent: str, child: str, place: str, axis: str, more: str = "") -> str:
+    return (
+        f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{place}"/><axis xyz="{axis}"/>{more}</joint>'
+    )
+
+
+MIMIC = '<mimic joint="lower" multiplier="{}"/>'
+PALLETISER = "<robot>" + "".join(
+    [
+        joint("turn", "base", "column", "0 0 0.4", "0 0 1"),
+        joint("lower", "column", "arm", "0.1 0 0", "0 1 0"),
+        joint("level", "arm", "elbow", "0 0 0.5", "0 1 0", MIMIC.format(-1)),
+        joint("upper", "elbow", "forearm", "0 0 0", "0 -1 0"),
+        '<joint name="end" type="fixed"><parent link="forearm"/><child link="tool"/>'
+        '<origin xyz="0.6 0 0"/></joint></robot>',
+    ]
+)
+"""A parallelogram keeps the elbow level, and a second motor turns the forearm."""
+
+
+def test_a_joint_that_mimics_another_is_a_coupling(tmp_path: Path) -> None:
+    """The joints that follow from motors have the pose that the file has, joint by joint."""
+    path = tmp_path / "palletiser.urdf"
+    path.write_text(PALLETISER, "utf-8")
+    table = read_urdf(path)
+    assert list(table.joints) == ["turn_0", "lower", "upper"]  # a script uses turn itself
+    assert str(table.couplings["upper"]) == "m_lower + m_upper"
+    serial = arm_of(path, read_urdf)
+    pose = sp.lambdify(serial.joints, serial.pose, "numpy")
+    for turn, lower, upper in np.random.default_rng(2).uniform(-3, 3, (20, 3)):
+        there = forward(PALLETISER, np.array([turn, lower, -lower, upper]))
+        np.testing.assert_allclose(pose(turn, lower, lower + upper), there, atol=1e-14)
+    assert "4 branches" in new("palletiser", "urdf", path).inverse
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (PALLETISER.replace('multiplier="-1"', 'multiplier="0.5"'), "by a whole multiple"),
+        (PALLETISER.replace('"-1"', '"-1" offset="0.1"'), "by a whole multiple"),
+        (PALLETISER.replace('"-1"', '"x"'), "joint level: multiplier"),
+        (PALLETISER.replace("0 0 0.5", "0 0.1 0.5").replace('"0 0 0"', '"0.1 0 0"'), "neighbour"),
+        (PALLETISER.replace('joint="lower"', 'joint="other"'), "which is not on the chain"),
+    ],
+)
+def test_other_joints_that_mimic_are_refused(text: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "palletiser.urdf"
+    path.write_text(text, "utf-8")
+    with pytest.raises(TableError, match=message):
+        read_urdf(path)

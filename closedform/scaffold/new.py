@@ -269,7 +269,7 @@ def _motor_lines(table: Table, origin: str) -> list[str]:
     symbols = ", ".join(f'real("{name}")' for name in names)
     return [
         "",
-        "# The motors: a joint with an empty cell in the column motors has one of its own.",
+        "# The motors: a joint without a coupling has one of its own.",
         f"motors = Matrix([{symbols}])",
         f"coupling = {source(matrix)}",
         "d.function(",

@@ -18,6 +18,8 @@ from closedform.mechanics.frames import homogeneous, rotation
 from closedform.model.functions import real
 from closedform.scaffold.tables import (
     JOINTS,
+    NUMBERED,
+    TAKEN,
     Table,
     TableError,
     add_joint,
@@ -52,6 +54,9 @@ class Joint:
     axis: sp.Matrix
     limits: tuple[str, str] | None = None
     mimics: str = ""
+    factor: sp.Rational = sp.S.One
+    offset: sp.Rational = sp.S.Zero
+    """Of a joint that mimics another: its value is the factor times that one, plus the offset."""
 
 
 @dataclass(frozen=True)
@@ -78,16 +83,15 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.doubt = _doubt(chain)
     place = sp.eye(4)
+    mimics: list[_Mimic] = []
     for joint in chain:
         where = f"{file}, joint {shown_name(joint.name)}"
         place = _product(place, joint.origin)
         if joint.kind == "fixed":
             continue
         if joint.mimics:
-            raise TableError(
-                f"{where}: it mimics {shown_name(joint.mimics)}; write the arm as a table of "
-                f"joints and couple the two with d.joint(..., coupling=...)"
-            )
+            mimics.append(_Mimic(joint, place, len(table.axes), where))
+            continue
         if not table.axes and not _along_axes(place):
             table.base, place = place, sp.eye(4)  # what a tilted mount does to all axes stays apart
         name = _symbol(joint.name)
@@ -100,6 +104,8 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
             table.limits[name] = joint.limits
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
+    for mimic in mimics:
+        mimic.couple(table)
     table.home = place
     table.notes.append(
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
@@ -107,6 +113,58 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
     )
     use_exact(table, file)
     return table
+
+
+@dataclass(frozen=True)
+class _Mimic:
+    """A joint that mimics another, at home, after some number of other joints of the chain."""
+
+    joint: Joint
+    place: sp.Matrix
+    after: int
+    where: str
+
+    def couple(self, table: Table) -> None:
+        """Let a neighbour on the same axis turn by what this joint adds; another has no chain."""
+        mimicked, factor = _symbol(self.joint.mimics), self.joint.factor
+        told = f"{self.where}: it mimics {shown_name(self.joint.mimics)}"
+        if mimicked not in table.joints:
+            raise TableError(f"{told}, which is not on the chain")
+        for k in (self.after, self.after - 1):
+            if 0 <= k < len(table.axes) and (sense := self._sense(*table.axes[k][1:])):
+                name = str(table.axes[k][0])
+                break
+        else:
+            name = ""
+        whole = factor.is_Integer and self.joint.offset == 0
+        turns = {"revolute"} == {
+            MOVING[self.joint.kind],
+            table.joints.get(name),
+            table.joints[mimicked],
+        }
+        if not (whole and turns) or name == mimicked or mimicked in table.couplings:
+            raise TableError(
+                f"{told}; a mimic joint is read if it turns about the axis of a neighbour on the "
+                f"chain that has a motor of its own, and by a whole multiple of the angle of "
+                f"another, as in a parallelogram.  Write the arm as a table of joints and couple "
+                f"the two with d.joint(..., coupling=...)"
+            )
+        own = table.couplings.get(name, real(f"m_{name}"))
+        table.couplings[name] = own + sense * factor * real(f"m_{mimicked}")
+        table.limits.pop(name, None)
+        table.notes.append(
+            f"{told}; both turn about the axis of {name}, whose angle is {table.couplings[name]} "
+            f"in those of the motors"
+        )
+
+    def _sense(self, direction: Sequence[sp.Expr], point: Sequence[sp.Expr]) -> int:
+        """1 or -1 if an axis is that of this joint, in its direction or against it; else 0."""
+        own = (self.place[:3, :3] * self.joint.axis).applyfunc(sp.expand)
+        other, away = sp.Matrix(direction), sp.Matrix(point) - self.place[:3, 3]
+        same = own.cross(other).applyfunc(sp.simplify).is_zero_matrix
+        if not same or not own.cross(away).applyfunc(sp.simplify).is_zero_matrix:
+            return 0
+        return 1 if sp.simplify(own.dot(other)) > 0 else -1
 
 
 def _without_short(
@@ -282,6 +340,7 @@ def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
 
 
 def _symbol(name: str) -> str:
-    """The name of a joint as an identifier."""
+    """The name of a joint as an identifier that the written script does not use itself."""
     plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
-    return plain if plain[:1].isalpha() else f"q_{plain}"
+    known = plain if plain[:1].isalpha() else f"q_{plain}"
+    return f"{known}_0" if known in TAKEN or NUMBERED.fullmatch(known) else known

@@ -94,7 +94,22 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         direction,
         None if kind == "continuous" else _limits(element.find("limit"), where, notes),
         "" if mimic is None else mimic.get("joint", "another joint"),
+        *(
+            _number(mimic, key, default, where)
+            for key, default in (("multiplier", 1), ("offset", 0))
+        ),
     )
+
+
+def _number(element: ElementTree.Element | None, key: str, default: int, where: str) -> sp.Rational:
+    text = None if element is None else element.get(key)
+    if text is None:
+        return sp.Integer(default)
+    try:
+        fraction = number(text.strip())
+    except FormulaError as error:
+        raise TableError(f"{where}: {key}: {error}") from error
+    return sp.Rational(fraction.numerator, fraction.denominator)
 
 
 def _limits(

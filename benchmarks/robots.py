@@ -41,9 +41,10 @@ numbers here, so what is proved is proved for these numbers; the derivations `pu
 robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
 given is an input of the inverse, and so is an arm angle (`--given arm_angle`).
 
-The seconds are those of one core for reading the file, proposing the chain and proving the inverse,
-without printing. The nanoseconds are those of one call of the printed C with all branches, on one
-core of {machine}. This page is written by `python -m benchmarks.robots`.
+The seconds are those of one core for `closedform new`, which proves the inverse that it proposes,
+and for `closedform derive`, which proves it again, without printing. The nanoseconds are those of
+one call of the printed C with all branches, on one core of {machine}.
+This page is written by `python -m benchmarks.robots`.
 
 | robot | structure | branches | lemmas | s | ns |
 |---|---|---:|---|---:|---:|

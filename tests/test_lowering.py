@@ -15,6 +15,7 @@ from closedform.lower.graph import Graph, hardly_ever, reachable
 from closedform.mechanics.frames import exponential
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Function, Program, array, choose, real
+from closedform.model.tolerances import DOUBLE
 
 x, y, z = (real(n) for n in "xyz")
 SYMBOLS = (x, y, z)
@@ -84,6 +85,30 @@ def test_roots_of_what_is_not_negative_become_one() -> None:
     assert lowered(a * b, b * c).operations()["sqrt"] == 3, "b stands in two products"
     assert lowered(a * b, b + z).operations()["sqrt"] == 2
     assert lowered(sqrt(x) * sqrt(y)).operations()["sqrt"] == 2, "both may be negative"
+
+
+def test_roots_of_quotients_by_what_a_flag_chooses_become_one() -> None:
+    def operations(divisor: sp.Expr) -> dict[str, int]:
+        p = Program()
+        flag = p.vanishes("flag", y**2, 1, "y is zero", squares=True)
+        root = sqrt(1 + x**2) * sqrt(1 / choose(flag, 1, divisor))
+        d = Derivation("test", "", Paper("", "", ()), "")
+        return lower(d.function("f", "", {"x": SYMBOLS}, {"q": [root]}, program=p), d).operations()
+
+    assert operations(y**2)["sqrt"] == 1
+    assert operations(y)["sqrt"] == 2, "y may be negative"
+
+
+@pytest.mark.parametrize(("squares", "power"), [(False, 1), (True, 2)])
+def test_a_square_vanishes_where_its_root_does(squares: bool, power: int) -> None:
+    p = Program()
+    flag = p.vanishes("flag", sp.Abs(y) ** power, x**power, "y is zero", squares=squares)
+    d = Derivation("test", "", Paper("", "", ()), "")
+    outputs = {"q": [choose(flag, 1, 0)]}
+    program = lower(d.function("f", "", {"x": SYMBOLS}, outputs, program=p), d)
+    for factor, expected in ((0.9, 1), (1.1, 0)):
+        values = {"x": 3.0, "y": -3 * factor * DOUBLE.vanishing, "z": 0.0}
+        assert run(program, values) == [expected]
 
 
 def test_angles_take_one_root_and_no_division() -> None:

@@ -367,7 +367,10 @@ def _margins(
             lowered[statement.symbol] = sp.false
         if isinstance(statement, kind) and isinstance(statement, (Bound, Match, Vanishes)):
             value = -sp.Abs(statement.value) if isinstance(statement, Match) else statement.value
-            margins.append(substitute(value / statement.scale, lowered))
+            margin = value / statement.scale
+            if isinstance(statement, Vanishes) and statement.squares:
+                margin = sp.sqrt(margin)
+            margins.append(substitute(margin, lowered))
     used: set[sp.Basic] = set()
     pending = {s for e in margins for s in e.free_symbols}
     while pending:

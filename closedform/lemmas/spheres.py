@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -14,21 +14,24 @@ from closedform.model.lemma import Lemma
 
 theorem(
     "three spheres",
-    statement=r"""Let $\mathbf c_2 = D\,\mathbf e_1$ and $\mathbf c_3 = k\,\mathbf e_1 + j\,\mathbf
-e_2$ with $D > 0$, $j > 0$ and orthonormal $\mathbf e_1$, $\mathbf e_2$, $\mathbf e_3 = \mathbf e_1
-\times \mathbf e_2$.  The points $\mathbf x$ at the distance $r_1$ from the origin, $r_2$ from
-$\mathbf c_2$ and $r_3$ from $\mathbf c_3$ are $\mathbf x = X\,\mathbf e_1 + Y\,\mathbf e_2 + \sigma
-h\,\mathbf e_3$ with
-$$X = \frac{D^2 + r_1^2 - r_2^2}{2 D}, \qquad Y = \frac{k^2 + j^2 + r_1^2 - r_3^2 - 2 k X}{2 j},
-\qquad h = \sqrt{r_1^2 - X^2 - Y^2}, \qquad \sigma = \pm 1.$$
-They exist if and only if $X^2 + Y^2 \le r_1^2$, and coincide if and only if these are equal.  The
-first two spheres share a circle of the radius $\rho = \sqrt{r_1^2 - X^2}$, and
-$$Y = \frac{j^2 + (k - X)^2 + \rho^2 - r_3^2}{2 j}, \qquad h = \sqrt{\rho^2 - Y^2}.$$""",
-    proof=r"""Write $\mathbf x = X\,\mathbf e_1 + Y\,\mathbf e_2 + Z\,\mathbf e_3$.  The first
-distance says $X^2 + Y^2 + Z^2 = r_1^2$.  Each of the others, subtracted from it, is linear: $2 D X
-= D^2 + r_1^2 - r_2^2$ and $2 k X + 2 j Y = k^2 + j^2 + r_1^2 - r_3^2$.  These give $X$ and $Y$, and
-the first equation gives $Z^2$.  With $r_1^2 = X^2 + \rho^2$ they become the second form, in which
-short lengths are not the differences of long ones.""",
+    statement=r"""Let $\mathbf c_2 = \mathbf a \ne \mathbf 0$ and $\mathbf c_3 = k\,\mathbf a +
+\mathbf n$ with $\mathbf n \ne \mathbf 0$ at right angles to $\mathbf a$, and let $\mu = |\mathbf
+a|^2$, $\nu = |\mathbf n|^2$ and $\mathbf w = \mathbf a \times \mathbf n$.  The points $\mathbf x$
+at the distance $r_1$ from the origin, $r_2$ from $\mathbf c_2$ and $r_3$ from $\mathbf c_3$ are
+$\mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf w$ with
+$$X = \frac{\mu + r_1^2 - r_2^2}{2 \mu}, \qquad Y = \frac{\nu + k^2 \mu + r_1^2 - r_3^2 - 2 k \mu
+X}{2 \nu}, \qquad h = \sqrt{\frac{r_1^2 - \mu X^2 - \nu Y^2}{\mu \nu}}, \qquad \sigma = \pm 1.$$
+They exist if and only if $\mu X^2 + \nu Y^2 \le r_1^2$, and coincide if and only if these are
+equal.  The first two spheres share a circle of the radius $\rho = \sqrt{r_1^2 - \mu X^2}$, and
+$$Y = \frac{\nu + \mu (k - X)^2 + \rho^2 - r_3^2}{2 \nu}, \qquad h = \sqrt{\frac{\rho^2 - \nu
+Y^2}{\mu \nu}}.$$""",
+    proof=r"""The vectors $\mathbf a$, $\mathbf n$ and $\mathbf w$ are at right angles to each
+other, and $|\mathbf w|^2 = \mu \nu$.  Write $\mathbf x = X\,\mathbf a + Y\,\mathbf n + Z\,\mathbf
+w$.  The first distance says $\mu X^2 + \nu Y^2 + \mu \nu Z^2 = r_1^2$.  Each of the others,
+subtracted from it, is linear: $2 \mu X = \mu + r_1^2 - r_2^2$ and $2 k \mu X + 2 \nu Y = k^2 \mu +
+\nu + r_1^2 - r_3^2$.  These give $X$ and $Y$, and the first equation gives $Z^2$.  With $r_1^2 =
+\mu X^2 + \rho^2$ they become the second form, in which short lengths are not the differences of
+long ones.""",
     exception=r"""If the centres are in line, there is no common point unless the third sphere
 contains the circle in which the first two meet, or two spheres are the same and meet the other;
 then $\mathbf x$ is free on this circle.  If all three are the same, $\mathbf x$ is free on it.""",
@@ -80,60 +83,50 @@ def three_spheres(
     p = program
     r1, r2, r3 = radii
     origin, *others = centres
-    u, v = (
-        sp.Matrix([p.let(f"{name}_{i}", e) for i, e in zip("xyz", other - origin, strict=True)])
-        for name, other in zip("uv", others, strict=True)
-    )
+    u, v = (_vector(p, name, c - origin) for name, c in zip("uv", others, strict=True))
     start = len(p.body)
-    size_u = p.let("size_u", sp.sqrt(u.dot(u)), nonnegative=True)
-    size_v = p.let("size_v", sp.sqrt(v.dot(v)), nonnegative=True)
-    same = p.vanishes("same", size_u, scale, "the first two centres coincide")
-    point = p.vanishes("all_same", size_u + size_v, scale, "all centres coincide")
+    uu = p.let("u_u", u.dot(u), nonnegative=True)
+    vv = p.let("v_v", v.dot(v), nonnegative=True)
+    square = scale**2
+    same = p.vanishes("same", uu, square, "the first two centres coincide", squares=True)
+    point = p.vanishes("all_same", uu + vv, square, "all centres coincide", squares=True)
 
     def either(at_v: sp.Expr, at_u: sp.Expr) -> sp.Expr:
         return at_u if at_u == at_v else choose(same, at_v, at_u)
 
-    D = p.let("D", either(size_v, size_u), nonnegative=True)
-    near, far = either(r3, r2), either(r2, r3)
-    e1 = sp.Matrix(
-        [
-            p.let(f"E_1{i}", choose(point, int(i == 1), either(b, a) / D))
-            for i, (a, b) in enumerate(zip(u, v, strict=True), 1)
-        ]
-    )
-    other = sp.Matrix([either(a, b) for a, b in zip(u, v, strict=True)])
-    # twice: where the centres are nearly in line, the first difference has lost its direction
-    once = p.let("k_0", other.dot(e1))
-    nearly = sp.Matrix([p.let(f"m_{i}", e) for i, e in zip("xyz", other - once * e1, strict=True)])
-    again = p.let("k_1", nearly.dot(e1))
-    across = sp.Matrix(
-        [p.let(f"n_{i}", e) for i, e in zip("xyz", nearly - again * e1, strict=True)]
-    )
-    k = p.let("k", once + again)
-    j = p.let("j", sp.sqrt(across.dot(across)), nonnegative=True)
-    line = p.vanishes("in_line", j, scale, "the centres are in line", free)
-    e2 = sp.Matrix(
-        [
-            p.let(f"E_2{i}", choose(line, beside, e / j))
-            for i, (e, beside) in enumerate(zip(across, _beside(e1), strict=True), 1)
-        ]
-    )
+    apart = _vector(p, "d", [either(e, f) for e, f in zip(v, u, strict=True)])
+    other = sp.Matrix([either(e, f) for e, f in zip(u, v, strict=True)])
+    a = sp.Matrix([p.let("a_x", choose(point, 1, apart[0])), *apart[1:]])
+    mu = p.let("mu", choose(point, 1, either(vv, uu)), nonnegative=True)
+    over = p.let("over", 1 / mu, nonnegative=True)
+    # The first product has lost its direction where the centres are nearly in line, but the others
+    # are at right angles to a whatever it is.
+    first = _vector(p, "m", a.cross(other))
+    n = _vector(p, "n", first.cross(a) * over)
+    nu = p.let("nu", n.dot(n), nonnegative=True)
+    line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
+    beside, length = _beside(p, a)
+    w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
     if r1 == r2 == r3:
-        # k^2 + j^2 - k D as a product of differences: small where the last two centres are close
-        left = other.dot(other - sp.Matrix([either(b, a) for a, b in zip(u, v, strict=True)]))
-        X, Y, h = _met_by_equal(p, r1, (D, j), left, (point, line), scale)
+        # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
+        left = other.dot(other - apart)
+        part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
+        X, Y, h = _met_by_equal(p, r1, (mu, nu, part), left, (point, line), scale)
         more: tuple[sp.Symbol, ...] = ()
     else:
-        X, Y, h, flat = _met_by_unequal(p, (r1, near, far), (D, k, j), point, scale)
+        lengths = (r1, either(r3, r2), either(r2, r3))
+        beyond = p.let("nu_w", choose(line, length * over, nu), nonnegative=True)
+        dot = other.dot(a)
+        X, Y, h, flat = _met_by_unequal(p, lengths, (mu, nu, beyond), dot, (point, line), scale)
         more = (flat,)
-    e3 = e1.cross(e2)
-    from_first = [X * a + Y * b + sigma * h * c for a, b, c in zip(e1, e2, e3, strict=True)]
+    from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(apart, n, w, strict=True)]
     found = [o + x for o, x in zip(origin, from_first, strict=True)]
     place = sp.Matrix(unknowns) - origin
     lemma = Lemma(
         "three spheres",
         r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf c_2| = r_2,\ |\mathbf x - \mathbf c_3| = r_3 "
-        r"\;\Rightarrow\; \mathbf x = X\,\mathbf e_1 + Y\,\mathbf e_2 + \sigma h\,\mathbf e_3",
+        r"\;\Rightarrow\; \mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf a \times "
+        r"\mathbf n",
         tuple(
             (place - c).dot(place - c) - r**2
             for c, r in zip((sp.zeros(3, 1), u, v), radii, strict=True)
@@ -141,14 +134,13 @@ def three_spheres(
         dict(zip(unknowns, found, strict=True)),
         2,
         signs=(sigma,),
-        letters={size_v: r"|\mathbf c_3|"},
         vectors=(
-            r"The algorithm has the entries $E_{1i}$ and $E_{2i}$ of $\mathbf e_1$ and $\mathbf "
-            r"e_2$.  It takes the part along $\mathbf e_1$ out of $\mathbf c_3$ twice, because "
-            r"after the first time rounding leaves some of it if the centres are nearly in line."
+            r"The algorithm has the entries of $\mathbf m = \mathbf a \times \mathbf c_3$, of "
+            r"$\mathbf n = \mathbf m \times \mathbf a / \mu$ and of $\mathbf w$."
         ),
     )
-    rise = sigma * h
+    D, j = sp.sqrt(mu), sp.sqrt(nu)
+    rise = sigma * h * D * j
     return Meeting(
         Link(
             unknowns,
@@ -159,53 +151,69 @@ def three_spheres(
         ),
         tuple(from_first),
         sigma,
-        h * D * j,
-        sp.Matrix([[X, Y, rise], [X - D, Y, rise], [X - k, Y - j, rise]]),
+        h * mu * nu,
+        sp.Matrix(
+            [
+                [X * D, Y * j, rise],
+                [(X - 1) * D, Y * j, rise],
+                [X * D - other.dot(a) / D, (Y - 1) * j, rise],
+            ]
+        ),
     )
 
 
 def _met_by_equal(
     p: Program,
     r: sp.Symbol,
-    lengths: tuple[sp.Expr, sp.Expr],
+    squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     left: sp.Expr,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
-) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """X, Y and h for one radius; ``lengths`` are D and j, and ``left`` is 2 j Y."""
-    (D, j), (point, line) = lengths, flags
-    X = p.let("X", choose(point, 0, D / 2))
+) -> tuple[sp.Expr, sp.Symbol, sp.Symbol]:
+    """X, Y and h for one radius; ``squares`` are mu, nu and 1 / (mu nu), ``left`` is 2 nu Y."""
+    (mu, nu, part), (point, line) = squares, flags
     left = p.let("left", left)
     p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")
-    Y = p.let("Y", choose(line, 0, left / (2 * j)))
-    radius = p.let("rho", sp.sqrt(X**2 + Y**2), nonnegative=True)
-    slack = p.bound("slack", r - radius, scale, "the spheres meet")
-    touching = p.vanishes("touching", slack, scale, "the spheres touch")
-    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(r + radius))
-    return X, Y, p.let("h", rise, nonnegative=True)
+    Y = p.let("Y", choose(line, 0, left * mu * part / 2))
+    # the radius of the circle of the centres is longer by the tolerance at most
+    missed = 2 * scale * r
+    square = choose(point, 0, mu / 4 + nu * Y**2)
+    slack = p.bound("slack", r**2 - square, missed, "the spheres meet")
+    touching = p.vanishes("touching", slack, missed, "the spheres touch")
+    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(part))
+    return sp.S.Half, Y, p.let("h", rise, nonnegative=True)
 
 
 def _met_by_unequal(
     p: Program,
     radii: tuple[sp.Expr, sp.Expr, sp.Expr],
-    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
-    point: sp.Symbol,
+    squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
+    dot: sp.Expr,
+    flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
-    """X, Y and h from the circle of the first two spheres; ``lengths`` are D, k and j.
+    """X, Y and h from the circle of the first two spheres.
+
+    ``squares`` has mu, nu and w^2 / mu, and ``dot`` is k mu.
 
     This circle comes from differences of lengths, which stay exact for short rods.  If the third
     sphere just misses it, the point stays on it.  The last result is a flag that is true if the
     third sphere contains it.
     """
-    (r1, near, far), (D, k, j) = radii, lengths
+    (r1, near, far), (mu, nu, beyond), (point, line) = radii, squares, flags
     # with a quarter of the tolerance, the legs accept the target of what is accepted here
     tolerated = scale / 4
+    unit = p.let("length_a", sp.sqrt(mu), nonnegative=True)
+    rest = p.let("length_n", sp.sqrt(beyond), nonnegative=True)
+    D = p.let("D", choose(point, 0, unit), nonnegative=True)
+    j = p.let("j", choose(line, 0, rest), nonnegative=True)
     A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
     along, beside, _ = lens(p, (r1, near), D, A, tolerated, "the spheres meet")
-    X = p.let("X", choose(point, 0, along))
+    along = p.let("along", choose(point, 0, along))
     radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
-    left = p.let("left", j**2 + (k - X) ** 2 + radius**2 - far**2)
+    part = p.let("part", 1 / (unit * rest), nonnegative=True)
+    over = p.let("over_a", rest * part, nonnegative=True)
+    left = p.let("left", nu + (dot * over - along) ** 2 + radius**2 - far**2)
     meaning = "the third sphere meets the circle of the others"
     # a radius of zero may be missed by as much as the others, and this by its own square
     missed = 2 * tolerated * (far + scale / 2**42)
@@ -213,9 +221,12 @@ def _met_by_unequal(
     lower = p.bound("lower", 2 * j * radius - left, missed, meaning)
     both = p.let("both", upper + lower, nonnegative=True)
     flat = p.vanishes("flat", both, scale * far, "the third sphere contains the circle")
-    Y = p.let("Y", choose(flat, 0, radius * (upper - lower) / both))
-    rise = choose(flat, radius, 2 * radius * sp.sqrt(upper) * sp.sqrt(lower) / both)
-    return X, Y, p.let("h", rise, nonnegative=True), flat
+    anywhere = sp.Or(flat, line)
+    half = p.let("half", radius / both)
+    X = p.let("X", along * over)
+    Y = p.let("Y", choose(anywhere, 0, half * (upper - lower) * unit * part))
+    rise = choose(anywhere, radius, 2 * half * sp.sqrt(upper) * sp.sqrt(lower))
+    return X, Y, p.let("h", rise * part, nonnegative=True), flat
 
 
 def lens(
@@ -244,12 +255,20 @@ def lens(
     return along, sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share, (B, C)
 
 
-def _beside(e: sp.Matrix) -> tuple[sp.Expr, ...]:
-    """A unit vector at right angles to a unit vector, without a root (Duff and others, 2017)."""
+def _vector(p: Program, name: str, entries: Iterable[sp.Expr]) -> sp.Matrix:
+    """A vector with named entries."""
+    return sp.Matrix([p.let(f"{name}_{i}", e) for i, e in zip("xyz", entries, strict=True)])
+
+
+def _beside(p: Program, e: sp.Matrix) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
+    """A vector at right angles to a vector and not shorter, and the square of its length.
+
+    It is the product of the vector and (1, s, 0), where the sign s differs from that of x y.
+    """
     x, y, z = e
-    side = sign_of(z)
-    share = -1 / (side + z)
-    return (1 + side * x**2 * share, side * x * y * share, -side * x)
+    side = p.let("side", sign_of(x * y))
+    last = p.let("last", y + side * x)
+    return (side * z, z, -last), last**2 + 2 * z**2
 
 
 def _cases(

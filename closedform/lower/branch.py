@@ -113,15 +113,13 @@ class Branch:
                 self.reachable.append(self.graph.node("le", size, allowed))
             case Vanishes():
                 value = self.build(statement.value)
-                limit = self._tolerance("vanishing", statement.scale)
+                limit = self._tolerance("vanishing", statement.scale, statement.squares)
                 flag = self.graph.node("le", value, limit)
                 self._name(statement.symbol, flag)
                 if statement.free:
                     self.singular.append(flag)
             case Determined():
-                tolerance = self.graph.node("tolerance", payload="determined")
-                powers = [tolerance] * (2 if statement.squares else 1)
-                least = self.graph.product([*powers, self.build(statement.scale)])
+                least = self._tolerance("determined", statement.scale, statement.squares)
                 self.singular.append(self.graph.node("le", self.build(statement.value), least))
             case Require():
                 sizes = [self.graph.even("abs", self.build(v)) for v in statement.values]
@@ -140,10 +138,10 @@ class Branch:
             least = graph.product(squared)
         self._name(statement.symbol, graph.node("max", value, least))
 
-    def _tolerance(self, name: str, scale: sp.Expr) -> Node:
-        """A tolerance, times its scale."""
-        tolerance = self.graph.node("tolerance", payload=name)
-        return self.graph.product([tolerance, self.build(sp.sympify(scale, strict=True))])
+    def _tolerance(self, name: str, scale: sp.Expr, squares: bool = False) -> Node:
+        """A tolerance, or its square, times its scale."""
+        powers = [self.graph.node("tolerance", payload=name)] * (2 if squares else 1)
+        return self.graph.product([*powers, self.build(sp.sympify(scale, strict=True))])
 
     def _name(self, symbol: sp.Symbol, node: Node) -> None:
         self.build.define(symbol, node)

@@ -98,6 +98,8 @@ class Ranges:
             return self.positive(node.args[0])
         if node.op == "max":  # the other operand is returned only if it is larger than zero
             return is_const(node.args[1], 0)
+        if node.op == "select":
+            return all(map(self.positive, node.args[1:]))
         if node.op == "product":
             return all(n % 2 == 0 or self.positive(f) for f, n in Counter(node.args).items())
         if node.op == "sum":

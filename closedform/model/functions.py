@@ -96,13 +96,17 @@ class Match:
 
 @dataclass(frozen=True)
 class Vanishes:
-    """``symbol`` is true if the nonnegative ``value`` is zero; then ``free`` joints are free."""
+    """``symbol`` is true if the nonnegative ``value`` is zero; then ``free`` joints are free.
+
+    With ``squares``, the value and its scale are squares of such quantities.
+    """
 
     symbol: sp.Symbol
     value: sp.Expr
     scale: sp.Expr
     meaning: str
     free: tuple[sp.Symbol, ...] = ()
+    squares: bool = False
 
 
 @dataclass(frozen=True)
@@ -433,11 +437,12 @@ class Program:
         scale: Number,
         meaning: str,
         free: Sequence[sp.Symbol] = (),
+        *,
+        squares: bool = False,
     ) -> sp.Symbol:
         symbol = self._symbol(name)
-        self.body.append(
-            Vanishes(symbol, value, sp.sympify(scale, strict=True), meaning, tuple(free))
-        )
+        exact = sp.sympify(scale, strict=True)
+        self.body.append(Vanishes(symbol, value, exact, meaning, tuple(free), squares))
         return symbol
 
     def determined(

@@ -91,11 +91,11 @@ def prove_sound(
                     values[len(solution) :], answers.means.values(), strict=True
                 )
             ]
-            vanishing = sp.ImmutableMatrix([substitute(e, locus) for e in residues])
-            guards = tuple(substitute(b, locus) for b in bounds)
             place = fault.replace("{}", _where(label, case))
-            for side in outcomes(vanishing):
-                decision = require(side, guards, place, names)
+            both = sp.ImmutableMatrix([substitute(e, locus) for e in (*residues, *bounds)])
+            for side in outcomes(both):
+                vanishing, guards = side[: len(residues)], side[len(residues) :]
+                decision = require(sp.ImmutableMatrix(vanishing), tuple(guards), place, names)
                 found += decision.assumptions if case is None else ()
     return list(dict.fromkeys(found))
 

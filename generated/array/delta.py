@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 75 compare and select, 77 add, 8 divide, 104 multiply, 6 sincos, 9 sqrt
-#   skeleton: 138 compare and select, 128 add, 21 divide, 93 multiply, 6 sincos, 9 sqrt
-#   jacobian_parallel: 86 compare and select, 86 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
-#   jacobian_serial: 74 compare and select, 98 add, 15 divide, 117 multiply, 6 sincos, 9 sqrt
-#   jacobian: 87 compare and select, 116 add, 33 divide, 173 multiply, 6 sincos, 9 sqrt
-#   determinant: 71 compare and select, 98 add, 17 divide, 123 multiply, 6 sincos, 9 sqrt
-#   singularities: 76 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
-#   condition_number: 73 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
-#   constraint: 70 compare and select, 108 add, 15 divide, 155 multiply, 6 sincos, 9 sqrt
+#   fk: 68 compare and select, 62 add, 12 divide, 95 multiply, 6 sincos, 1 sqrt
+#   skeleton: 131 compare and select, 113 add, 18 divide, 94 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 79 compare and select, 71 add, 12 divide, 95 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 67 compare and select, 83 add, 12 divide, 119 multiply, 6 sincos, 1 sqrt
+#   jacobian: 80 compare and select, 101 add, 30 divide, 174 multiply, 6 sincos, 1 sqrt
+#   determinant: 64 compare and select, 83 add, 14 divide, 124 multiply, 6 sincos, 1 sqrt
+#   singularities: 69 compare and select, 83 add, 12 divide, 120 multiply, 6 sincos, 1 sqrt
+#   condition_number: 66 compare and select, 121 add, 14 divide, 171 multiply, 6 sincos, 3 sqrt
+#   constraint: 63 compare and select, 93 add, 12 divide, 157 multiply, 6 sincos, 1 sqrt
 #   ik: 169 compare and select, 151 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -157,10 +157,10 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -172,95 +172,87 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t10 = u_z * u_z + t7 * t7 + t9 * t9
-    size_u = ops.sqrt(t10)
-    size = f + e + L + l
-    t11 = size * ops.vanishing
-    same = size_u <= t11
-    t12 = L * c3
-    t13 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = ops.select(same, t7, t13)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    t16 = v_z * v_z + t13 * t13 + t15 * t15
-    size_v = ops.sqrt(t16)
-    all_same = size_u + size_v <= t11
-    t17 = ops.select(same, t13, t7)
-    D = ops.select(same, size_v, size_u)
-    t18 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, t17 * t18)
-    t19 = ops.select(same, t9, t15)
-    t20 = ops.select(same, t15, t9)
-    t21 = ops.select(all_same, 0.0, t18 * t20)
-    t22 = ops.select(same, u_z, v_z)
-    t23 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t18 * t23)
-    t24 = E_11 * t14 + t19 * t21 + t22 * E_13
-    t25 = t14 - E_11 * t24
-    t26 = t19 - t21 * t24
-    m_z = t22 - E_13 * t24
-    t27 = E_11 * t25 + t21 * t26 + E_13 * m_z
-    t28 = t25 - E_11 * t27
-    t29 = t26 - t21 * t27
-    n_z = m_z - E_13 * t27
-    j = ops.sqrt(t28 * t28 + t29 * t29 + n_z * n_z)
-    in_line = j <= t11
-    t30 = t14 * (t17 - t14) - t19 * (t19 - t20) - t22 * (t22 - t23)
-    t31 = ops.abs(ops.select(in_line, -t30, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t32 = ops.select(in_line, 0.0, t30 / (2.0 * j))
-    t33 = l - ops.sqrt(X * X + t32 * t32)
-    unreachable = ops.opposite(t31 & (-(size * ops.feasibility) <= t33))
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
+    same = u_u <= t14
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t29 = l * size * 2.0
+    t30 = l * l
+    side = ops.sign(t15 * a_x)
+    t31 = t15 + a_x * side
+    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t34 = ops.opposite(failed)
-    t35 = t34 & ops.opposite(all_same)
-    t36 = ops.select(t35 & ops.opposite(same), t10, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t35 & same, t16, 1.0)), ops.sqrt(t36))
-    t37 = 1.0 / ops.select(t35, D_2, 1.0)
-    t38 = ops.select(all_same, 0.0, t37 * t20)
-    E_11_2 = ops.select(all_same, 1.0, t17 * t37)
-    t39 = ops.sign(E_13)
-    t40 = E_11_2 * t39
-    E_13_2 = ops.select(all_same, 0.0, t37 * t23)
-    t41 = E_11_2 * t14 + t19 * t38 + t22 * E_13_2
-    m_z_2 = t22 - E_13_2 * t41
-    t42 = t14 - E_11_2 * t41
-    t43 = t19 - t38 * t41
-    t44 = E_11_2 * t42 + t38 * t43 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t44
-    t45 = t34 & ops.opposite(in_line)
-    t46 = t42 - E_11_2 * t44
-    t47 = t43 - t38 * t44
-    t48 = ops.select(t45, t46 * t46 + t47 * t47 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t48)
-    t49 = 1.0 / ops.select(t45, j_2, 1.0)
-    E_23 = ops.select(in_line, -t40, n_z_2 * t49)
-    t50 = 1.0 / ops.select(t34 & in_line, E_13_2 + t39, 1.0)
-    E_22 = ops.select(in_line, -(t50 * (t38 * t40)), t47 * t49)
-    touching = ops.max(t33, 0.0) <= t11
-    t51 = t34 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t52 = ops.select(in_line, 0.0, t30 / ops.select(t45, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t51, X_2 * X_2 + t52 * t52, 1.0))
-    t53 = ops.select(t51, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t53))
-    t54 = (t38 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t39 * t50, t46 * t49)
-    t55 = E_21 * t52 + (t5 - X_2 * E_11_2)
-    t56 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t57 = t52 * E_22 + (t8 - X_2 * t38)
-    t58 = h * (E_11_2 * E_22 - t38 * E_21)
-    t59 = t52 * E_23 + (t3 - X_2 * E_13_2)
-    t60 = ops.status(invalid, unreachable, in_line)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    t43 = over_2 * t21
+    t44 = over_2 * t24
+    n_z_2 = over_2 * t26
+    nu_2 = t43 * t43 + t44 * t44 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
+    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t46 = d_x * 0.5 - (t5 - t43 * t45)
+    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t44)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
+    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = w_x * h
+    t50 = t15 * 0.5 - (t8 + t44 * t45)
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t43))
+    t51 = h * w_y
+    t52 = d_z * 0.5 - (t3 + n_z_2 * t45)
+    w_z = ops.select(in_line, -t31, a_x * t44 + t15 * t43)
+    t53 = h * w_z
+    t54 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, -(t54 + t55)),
-        ops.select(failed, ops.nan, t56 - t57),
-        ops.select(failed, ops.nan, -(t58 + t59)),
-        ops.select(failed, ops.nan, t54 - t55),
-        ops.select(failed, ops.nan, -(t56 + t57)),
-        ops.select(failed, ops.nan, t58 - t59),
-        t60,
-        t60,
+        ops.select(failed, ops.nan, t46 - t49),
+        ops.select(failed, ops.nan, t50 - t51),
+        ops.select(failed, ops.nan, t52 - t53),
+        ops.select(failed, ops.nan, t49 + t46),
+        ops.select(failed, ops.nan, t51 + t50),
+        ops.select(failed, ops.nan, t53 + t52),
+        t54,
+        t54,
     )
 
 
@@ -271,7 +263,6 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
 
@@ -325,10 +316,10 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -353,276 +344,270 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t20 = f * s_alpha2
     t21 = t20 + s_alpha2 * t12
     t22 = t18 - (t19 - t21)
-    t23 = u_z * u_z + t14 * t14 + t22 * t22
-    size_u = ops.sqrt(t23)
+    u_u = u_z * u_z + t14 * t14 + t22 * t22
+    t23 = L * s3
+    v_z = t3 - t23
+    t24 = e * c_alpha3
+    t25 = f * c_alpha3
+    t26 = L * c3
+    t27 = t25 + c_alpha3 * t26
+    t28 = t9 - (t24 - t27)
+    t29 = e * s_alpha3
+    t30 = f * s_alpha3
+    t31 = t30 + s_alpha3 * t26
+    t32 = t18 - (t29 - t31)
+    v_v = v_z * v_z + t28 * t28 + t32 * t32
     size = f + e + L + l
-    t24 = size * ops.vanishing
-    same = size_u <= t24
-    t25 = e * c_alpha3
-    t26 = f * c_alpha3
-    t27 = L * c3
-    t28 = t26 + c_alpha3 * t27
-    t29 = t9 - (t25 - t28)
-    t30 = ops.select(same, t14, t29)
-    t31 = L * s3
-    v_z = t3 - t31
-    t32 = e * s_alpha3
-    t33 = f * s_alpha3
-    t34 = t33 + s_alpha3 * t27
-    t35 = t18 - (t32 - t34)
-    t36 = v_z * v_z + t29 * t29 + t35 * t35
-    size_v = ops.sqrt(t36)
-    all_same = size_u + size_v <= t24
-    t37 = ops.select(same, t29, t14)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t37 / D)
-    t38 = ops.select(same, t35, t22)
-    t39 = ops.select(all_same, 0.0, t38 / D)
-    t40 = ops.select(same, t22, t35)
-    t41 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t41 / D)
-    t42 = ops.select(same, u_z, v_z)
-    t43 = t30 * E_11 + t39 * t40 + E_13 * t42
-    t44 = t30 - E_11 * t43
-    t45 = t40 - t39 * t43
-    m_z = t42 - E_13 * t43
-    t46 = E_11 * t44 + t39 * t45 + E_13 * m_z
-    t47 = t44 - E_11 * t46
-    t48 = t45 - t39 * t46
-    n_z = m_z - E_13 * t46
-    j = ops.sqrt(t47 * t47 + t48 * t48 + n_z * n_z)
-    in_line = j <= t24
-    left = t30 * (t30 - t37) - t40 * (t38 - t40) - t42 * (t41 - t42)
-    t49 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t50 = ops.select(in_line, 0.0, left / (2.0 * j))
-    t51 = l - ops.sqrt(X * X + t50 * t50)
-    unreachable = ops.opposite(t49 & (-(size * ops.feasibility) <= t51))
+    t33 = size * size
+    t34 = ops.vanishing * ops.vanishing * t33
+    all_same = u_u + v_v <= t34
+    same = u_u <= t34
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t35 = ops.select(same, t32, t22)
+    d_x = ops.select(same, t28, t14)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t36 = ops.select(same, t22, t32)
+    t37 = ops.select(same, t14, t28)
+    t38 = a_x * t36 - t35 * t37
+    d_z = ops.select(same, v_z, u_z)
+    t39 = ops.select(same, u_z, v_z)
+    t40 = a_x * t39 - t37 * d_z
+    t41 = t35 * t38 + d_z * t40
+    t42 = over * t41
+    t43 = t35 * t39 - t36 * d_z
+    t44 = a_x * t38 - d_z * t43
+    t45 = over * t44
+    t46 = a_x * t40 + t35 * t43
+    n_z = over * t46
+    nu = t42 * t42 + t45 * t45 + n_z * n_z
+    in_line = nu <= t34
+    t47 = t37 * (d_x - t37) + t36 * (t35 - t36) + t39 * (d_z - t39)
+    t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t33 * ops.feasibility
+    t49 = l * size * 2.0
+    t50 = l * l
+    t51 = mu * t47
+    side = ops.sign(t35 * a_x)
+    t52 = t35 + a_x * side
+    t53 = 2.0 * (d_z * d_z) + t52 * t52
+    part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
+    t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
+    t55 = mu * 0.25
+    t56 = ops.select(all_same, 0.0, nu * (t54 * t54) + t55)
+    t57 = t50 - t56
+    unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t57))
     failed = invalid | unreachable
-    t52 = ops.select(failed, ops.nan, t6)
-    t53 = ops.select(failed, ops.nan, t16)
-    t54 = ops.select(failed, ops.nan, 0.0)
-    t55 = ops.select(failed, ops.nan, t8)
-    t56 = ops.select(failed, ops.nan, t17)
-    t57 = ops.select(failed, ops.nan, -t3)
-    t58 = ops.opposite(failed)
-    t59 = t58 & ops.opposite(all_same)
-    t60 = ops.select(t59 & ops.opposite(same), t23, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t59 & same, t36, 1.0)), ops.sqrt(t60))
-    t61 = ops.select(t59, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t37 / t61)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t62 = t58 & ops.opposite(in_line)
-    t63 = ops.select(all_same, 0.0, t38 / t61)
-    E_13_2 = ops.select(all_same, 0.0, t41 / t61)
-    t64 = t30 * E_11_2 + t63 * t40 + E_13_2 * t42
-    t65 = t30 - E_11_2 * t64
-    t66 = t40 - t63 * t64
-    m_z_2 = t42 - E_13_2 * t64
-    t67 = E_11_2 * t65 + t63 * t66 + E_13_2 * m_z_2
-    t68 = t65 - E_11_2 * t67
-    t69 = t66 - t63 * t67
-    n_z_2 = m_z_2 - E_13_2 * t67
-    t70 = ops.select(t62, t68 * t68 + t69 * t69 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t70)
-    t71 = ops.select(in_line, 0.0, left / ops.select(t62, 2.0 * j_2, 1.0))
-    t72 = ops.sign(E_13)
-    t73 = ops.select(t58 & in_line, E_13_2 + t72, 1.0)
-    t74 = ops.select(t62, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t72 / t73, t68 / t74)
-    t75 = E_11_2 * X_2 + t71 * E_21
-    t76 = E_11_2 * t72
-    E_23 = ops.select(in_line, -t76, n_z_2 / t74)
-    E_22 = ops.select(in_line, -(t63 * t76 / t73), t69 / t74)
-    touching = ops.max(t51, 0.0) <= t24
-    t77 = t58 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t77, X_2 * X_2 + t71 * t71, 1.0))
-    t78 = ops.select(t77, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t78))
-    t79 = (t63 * E_23 - E_13_2 * E_22) * h
-    t80 = t9 - (t75 - t79)
-    t81 = t5 - t80
-    t82 = t63 * X_2 + t71 * E_22
-    t83 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t84 = t18 - (t82 + t83)
-    t85 = t15 - t84
-    t86 = E_13_2 * X_2 + t71 * E_23
-    t87 = h * (E_11_2 * E_22 - t63 * E_21)
-    t88 = ops.select(failed, ops.nan, t86 - t87 - t3)
-    t89 = t15 * 0.5
-    t90 = ops.select(failed, ops.nan, t8 - t89)
-    t91 = t5 * 0.5
-    t92 = ops.select(failed, ops.nan, t91 + t17)
-    t93 = ops.select(failed, ops.nan, t89 + t8)
-    t94 = ops.select(failed, ops.nan, t17 - t91)
-    t95 = ops.select(failed, ops.nan, t11)
-    t96 = ops.select(failed, ops.nan, t20)
-    t97 = ops.select(failed, ops.nan, t13)
-    t98 = ops.select(failed, ops.nan, t21)
-    t99 = ops.select(failed, ops.nan, -t4)
-    t100 = t10 - t80
-    t101 = t19 - t84
-    t102 = t19 * 0.5
-    t103 = ops.select(failed, ops.nan, t13 - t102)
-    t104 = t10 * 0.5
-    t105 = ops.select(failed, ops.nan, t104 + t21)
-    t106 = ops.select(failed, ops.nan, t102 + t13)
-    t107 = ops.select(failed, ops.nan, t21 - t104)
-    t108 = ops.select(failed, ops.nan, t26)
-    t109 = ops.select(failed, ops.nan, t33)
-    t110 = ops.select(failed, ops.nan, t28)
-    t111 = ops.select(failed, ops.nan, t34)
-    t112 = ops.select(failed, ops.nan, -t31)
-    t113 = t25 - t80
-    t114 = t32 - t84
-    t115 = t32 * 0.5
-    t116 = ops.select(failed, ops.nan, t28 - t115)
-    t117 = t25 * 0.5
-    t118 = ops.select(failed, ops.nan, t117 + t34)
-    t119 = ops.select(failed, ops.nan, t115 + t28)
-    t120 = ops.select(failed, ops.nan, t34 - t117)
-    t121 = t9 - (t75 + t79)
-    t122 = t5 - t121
-    t123 = t18 - (t82 - t83)
-    t124 = t15 - t123
-    t125 = ops.select(failed, ops.nan, t86 + t87 - t3)
-    t126 = t10 - t121
-    t127 = t19 - t123
-    t128 = t25 - t121
-    t129 = t32 - t123
+    t58 = ops.select(failed, ops.nan, t6)
+    t59 = ops.select(failed, ops.nan, t16)
+    t60 = ops.select(failed, ops.nan, 0.0)
+    t61 = ops.select(failed, ops.nan, t8)
+    t62 = ops.select(failed, ops.nan, t17)
+    t63 = ops.select(failed, ops.nan, -t3)
+    t64 = ops.opposite(failed)
+    touching = ops.max(t57, 0.0) <= ops.vanishing * t49
+    t65 = t64 & ops.opposite(touching)
+    t66 = t64 | (t65 & ops.opposite(all_same))
+    t67 = ops.opposite(in_line)
+    t68 = t65 | (t66 & t67)
+    t69 = t68 & t67
+    over_2 = 1.0 / ops.select(t66 | t69, mu, 1.0)
+    t70 = over_2 * t41
+    t71 = over_2 * t44
+    n_z_2 = over_2 * t46
+    nu_2 = t70 * t70 + t71 * t71 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t68 & in_line, t53, 1.0), 1.0 / ops.select(t69, mu * nu_2, 1.0))
+    t72 = ops.select(in_line, 0.0, t51 * part_2 * 0.5)
+    t73 = t70 * t72 + d_x * 0.5
+    w_x = ops.select(in_line, d_z * side, t35 * n_z_2 - d_z * t71)
+    t74 = ops.select(all_same, 0.0, nu_2 * (t72 * t72) + t55)
+    t75 = ops.select(t65, part_2 * ops.max(t50 - t74, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t75))
+    t76 = w_x * h
+    t77 = t9 - (t73 - t76)
+    t78 = t5 - t77
+    t79 = t71 * t72 - t35 * 0.5
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t70))
+    t80 = h * w_y
+    t81 = t18 + (t79 + t80)
+    t82 = t15 - t81
+    t83 = n_z_2 * t72 - d_z * 0.5
+    w_z = ops.select(in_line, -t52, a_x * t71 + t35 * t70)
+    t84 = h * w_z
+    t85 = ops.select(failed, ops.nan, -(t3 + (t83 + t84)))
+    t86 = t15 * 0.5
+    t87 = ops.select(failed, ops.nan, t8 - t86)
+    t88 = t5 * 0.5
+    t89 = ops.select(failed, ops.nan, t88 + t17)
+    t90 = ops.select(failed, ops.nan, t86 + t8)
+    t91 = ops.select(failed, ops.nan, t17 - t88)
+    t92 = ops.select(failed, ops.nan, t11)
+    t93 = ops.select(failed, ops.nan, t20)
+    t94 = ops.select(failed, ops.nan, t13)
+    t95 = ops.select(failed, ops.nan, t21)
+    t96 = ops.select(failed, ops.nan, -t4)
+    t97 = t10 - t77
+    t98 = t19 - t81
+    t99 = t19 * 0.5
+    t100 = ops.select(failed, ops.nan, t13 - t99)
+    t101 = t10 * 0.5
+    t102 = ops.select(failed, ops.nan, t101 + t21)
+    t103 = ops.select(failed, ops.nan, t99 + t13)
+    t104 = ops.select(failed, ops.nan, t21 - t101)
+    t105 = ops.select(failed, ops.nan, t25)
+    t106 = ops.select(failed, ops.nan, t30)
+    t107 = ops.select(failed, ops.nan, t27)
+    t108 = ops.select(failed, ops.nan, t31)
+    t109 = ops.select(failed, ops.nan, -t23)
+    t110 = t24 - t77
+    t111 = t29 - t81
+    t112 = t29 * 0.5
+    t113 = ops.select(failed, ops.nan, t27 - t112)
+    t114 = t24 * 0.5
+    t115 = ops.select(failed, ops.nan, t114 + t31)
+    t116 = ops.select(failed, ops.nan, t112 + t27)
+    t117 = ops.select(failed, ops.nan, t31 - t114)
+    t118 = t9 - (t73 + t76)
+    t119 = t5 - t118
+    t120 = t18 + (t79 - t80)
+    t121 = t15 - t120
+    t122 = ops.select(failed, ops.nan, -(t3 + (t83 - t84)))
+    t123 = t10 - t118
+    t124 = t19 - t120
+    t125 = t24 - t118
+    t126 = t29 - t120
     return (
-        t52,
-        t53,
-        t54,
-        t55,
-        t56,
-        t57,
-        ops.select(failed, ops.nan, t81),
-        ops.select(failed, ops.nan, t85),
-        t88,
+        t58,
+        t59,
+        t60,
+        t61,
+        t62,
+        t63,
+        ops.select(failed, ops.nan, t78),
+        ops.select(failed, ops.nan, t82),
+        t85,
+        t87,
+        t89,
+        t63,
         t90,
+        t91,
+        t63,
+        ops.select(failed, ops.nan, t78 - t86),
+        ops.select(failed, ops.nan, t88 + t82),
+        t85,
+        ops.select(failed, ops.nan, t86 + t78),
+        ops.select(failed, ops.nan, t82 - t88),
+        t85,
         t92,
-        t57,
         t93,
+        t60,
         t94,
-        t57,
-        ops.select(failed, ops.nan, t81 - t89),
-        ops.select(failed, ops.nan, t91 + t85),
-        t88,
-        ops.select(failed, ops.nan, t89 + t81),
-        ops.select(failed, ops.nan, t85 - t91),
-        t88,
         t95,
         t96,
-        t54,
-        t97,
-        t98,
-        t99,
-        ops.select(failed, ops.nan, t100),
-        ops.select(failed, ops.nan, t101),
-        t88,
+        ops.select(failed, ops.nan, t97),
+        ops.select(failed, ops.nan, t98),
+        t85,
+        t100,
+        t102,
+        t96,
         t103,
+        t104,
+        t96,
+        ops.select(failed, ops.nan, t97 - t99),
+        ops.select(failed, ops.nan, t101 + t98),
+        t85,
+        ops.select(failed, ops.nan, t99 + t97),
+        ops.select(failed, ops.nan, t98 - t101),
+        t85,
         t105,
-        t99,
         t106,
+        t60,
         t107,
-        t99,
-        ops.select(failed, ops.nan, t100 - t102),
-        ops.select(failed, ops.nan, t104 + t101),
-        t88,
-        ops.select(failed, ops.nan, t102 + t100),
-        ops.select(failed, ops.nan, t101 - t104),
-        t88,
         t108,
         t109,
-        t54,
-        t110,
-        t111,
-        t112,
-        ops.select(failed, ops.nan, t113),
-        ops.select(failed, ops.nan, t114),
-        t88,
+        ops.select(failed, ops.nan, t110),
+        ops.select(failed, ops.nan, t111),
+        t85,
+        t113,
+        t115,
+        t109,
         t116,
-        t118,
-        t112,
-        t119,
-        t120,
-        t112,
-        ops.select(failed, ops.nan, t113 - t115),
-        ops.select(failed, ops.nan, t117 + t114),
-        t88,
-        ops.select(failed, ops.nan, t115 + t113),
-        ops.select(failed, ops.nan, t114 - t117),
-        t88,
-        ops.select(failed, ops.nan, -t80),
-        ops.select(failed, ops.nan, -t84),
-        t88,
-        t52,
-        t53,
-        t54,
-        t55,
-        t56,
-        t57,
-        ops.select(failed, ops.nan, t122),
+        t117,
+        t109,
+        ops.select(failed, ops.nan, t110 - t112),
+        ops.select(failed, ops.nan, t114 + t111),
+        t85,
+        ops.select(failed, ops.nan, t112 + t110),
+        ops.select(failed, ops.nan, t111 - t114),
+        t85,
+        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, -t81),
+        t85,
+        t58,
+        t59,
+        t60,
+        t61,
+        t62,
+        t63,
+        ops.select(failed, ops.nan, t119),
+        ops.select(failed, ops.nan, t121),
+        t122,
+        t87,
+        t89,
+        t63,
+        t90,
+        t91,
+        t63,
+        ops.select(failed, ops.nan, t119 - t86),
+        ops.select(failed, ops.nan, t88 + t121),
+        t122,
+        ops.select(failed, ops.nan, t86 + t119),
+        ops.select(failed, ops.nan, t121 - t88),
+        t122,
+        t92,
+        t93,
+        t60,
+        t94,
+        t95,
+        t96,
+        ops.select(failed, ops.nan, t123),
         ops.select(failed, ops.nan, t124),
-        t125,
-        t90,
-        t92,
-        t57,
-        t93,
-        t94,
-        t57,
-        ops.select(failed, ops.nan, t122 - t89),
-        ops.select(failed, ops.nan, t91 + t124),
-        t125,
-        ops.select(failed, ops.nan, t89 + t122),
-        ops.select(failed, ops.nan, t124 - t91),
-        t125,
-        t95,
+        t122,
+        t100,
+        t102,
         t96,
-        t54,
-        t97,
-        t98,
-        t99,
-        ops.select(failed, ops.nan, t126),
-        ops.select(failed, ops.nan, t127),
-        t125,
         t103,
+        t104,
+        t96,
+        ops.select(failed, ops.nan, t123 - t99),
+        ops.select(failed, ops.nan, t101 + t124),
+        t122,
+        ops.select(failed, ops.nan, t99 + t123),
+        ops.select(failed, ops.nan, t124 - t101),
+        t122,
         t105,
-        t99,
         t106,
+        t60,
         t107,
-        t99,
-        ops.select(failed, ops.nan, t126 - t102),
-        ops.select(failed, ops.nan, t104 + t127),
-        t125,
-        ops.select(failed, ops.nan, t102 + t126),
-        ops.select(failed, ops.nan, t127 - t104),
-        t125,
         t108,
         t109,
-        t54,
-        t110,
-        t111,
-        t112,
-        ops.select(failed, ops.nan, t128),
-        ops.select(failed, ops.nan, t129),
-        t125,
+        ops.select(failed, ops.nan, t125),
+        ops.select(failed, ops.nan, t126),
+        t122,
+        t113,
+        t115,
+        t109,
         t116,
-        t118,
-        t112,
-        t119,
-        t120,
-        t112,
-        ops.select(failed, ops.nan, t128 - t115),
-        ops.select(failed, ops.nan, t117 + t129),
-        t125,
-        ops.select(failed, ops.nan, t115 + t128),
-        ops.select(failed, ops.nan, t129 - t117),
-        t125,
-        ops.select(failed, ops.nan, -t121),
-        ops.select(failed, ops.nan, -t123),
-        t125,
+        t117,
+        t109,
+        ops.select(failed, ops.nan, t125 - t112),
+        ops.select(failed, ops.nan, t114 + t126),
+        t122,
+        ops.select(failed, ops.nan, t112 + t125),
+        ops.select(failed, ops.nan, t126 - t114),
+        t122,
+        ops.select(failed, ops.nan, -t118),
+        ops.select(failed, ops.nan, -t120),
+        t122,
     )
 
 
@@ -633,7 +618,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2),
 )
 
 
@@ -693,112 +677,106 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t10 = u_z * u_z + t7 * t7 + t9 * t9
-    size_u = ops.sqrt(t10)
-    size = f + e + L + l
-    t11 = size * ops.vanishing
-    same = size_u <= t11
-    t12 = L * c3
-    t13 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = ops.select(same, t7, t13)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    t16 = v_z * v_z + t13 * t13 + t15 * t15
-    size_v = ops.sqrt(t16)
-    all_same = size_u + size_v <= t11
-    t17 = ops.select(same, t13, t7)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t17 / D)
-    t18 = ops.select(same, t15, t9)
-    t19 = ops.select(all_same, 0.0, t18 / D)
-    t20 = ops.select(same, t9, t15)
-    t21 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t21 / D)
-    t22 = ops.select(same, u_z, v_z)
-    t23 = E_11 * t14 + t19 * t20 + E_13 * t22
-    t24 = t14 - E_11 * t23
-    t25 = t20 - t19 * t23
-    m_z = t22 - E_13 * t23
-    t26 = E_11 * t24 + t19 * t25 + E_13 * m_z
-    t27 = t24 - E_11 * t26
-    t28 = t25 - t19 * t26
-    n_z = m_z - E_13 * t26
-    j = ops.sqrt(t27 * t27 + t28 * t28 + n_z * n_z)
-    in_line = j <= t11
-    t29 = t14 * (t17 - t14) + t20 * (t18 - t20) + t22 * (t21 - t22)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
-    t32 = l - ops.sqrt(X * X + t31 * t31)
-    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
+    same = u_u <= t14
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t29 = l * size * 2.0
+    t30 = l * l
+    side = ops.sign(t15 * a_x)
+    t31 = t15 + a_x * side
+    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t33 = ops.opposite(failed)
-    t34 = t33 & ops.opposite(all_same)
-    t35 = ops.select(t34 & ops.opposite(same), t10, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t34 & same, t16, 1.0)), ops.sqrt(t35))
-    t36 = ops.select(t34, D_2, 1.0)
-    t37 = ops.select(all_same, 0.0, t18 / t36)
-    E_11_2 = ops.select(all_same, 1.0, t17 / t36)
-    t38 = ops.sign(E_13)
-    t39 = E_11_2 * t38
-    E_13_2 = ops.select(all_same, 0.0, t21 / t36)
-    t40 = E_11_2 * t14 + t37 * t20 + E_13_2 * t22
-    m_z_2 = t22 - E_13_2 * t40
-    t41 = t14 - E_11_2 * t40
-    t42 = t20 - t37 * t40
-    t43 = E_11_2 * t41 + t37 * t42 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t43
-    t44 = t33 & ops.opposite(in_line)
-    t45 = t41 - E_11_2 * t43
-    t46 = t42 - t37 * t43
-    t47 = ops.select(t44, t45 * t45 + t46 * t46 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t47)
-    t48 = ops.select(t44, j_2, 1.0)
-    E_23 = ops.select(in_line, -t39, n_z_2 / t48)
-    t49 = ops.select(t33 & in_line, E_13_2 + t38, 1.0)
-    E_22 = ops.select(in_line, -(t37 * t39 / t49), t46 / t48)
-    touching = ops.max(t32, 0.0) <= t11
-    t50 = t33 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t51 = ops.select(in_line, 0.0, t29 / ops.select(t44, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t50, X_2 * X_2 + t51 * t51, 1.0))
-    t52 = ops.select(t50, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t52))
-    t53 = (t37 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t38 / t49, t45 / t48)
-    t54 = E_11_2 * X_2 - E_21 * t51
-    t55 = t53 - t54
-    t56 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t57 = X_2 * t37 - t51 * E_22
-    A_12 = t56 + t57
-    t58 = h * (E_11_2 * E_22 - t37 * E_21)
-    t59 = X_2 * E_13_2 - t51 * E_23
-    t60 = t58 - t59
-    A_11_above = t53 + t54
-    t61 = t56 - t57
-    A_13_above = t58 + t59
-    t62 = ops.select(failed, ops.nan, A_13_above - u_z)
-    t63 = ops.select(failed, ops.nan, A_11_above - t13)
-    t64 = ops.select(failed, ops.nan, A_13_above - v_z)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    n_z_2 = over_2 * t26
+    t43 = over_2 * t24
+    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t43)
+    t44 = over_2 * t21
+    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
+    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t46 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
+    t47 = ops.select(t38, part_2 * ops.max(t30 - t46, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t47))
+    t48 = w_x * h
+    t49 = t44 * t45 + d_x * 0.5
+    t50 = t48 - t49
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    t51 = h * w_y
+    t52 = t43 * t45 - t15 * 0.5
+    t53 = t51 + t52
+    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
+    t54 = h * w_z
+    t55 = n_z_2 * t45 - d_z * 0.5
+    t56 = t54 + t55
+    A_11_above = t48 + t49
+    A_12_above = t51 - t52
+    A_13_above = t54 - t55
+    t57 = ops.select(failed, ops.nan, A_13_above - u_z)
+    t58 = ops.select(failed, ops.nan, A_11_above - t11)
+    t59 = ops.select(failed, ops.nan, A_12_above - t12)
+    t60 = ops.select(failed, ops.nan, A_13_above - v_z)
     return (
-        ops.select(failed, ops.nan, -t55),
-        ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t60),
-        ops.select(failed, ops.nan, -(t7 + t55)),
-        ops.select(failed, ops.nan, A_12 - t9),
-        ops.select(failed, ops.nan, -(u_z + t60)),
-        ops.select(failed, ops.nan, -(t13 + t55)),
-        ops.select(failed, ops.nan, A_12 - t15),
-        ops.select(failed, ops.nan, -(v_z + t60)),
+        ops.select(failed, ops.nan, -t50),
+        ops.select(failed, ops.nan, -t53),
+        ops.select(failed, ops.nan, -t56),
+        ops.select(failed, ops.nan, -(t7 + t50)),
+        ops.select(failed, ops.nan, -(t9 + t53)),
+        ops.select(failed, ops.nan, -(u_z + t56)),
+        ops.select(failed, ops.nan, -(t11 + t50)),
+        ops.select(failed, ops.nan, -(t12 + t53)),
+        ops.select(failed, ops.nan, -(v_z + t56)),
         ops.select(failed, ops.nan, A_11_above),
-        ops.select(failed, ops.nan, -t61),
+        ops.select(failed, ops.nan, A_12_above),
         ops.select(failed, ops.nan, A_13_above),
         ops.select(failed, ops.nan, A_11_above - t7),
-        ops.select(failed, ops.nan, -(t9 + t61)),
-        t62,
-        t63,
-        ops.select(failed, ops.nan, -(t15 + t61)),
-        t64,
+        ops.select(failed, ops.nan, A_12_above - t9),
+        t57,
+        t58,
+        t59,
+        t60,
     )
 
 
@@ -809,7 +787,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
 )
 
 
@@ -869,110 +846,105 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    t11 = u_z * u_z + t8 * t8 + t10 * t10
-    size_u = ops.sqrt(t11)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * ops.vanishing
-    same = size_u <= t12
-    t13 = L * c3
-    t14 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    t15 = ops.select(same, t8, t14)
-    t16 = L * s3
-    v_z = t3 - t16
-    t17 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t18 = v_z * v_z + t14 * t14 + t17 * t17
-    size_v = ops.sqrt(t18)
-    all_same = size_u + size_v <= t12
-    t19 = ops.select(same, t14, t8)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t19 / D)
-    t20 = ops.select(same, t17, t10)
-    t21 = ops.select(all_same, 0.0, t20 / D)
-    t22 = ops.select(same, t10, t17)
-    t23 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t23 / D)
-    t24 = ops.select(same, u_z, v_z)
-    t25 = E_11 * t15 + t21 * t22 + E_13 * t24
-    t26 = t15 - E_11 * t25
-    t27 = t22 - t21 * t25
-    m_z = t24 - E_13 * t25
-    t28 = E_11 * t26 + t21 * t27 + E_13 * m_z
-    t29 = t26 - E_11 * t28
-    t30 = t27 - t21 * t28
-    n_z = m_z - E_13 * t28
-    j = ops.sqrt(t29 * t29 + t30 * t30 + n_z * n_z)
-    in_line = j <= t12
-    t31 = t15 * (t19 - t15) + t22 * (t20 - t22) + t24 * (t23 - t24)
-    t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = l - ops.sqrt(X * X + t33 * t33)
-    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
+    same = u_u <= t16
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = l * size * 2.0
+    t32 = l * l
+    side = ops.sign(t17 * a_x)
+    t33 = t17 + a_x * side
+    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t35 = c_alpha1 * t3
-    t36 = ops.opposite(failed)
-    t37 = t36 & ops.opposite(all_same)
-    t38 = ops.select(t37 & ops.opposite(same), t11, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t37 & same, t18, 1.0)), ops.sqrt(t38))
-    t39 = ops.select(t37, D_2, 1.0)
-    t40 = ops.select(all_same, 0.0, t20 / t39)
-    E_11_2 = ops.select(all_same, 1.0, t19 / t39)
-    t41 = ops.sign(E_13)
-    t42 = E_11_2 * t41
-    E_13_2 = ops.select(all_same, 0.0, t23 / t39)
-    t43 = E_11_2 * t15 + t40 * t22 + E_13_2 * t24
-    m_z_2 = t24 - E_13_2 * t43
-    t44 = t15 - E_11_2 * t43
-    t45 = t22 - t40 * t43
-    t46 = E_11_2 * t44 + t40 * t45 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t46
-    t47 = t36 & ops.opposite(in_line)
-    t48 = t44 - E_11_2 * t46
-    t49 = t45 - t40 * t46
-    t50 = ops.select(t47, t48 * t48 + t49 * t49 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t50)
-    t51 = ops.select(t47, j_2, 1.0)
-    E_23 = ops.select(in_line, -t42, n_z_2 / t51)
-    t52 = ops.select(t36 & in_line, E_13_2 + t41, 1.0)
-    E_22 = ops.select(in_line, -(t40 * t42 / t52), t49 / t51)
-    touching = ops.max(t34, 0.0) <= t12
-    t53 = t36 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t54 = ops.select(in_line, 0.0, t31 / ops.select(t47, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t53, X_2 * X_2 + t54 * t54, 1.0))
-    t55 = ops.select(t53, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t55))
-    t56 = (t40 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t41 / t52, t48 / t51)
-    t57 = E_11_2 * X_2 - E_21 * t54
-    t58 = t56 - t57
-    t59 = s_alpha1 * t3
-    t60 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t61 = X_2 * t40 - t54 * E_22
-    A_12 = t60 + t61
-    t62 = h * (E_11_2 * E_22 - t40 * E_21)
-    t63 = X_2 * E_13_2 - t54 * E_23
-    t64 = t62 - t63
-    t65 = ops.select(failed, ops.nan, t35 * t58 - t59 * A_12 + t5 * t64)
-    t66 = c_alpha2 * t4
-    t67 = s_alpha2 * t4
-    B_22 = t66 * (t8 + t58) + t67 * (t10 - A_12) + t7 * (u_z + t64)
-    t68 = c_alpha3 * t16
-    t69 = s_alpha3 * t16
-    B_33 = t68 * (t14 + t58) + t69 * (t17 - A_12) + t13 * (v_z + t64)
-    A_11_above = t56 + t57
-    t70 = t60 - t61
-    A_13_above = t62 + t63
-    t71 = t35 * A_11_above - t59 * t70 + t5 * A_13_above
-    B_22_above = t66 * (t8 - A_11_above) + t67 * (t10 + t70) + t7 * (u_z - A_13_above)
-    B_33_above = t68 * (t14 - A_11_above) + t69 * (t17 + t70) + t13 * (v_z - A_13_above)
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, mu * nu_2, 1.0))
+    t48 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t49 = ops.select(all_same, 0.0, nu_2 * (t48 * t48) + t36)
+    t50 = ops.select(t41, part_2 * ops.max(t32 - t49, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t50))
+    t51 = w_x * h
+    t52 = t47 * t48 + d_x * 0.5
+    t53 = t51 - t52
+    t54 = s_alpha1 * t3
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    t55 = h * w_y
+    t56 = t46 * t48 - t17 * 0.5
+    t57 = t55 + t56
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t58 = h * w_z
+    t59 = n_z_2 * t48 - d_z * 0.5
+    t60 = t58 + t59
+    t61 = ops.select(failed, ops.nan, t39 * t53 + t54 * t57 + t5 * t60)
+    t62 = c_alpha2 * t4
+    t63 = s_alpha2 * t4
+    B_22 = t62 * (t8 + t53) + t63 * (t10 + t57) + t7 * (u_z + t60)
+    t64 = c_alpha3 * t11
+    t65 = s_alpha3 * t11
+    B_33 = t64 * (t13 + t53) + t65 * (t14 + t57) + t12 * (v_z + t60)
+    A_11_above = t51 + t52
+    A_12_above = t55 - t56
+    t66 = t58 - t59
+    t67 = t39 * A_11_above + t54 * A_12_above + t5 * t66
+    t68 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
+    t69 = ops.select(failed, ops.nan, t68 + t7 * (u_z - t66))
+    t70 = t64 * (t13 - A_11_above) + t65 * (t14 - A_12_above)
+    t71 = ops.select(failed, ops.nan, t70 + t12 * (v_z - t66))
     return (
-        t65,
+        t61,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, -t71),
-        ops.select(failed, ops.nan, B_22_above),
-        ops.select(failed, ops.nan, B_33_above),
+        ops.select(failed, ops.nan, -t67),
+        t69,
+        t71,
     )
 
 
@@ -983,7 +955,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2),
 )
 
 
@@ -1043,152 +1014,147 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    t11 = u_z * u_z + t8 * t8 + t10 * t10
-    size_u = ops.sqrt(t11)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * ops.vanishing
-    same = size_u <= t12
-    t13 = L * c3
-    t14 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    t15 = ops.select(same, t8, t14)
-    t16 = L * s3
-    v_z = t3 - t16
-    t17 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t18 = v_z * v_z + t14 * t14 + t17 * t17
-    size_v = ops.sqrt(t18)
-    all_same = size_u + size_v <= t12
-    t19 = ops.select(same, t14, t8)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t19 / D)
-    t20 = ops.select(same, t17, t10)
-    t21 = ops.select(all_same, 0.0, t20 / D)
-    t22 = ops.select(same, t10, t17)
-    t23 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t23 / D)
-    t24 = ops.select(same, u_z, v_z)
-    t25 = E_11 * t15 + t21 * t22 + E_13 * t24
-    t26 = t15 - E_11 * t25
-    t27 = t22 - t21 * t25
-    m_z = t24 - E_13 * t25
-    t28 = E_11 * t26 + t21 * t27 + E_13 * m_z
-    t29 = t26 - E_11 * t28
-    t30 = t27 - t21 * t28
-    n_z = m_z - E_13 * t28
-    j = ops.sqrt(t29 * t29 + t30 * t30 + n_z * n_z)
-    in_line = j <= t12
-    t31 = t15 * (t19 - t15) + t22 * (t20 - t22) + t24 * (t23 - t24)
-    t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = l - ops.sqrt(X * X + t33 * t33)
-    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
+    same = u_u <= t16
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = l * size * 2.0
+    t32 = l * l
+    side = ops.sign(t17 * a_x)
+    t33 = t17 + a_x * side
+    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t35 = c_alpha1 * t3
-    t36 = ops.opposite(failed)
-    t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t36 & same, t18, 1.0)), ops.sqrt(t37))
-    t38 = ops.select(t36 & ops.opposite(all_same), D_2, 1.0)
-    t39 = ops.select(all_same, 0.0, t20 / t38)
-    E_11_2 = ops.select(all_same, 1.0, t19 / t38)
-    t40 = ops.sign(E_13)
-    t41 = E_11_2 * t40
-    E_13_2 = ops.select(all_same, 0.0, t23 / t38)
-    t42 = E_11_2 * t15 + t39 * t22 + E_13_2 * t24
-    m_z_2 = t24 - E_13_2 * t42
-    t43 = t15 - E_11_2 * t42
-    t44 = t22 - t39 * t42
-    t45 = E_11_2 * t43 + t39 * t44 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t45
-    t46 = t36 & ops.opposite(in_line)
-    t47 = t43 - E_11_2 * t45
-    t48 = t44 - t39 * t45
-    t49 = ops.select(t36, t47 * t47 + t48 * t48 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t49)
-    t50 = ops.select(t46, j_2, 1.0)
-    E_23 = ops.select(in_line, -t41, n_z_2 / t50)
-    t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
-    E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
-    touching = ops.max(t34, 0.0) <= t12
-    t52 = t36 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
-    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t54))
-    t55 = (t39 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t56 = E_11_2 * X_2 - E_21 * t53
-    t57 = t55 - t56
-    t58 = s_alpha1 * t3
-    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t60 = X_2 * t39 - t53 * E_22
-    A_12 = t59 + t60
-    t61 = h * (E_11_2 * E_22 - t39 * E_21)
-    t62 = X_2 * E_13_2 - t53 * E_23
-    t63 = t61 - t62
-    t64 = t35 * t57 - t58 * A_12 + t5 * t63
-    t65 = t10 - A_12
-    t66 = v_z + t63
-    t67 = u_z + t63
-    t68 = t17 - A_12
-    t69 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    t70 = ops.select(failed, ops.nan, -(t64 * (t65 * t66 - t67 * t68) / t69))
-    t71 = c_alpha2 * t4
-    t72 = t8 + t57
-    t73 = s_alpha2 * t4
-    t74 = t71 * t72 + t73 * t65 + t7 * t67
-    t75 = ops.select(failed, ops.nan, -(t74 * (A_12 * t66 + t63 * t68) / t69))
-    t76 = c_alpha3 * t16
-    t77 = t14 + t57
-    t78 = s_alpha3 * t16
-    t79 = t76 * t77 + t78 * t68 + t13 * t66
-    t80 = ops.select(failed, ops.nan, t79 * (A_12 * t67 + t63 * t65) / t69)
-    t81 = ops.select(failed, ops.nan, t64 * (t66 * t72 - t67 * t77) / t69)
-    t82 = ops.select(failed, ops.nan, -(t74 * (t57 * t66 - t63 * t77) / t69))
-    t83 = ops.select(failed, ops.nan, t79 * (t57 * t67 - t63 * t72) / t69)
-    t84 = ops.select(failed, ops.nan, -(t64 * (t68 * t72 - t65 * t77) / t69))
-    t85 = ops.select(failed, ops.nan, t74 * (t57 * t68 + A_12 * t77) / t69)
-    t86 = ops.select(failed, ops.nan, -(t79 * (t57 * t65 + A_12 * t72) / t69))
-    A_11_above = t55 + t56
-    t87 = t59 - t60
-    A_13_above = t61 + t62
-    t88 = t35 * A_11_above - t58 * t87 + t5 * A_13_above
-    t89 = t10 + t87
-    t90 = v_z - A_13_above
-    t91 = u_z - A_13_above
-    t92 = t17 + t87
-    t93 = ops.select(failed, ops.nan, -(t88 * (t89 * t90 - t91 * t92) / t69))
-    t94 = t8 - A_11_above
-    t95 = t71 * t94 + t73 * t89 + t7 * t91
-    t96 = -(t95 * (t87 * t90 + A_13_above * t92) / t69)
-    t97 = t14 - A_11_above
-    t98 = t76 * t97 + t78 * t92 + t13 * t90
-    t99 = ops.select(failed, ops.nan, t98 * (t87 * t91 + A_13_above * t89) / t69)
-    t100 = ops.select(failed, ops.nan, t88 * (t90 * t94 - t91 * t97) / t69)
-    t101 = t95 * (A_11_above * t90 - A_13_above * t97) / t69
-    t102 = t98 * (A_11_above * t91 - A_13_above * t94) / t69
-    t103 = ops.select(failed, ops.nan, -(t88 * (t92 * t94 - t89 * t97) / t69))
-    t104 = ops.select(failed, ops.nan, t95 * (A_11_above * t92 + t87 * t97) / t69)
-    t105 = -(t98 * (A_11_above * t89 + t87 * t94) / t69)
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = t39 * t54 + t55 * t58 + t5 * t61
+    t63 = t10 + t58
+    t64 = v_z + t61
+    t65 = u_z + t61
+    t66 = t14 + t58
+    t67 = ops.select(t40, t48 * h, 1.0)
+    t68 = ops.select(failed, ops.nan, -(t62 * (t63 * t64 - t65 * t66) / t67))
+    t69 = c_alpha2 * t4
+    t70 = t8 + t54
+    t71 = s_alpha2 * t4
+    t72 = t69 * t70 + t71 * t63 + t7 * t65
+    t73 = ops.select(failed, ops.nan, t72 * (t58 * t64 - t61 * t66) / t67)
+    t74 = c_alpha3 * t11
+    t75 = t13 + t54
+    t76 = s_alpha3 * t11
+    t77 = t74 * t75 + t76 * t66 + t12 * t64
+    t78 = ops.select(failed, ops.nan, -(t77 * (t58 * t65 - t61 * t63) / t67))
+    t79 = ops.select(failed, ops.nan, t62 * (t64 * t70 - t65 * t75) / t67)
+    t80 = ops.select(failed, ops.nan, -(t72 * (t54 * t64 - t61 * t75) / t67))
+    t81 = ops.select(failed, ops.nan, t77 * (t54 * t65 - t61 * t70) / t67)
+    t82 = ops.select(failed, ops.nan, -(t62 * (t66 * t70 - t63 * t75) / t67))
+    t83 = ops.select(failed, ops.nan, t72 * (t54 * t66 - t58 * t75) / t67)
+    t84 = ops.select(failed, ops.nan, -(t77 * (t54 * t63 - t58 * t70) / t67))
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t85 = t59 - t60
+    t86 = t39 * A_11_above + t55 * A_12_above + t5 * t85
+    t87 = t10 - A_12_above
+    t88 = v_z - t85
+    t89 = u_z - t85
+    t90 = t14 - A_12_above
+    t91 = ops.select(failed, ops.nan, -(t86 * (t87 * t88 - t89 * t90) / t67))
+    t92 = t8 - A_11_above
+    t93 = t69 * t92 + t71 * t87 + t7 * t89
+    t94 = ops.select(failed, ops.nan, t93 * (A_12_above * t88 - t85 * t90) / t67)
+    t95 = t13 - A_11_above
+    t96 = t74 * t95 + t76 * t90 + t12 * t88
+    t97 = -(t96 * (A_12_above * t89 - t85 * t87) / t67)
+    t98 = ops.select(failed, ops.nan, t86 * (t88 * t92 - t89 * t95) / t67)
+    t99 = -(t93 * (A_11_above * t88 - t85 * t95) / t67)
+    t100 = ops.select(failed, ops.nan, t96 * (A_11_above * t89 - t85 * t92) / t67)
+    t101 = ops.select(failed, ops.nan, -(t86 * (t90 * t92 - t87 * t95) / t67))
+    t102 = t93 * (A_11_above * t90 - A_12_above * t95) / t67
+    t103 = t96 * (A_11_above * t87 - A_12_above * t92) / t67
     return (
-        t70,
-        t75,
+        t68,
+        t73,
+        t78,
+        t79,
         t80,
         t81,
         t82,
         t83,
         t84,
-        t85,
-        t86,
-        t93,
-        ops.select(failed, ops.nan, t96),
-        t99,
+        t91,
+        t94,
+        ops.select(failed, ops.nan, t97),
+        t98,
+        ops.select(failed, ops.nan, t99),
         t100,
-        ops.select(failed, ops.nan, -t101),
+        t101,
         ops.select(failed, ops.nan, t102),
-        t103,
-        t104,
-        ops.select(failed, ops.nan, t105),
+        ops.select(failed, ops.nan, -t103),
     )
 
 
@@ -1199,7 +1165,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -1260,107 +1225,102 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    t11 = u_z * u_z + t8 * t8 + t10 * t10
-    size_u = ops.sqrt(t11)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * ops.vanishing
-    same = size_u <= t12
-    t13 = L * c3
-    t14 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    t15 = ops.select(same, t8, t14)
-    t16 = L * s3
-    v_z = t3 - t16
-    t17 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t18 = v_z * v_z + t14 * t14 + t17 * t17
-    size_v = ops.sqrt(t18)
-    all_same = size_u + size_v <= t12
-    t19 = ops.select(same, t14, t8)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t19 / D)
-    t20 = ops.select(same, t17, t10)
-    t21 = ops.select(all_same, 0.0, t20 / D)
-    t22 = ops.select(same, t10, t17)
-    t23 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t23 / D)
-    t24 = ops.select(same, u_z, v_z)
-    t25 = E_11 * t15 + t21 * t22 + E_13 * t24
-    t26 = t15 - E_11 * t25
-    t27 = t22 - t21 * t25
-    m_z = t24 - E_13 * t25
-    t28 = E_11 * t26 + t21 * t27 + E_13 * m_z
-    t29 = t26 - E_11 * t28
-    t30 = t27 - t21 * t28
-    n_z = m_z - E_13 * t28
-    j = ops.sqrt(t29 * t29 + t30 * t30 + n_z * n_z)
-    in_line = j <= t12
-    t31 = t15 * (t19 - t15) + t22 * (t20 - t22) + t24 * (t23 - t24)
-    t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = l - ops.sqrt(X * X + t33 * t33)
-    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
+    same = u_u <= t16
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = l * size * 2.0
+    t32 = l * l
+    side = ops.sign(t17 * a_x)
+    t33 = t17 + a_x * side
+    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t35 = c_alpha1 * t3
-    t36 = ops.opposite(failed)
-    t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t36 & same, t18, 1.0)), ops.sqrt(t37))
-    t38 = ops.select(t36 & ops.opposite(all_same), D_2, 1.0)
-    t39 = ops.select(all_same, 0.0, t20 / t38)
-    E_11_2 = ops.select(all_same, 1.0, t19 / t38)
-    t40 = ops.sign(E_13)
-    t41 = E_11_2 * t40
-    E_13_2 = ops.select(all_same, 0.0, t23 / t38)
-    t42 = E_11_2 * t15 + t39 * t22 + E_13_2 * t24
-    m_z_2 = t24 - E_13_2 * t42
-    t43 = t15 - E_11_2 * t42
-    t44 = t22 - t39 * t42
-    t45 = E_11_2 * t43 + t39 * t44 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t45
-    t46 = t36 & ops.opposite(in_line)
-    t47 = t43 - E_11_2 * t45
-    t48 = t44 - t39 * t45
-    t49 = ops.select(t36, t47 * t47 + t48 * t48 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t49)
-    t50 = ops.select(t46, j_2, 1.0)
-    E_23 = ops.select(in_line, -t41, n_z_2 / t50)
-    t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
-    E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
-    touching = ops.max(t34, 0.0) <= t12
-    t52 = t36 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
-    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t54))
-    t55 = (t39 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t56 = E_11_2 * X_2 - E_21 * t53
-    t57 = t55 - t56
-    t58 = s_alpha1 * t3
-    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t60 = X_2 * t39 - t53 * E_22
-    A_12 = t59 + t60
-    t61 = h * (E_11_2 * E_22 - t39 * E_21)
-    t62 = X_2 * E_13_2 - t53 * E_23
-    t63 = t61 - t62
-    t64 = c_alpha2 * t4
-    t65 = s_alpha2 * t4
-    t66 = t64 * (t8 + t57) + t65 * (t10 - A_12) + t7 * (u_z + t63)
-    t67 = c_alpha3 * t16
-    t68 = s_alpha3 * t16
-    t69 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
-    t70 = (t35 * t57 - t58 * A_12 + t5 * t63) * t66 * t69
-    t71 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    A_11_above = t55 + t56
-    t72 = t59 - t60
-    A_13_above = t61 + t62
-    t73 = t35 * A_11_above - t58 * t72 + t5 * A_13_above
-    t74 = t64 * (t8 - A_11_above) + t65 * (t10 + t72) + t7 * (u_z - A_13_above)
-    t75 = t67 * (t14 - A_11_above) + t68 * (t17 + t72) + t13 * (v_z - A_13_above)
-    t76 = ops.select(failed, ops.nan, -(t73 * t74 * t75 / t71))
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = c_alpha2 * t4
+    t63 = s_alpha2 * t4
+    t64 = t62 * (t8 + t54) + t63 * (t10 + t58) + t7 * (u_z + t61)
+    t65 = c_alpha3 * t11
+    t66 = s_alpha3 * t11
+    t67 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
+    t68 = (t39 * t54 + t55 * t58 + t5 * t61) * t64 * t67
+    t69 = ops.select(t40, t48 * h, 1.0)
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t70 = t59 - t60
+    t71 = t39 * A_11_above + t55 * A_12_above + t5 * t70
+    t72 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
+    t73 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
+    t74 = t71 * (t72 + t7 * (u_z - t70)) * (t73 + t12 * (v_z - t70))
     return (
-        ops.select(failed, ops.nan, -(t70 / t71)),
-        t76,
+        ops.select(failed, ops.nan, -(t68 / t69)),
+        ops.select(failed, ops.nan, -(t74 / t69)),
     )
 
 
@@ -1371,7 +1331,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 6),
 )
 
 
@@ -1431,111 +1390,108 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    t11 = u_z * u_z + t8 * t8 + t10 * t10
-    size_u = ops.sqrt(t11)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * ops.vanishing
-    same = size_u <= t12
-    t13 = L * c3
-    t14 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    t15 = ops.select(same, t8, t14)
-    t16 = L * s3
-    v_z = t3 - t16
-    t17 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t18 = v_z * v_z + t14 * t14 + t17 * t17
-    size_v = ops.sqrt(t18)
-    all_same = size_u + size_v <= t12
-    t19 = ops.select(same, t14, t8)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t19 / D)
-    t20 = ops.select(same, t17, t10)
-    t21 = ops.select(all_same, 0.0, t20 / D)
-    t22 = ops.select(same, t10, t17)
-    t23 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t23 / D)
-    t24 = ops.select(same, u_z, v_z)
-    t25 = E_11 * t15 + t21 * t22 + E_13 * t24
-    t26 = t15 - E_11 * t25
-    t27 = t22 - t21 * t25
-    m_z = t24 - E_13 * t25
-    t28 = E_11 * t26 + t21 * t27 + E_13 * m_z
-    t29 = t26 - E_11 * t28
-    t30 = t27 - t21 * t28
-    n_z = m_z - E_13 * t28
-    j = ops.sqrt(t29 * t29 + t30 * t30 + n_z * n_z)
-    in_line = j <= t12
-    t31 = t15 * (t19 - t15) + t22 * (t20 - t22) + t24 * (t23 - t24)
-    t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = l - ops.sqrt(X * X + t33 * t33)
-    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
+    same = u_u <= t16
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = l * size * 2.0
+    t32 = l * l
+    side = ops.sign(t17 * a_x)
+    t33 = t17 + a_x * side
+    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t35 = c_alpha1 * t3
-    t36 = ops.opposite(failed)
-    t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t36 & same, t18, 1.0)), ops.sqrt(t37))
-    t38 = ops.select(t36 & ops.opposite(all_same), D_2, 1.0)
-    t39 = ops.select(all_same, 0.0, t20 / t38)
-    E_11_2 = ops.select(all_same, 1.0, t19 / t38)
-    t40 = ops.sign(E_13)
-    t41 = E_11_2 * t40
-    E_13_2 = ops.select(all_same, 0.0, t23 / t38)
-    t42 = E_11_2 * t15 + t39 * t22 + E_13_2 * t24
-    m_z_2 = t24 - E_13_2 * t42
-    t43 = t15 - E_11_2 * t42
-    t44 = t22 - t39 * t42
-    t45 = E_11_2 * t43 + t39 * t44 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t45
-    t46 = t36 & ops.opposite(in_line)
-    t47 = t43 - E_11_2 * t45
-    t48 = t44 - t39 * t45
-    t49 = ops.select(t36, t47 * t47 + t48 * t48 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t49)
-    t50 = ops.select(t46, j_2, 1.0)
-    E_23 = ops.select(in_line, -t41, n_z_2 / t50)
-    t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
-    E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
-    touching = ops.max(t34, 0.0) <= t12
-    t52 = t36 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
-    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t54))
-    t55 = (t39 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t56 = E_11_2 * X_2 - E_21 * t53
-    t57 = t55 - t56
-    t58 = s_alpha1 * t3
-    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t60 = X_2 * t39 - t53 * E_22
-    A_12 = t59 + t60
-    t61 = h * (E_11_2 * E_22 - t39 * E_21)
-    t62 = X_2 * E_13_2 - t53 * E_23
-    t63 = t61 - t62
-    t64 = ops.select(failed, ops.nan, t35 * t57 - t58 * A_12 + t5 * t63)
-    t65 = c_alpha2 * t4
-    t66 = s_alpha2 * t4
-    B_22 = t65 * (t8 + t57) + t66 * (t10 - A_12) + t7 * (u_z + t63)
-    t67 = c_alpha3 * t16
-    t68 = s_alpha3 * t16
-    B_33 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
-    Delta = D_2 * j_2 * h
-    A_11_above = t55 + t56
-    t69 = t59 - t60
-    A_13_above = t61 + t62
-    t70 = t35 * A_11_above - t58 * t69 + t5 * A_13_above
-    B_22_above = t65 * (t8 - A_11_above) + t66 * (t10 + t69) + t7 * (u_z - A_13_above)
-    B_33_above = t67 * (t14 - A_11_above) + t68 * (t17 + t69) + t13 * (v_z - A_13_above)
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = ops.select(failed, ops.nan, t39 * t54 + t55 * t58 + t5 * t61)
+    t63 = c_alpha2 * t4
+    t64 = s_alpha2 * t4
+    B_22 = t63 * (t8 + t54) + t64 * (t10 + t58) + t7 * (u_z + t61)
+    t65 = c_alpha3 * t11
+    t66 = s_alpha3 * t11
+    B_33 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
+    Delta = t48 * h
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t67 = t59 - t60
+    t68 = t39 * A_11_above + t55 * A_12_above + t5 * t67
+    t69 = t63 * (t8 - A_11_above) + t64 * (t10 - A_12_above)
+    t70 = ops.select(failed, ops.nan, t69 + t7 * (u_z - t67))
+    t71 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
+    t72 = ops.select(failed, ops.nan, t71 + t12 * (v_z - t67))
     return (
-        t64,
+        t62,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, -t70),
-        ops.select(failed, ops.nan, B_22_above),
-        ops.select(failed, ops.nan, B_33_above),
+        ops.select(failed, ops.nan, -t68),
+        t70,
+        t72,
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1547,7 +1503,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 3),
 )
 
 
@@ -1606,134 +1561,129 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t10 = u_z * u_z + t7 * t7 + t9 * t9
-    size_u = ops.sqrt(t10)
-    size = f + e + L + l
-    t11 = size * ops.vanishing
-    same = size_u <= t11
-    t12 = L * c3
-    t13 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = ops.select(same, t7, t13)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    t16 = v_z * v_z + t13 * t13 + t15 * t15
-    size_v = ops.sqrt(t16)
-    all_same = size_u + size_v <= t11
-    t17 = ops.select(same, t13, t7)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t17 / D)
-    t18 = ops.select(same, t15, t9)
-    t19 = ops.select(all_same, 0.0, t18 / D)
-    t20 = ops.select(same, t9, t15)
-    t21 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t21 / D)
-    t22 = ops.select(same, u_z, v_z)
-    t23 = E_11 * t14 + t19 * t20 + E_13 * t22
-    t24 = t14 - E_11 * t23
-    t25 = t20 - t19 * t23
-    m_z = t22 - E_13 * t23
-    t26 = E_11 * t24 + t19 * t25 + E_13 * m_z
-    t27 = t24 - E_11 * t26
-    t28 = t25 - t19 * t26
-    n_z = m_z - E_13 * t26
-    j = ops.sqrt(t27 * t27 + t28 * t28 + n_z * n_z)
-    in_line = j <= t11
-    t29 = t14 * (t17 - t14) + t20 * (t18 - t20) + t22 * (t21 - t22)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
-    t32 = l - ops.sqrt(X * X + t31 * t31)
-    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
+    same = u_u <= t14
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t29 = l * size * 2.0
+    t30 = l * l
+    side = ops.sign(t15 * a_x)
+    t31 = t15 + a_x * side
+    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t33 = ops.opposite(failed)
-    t34 = ops.select(t33 & ops.opposite(same), t10, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t33 & same, t16, 1.0)), ops.sqrt(t34))
-    t35 = ops.select(t33 & ops.opposite(all_same), D_2, 1.0)
-    t36 = ops.select(all_same, 0.0, t18 / t35)
-    E_11_2 = ops.select(all_same, 1.0, t17 / t35)
-    t37 = ops.sign(E_13)
-    t38 = E_11_2 * t37
-    E_13_2 = ops.select(all_same, 0.0, t21 / t35)
-    t39 = E_11_2 * t14 + t36 * t20 + E_13_2 * t22
-    m_z_2 = t22 - E_13_2 * t39
-    t40 = t14 - E_11_2 * t39
-    t41 = t20 - t36 * t39
-    t42 = E_11_2 * t40 + t36 * t41 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * t42
-    t43 = t33 & ops.opposite(in_line)
-    t44 = t40 - E_11_2 * t42
-    t45 = t41 - t36 * t42
-    t46 = ops.select(t33, t44 * t44 + t45 * t45 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t46)
-    t47 = ops.select(t43, j_2, 1.0)
-    E_23 = ops.select(in_line, -t38, n_z_2 / t47)
-    t48 = ops.select(t33 & in_line, E_13_2 + t37, 1.0)
-    E_22 = ops.select(in_line, -(t36 * t38 / t48), t45 / t47)
-    touching = ops.max(t32, 0.0) <= t11
-    t49 = t33 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t50 = ops.select(in_line, 0.0, t29 / ops.select(t43, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t49, X_2 * X_2 + t50 * t50, 1.0))
-    t51 = ops.select(t49, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t51))
-    t52 = (t36 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t37 / t48, t44 / t47)
-    t53 = E_11_2 * X_2 - E_21 * t50
-    t54 = t52 - t53
-    t55 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t56 = X_2 * t36 - t50 * E_22
-    A_12 = t55 + t56
-    t57 = h * (E_11_2 * E_22 - t36 * E_21)
-    t58 = X_2 * E_13_2 - t50 * E_23
-    t59 = t57 - t58
-    t60 = t7 + t54
-    t61 = t9 - A_12
-    t62 = u_z + t59
-    t63 = t54 * t54 + A_12 * A_12 + t59 * t59 + (t60 * t60 + t61 * t61 + t62 * t62)
-    t64 = t13 + t54
-    t65 = t15 - A_12
-    t66 = v_z + t59
-    t67 = t54 * t61 + A_12 * t60
-    t68 = t54 * t62 - t59 * t60
-    t69 = t54 * t65 + A_12 * t64
-    t70 = t54 * t66 - t59 * t64
-    t71 = t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
-    t72 = A_12 * t62 + t59 * t61
-    t73 = A_12 * t66 + t59 * t65
-    t74 = t60 * t65 - t61 * t64
-    t75 = t60 * t66 - t62 * t64
-    t76 = t71 + t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75
-    t77 = t61 * t66 - t62 * t65
-    t78 = (t63 + (t64 * t64 + t65 * t65 + t66 * t66)) * (t76 + t77 * t77)
-    t79 = ops.select(t33, 3.0 * (D_2 * j_2 * h), 1.0)
-    t80 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t78, 1.0)) / t79)
-    A_11_above = t52 + t53
-    t81 = t55 - t56
-    A_13_above = t57 + t58
-    square1_above = A_11_above * A_11_above + t81 * t81 + A_13_above * A_13_above
-    t82 = t7 - A_11_above
-    t83 = t9 + t81
-    t84 = u_z - A_13_above
-    t85 = square1_above + (t82 * t82 + t83 * t83 + t84 * t84)
-    t86 = t13 - A_11_above
-    t87 = t15 + t81
-    t88 = v_z - A_13_above
-    t89 = A_11_above * t83 + t81 * t82
-    t90 = A_11_above * t84 - A_13_above * t82
-    t91 = A_11_above * t87 + t81 * t86
-    t92 = A_11_above * t88 - A_13_above * t86
-    t93 = t89 * t89 + t90 * t90 + t91 * t91 + t92 * t92
-    t94 = t81 * t84 + A_13_above * t83
-    t95 = t81 * t88 + A_13_above * t87
-    t96 = t82 * t87 - t83 * t86
-    t97 = t82 * t88 - t84 * t86
-    t98 = t93 + t94 * t94 + t95 * t95 + t96 * t96 + t97 * t97
-    t99 = t83 * t88 - t84 * t87
-    t100 = (t85 + (t86 * t86 + t87 * t87 + t88 * t88)) * (t98 + t99 * t99)
-    t101 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t100, 1.0)) / t79)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    n_z_2 = over_2 * t26
+    t43 = over_2 * t24
+    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t43)
+    t44 = over_2 * t21
+    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
+    t45 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, t45, 1.0))
+    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
+    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = w_x * h
+    t50 = t44 * t46 + d_x * 0.5
+    t51 = t49 - t50
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    t52 = h * w_y
+    t53 = t43 * t46 - t15 * 0.5
+    t54 = t52 + t53
+    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
+    t55 = h * w_z
+    t56 = n_z_2 * t46 - d_z * 0.5
+    t57 = t55 + t56
+    t58 = t7 + t51
+    t59 = t9 + t54
+    t60 = u_z + t57
+    t61 = t51 * t51 + t54 * t54 + t57 * t57 + (t58 * t58 + t59 * t59 + t60 * t60)
+    t62 = t11 + t51
+    t63 = t12 + t54
+    t64 = v_z + t57
+    t65 = t51 * t59 - t54 * t58
+    t66 = t51 * t60 - t57 * t58
+    t67 = t51 * t63 - t54 * t62
+    t68 = t51 * t64 - t57 * t62
+    t69 = t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
+    t70 = t54 * t60 - t57 * t59
+    t71 = t54 * t64 - t57 * t63
+    t72 = t58 * t63 - t59 * t62
+    t73 = t58 * t64 - t60 * t62
+    t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73
+    t75 = t59 * t64 - t60 * t63
+    t76 = (t61 + (t62 * t62 + t63 * t63 + t64 * t64)) * (t74 + t75 * t75)
+    t77 = ops.select(t37, 3.0 * (t45 * h), 1.0)
+    t78 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t76, 1.0)) / t77)
+    A_11_above = t49 + t50
+    A_12_above = t52 - t53
+    t79 = A_11_above * A_11_above + A_12_above * A_12_above
+    t80 = t55 - t56
+    t81 = t7 - A_11_above
+    t82 = t9 - A_12_above
+    t83 = u_z - t80
+    t84 = t79 + t80 * t80 + (t81 * t81 + t82 * t82 + t83 * t83)
+    t85 = t11 - A_11_above
+    t86 = t12 - A_12_above
+    t87 = v_z - t80
+    t88 = A_11_above * t82 - A_12_above * t81
+    t89 = A_11_above * t83 - t80 * t81
+    t90 = A_11_above * t86 - A_12_above * t85
+    t91 = A_11_above * t87 - t80 * t85
+    t92 = t88 * t88 + t89 * t89 + t90 * t90 + t91 * t91
+    t93 = A_12_above * t83 - t80 * t82
+    t94 = A_12_above * t87 - t80 * t86
+    t95 = t81 * t86 - t82 * t85
+    t96 = t81 * t87 - t83 * t85
+    t97 = t92 + t93 * t93 + t94 * t94 + t95 * t95 + t96 * t96
+    t98 = t82 * t87 - t83 * t86
+    t99 = (t84 + (t85 * t85 + t86 * t86 + t87 * t87)) * (t97 + t98 * t98)
+    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t99, 1.0)) / t77)
     return (
-        t80,
-        t101,
+        t78,
+        t100,
     )
 
 
@@ -1744,7 +1694,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), (), 6),
 )
 
 
@@ -1804,135 +1753,128 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t10 = u_z * u_z + t7 * t7 + t9 * t9
-    size_u = ops.sqrt(t10)
-    size = f + e + L + l
-    t11 = size * ops.vanishing
-    same = size_u <= t11
-    t12 = L * c3
-    t13 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = ops.select(same, t7, t13)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    t16 = v_z * v_z + t13 * t13 + t15 * t15
-    size_v = ops.sqrt(t16)
-    all_same = size_u + size_v <= t11
-    t17 = ops.select(same, t13, t7)
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t17 / D)
-    t18 = ops.select(same, t15, t9)
-    t19 = ops.select(all_same, 0.0, t18 / D)
-    t20 = ops.select(same, t9, t15)
-    t21 = ops.select(same, v_z, u_z)
-    E_13 = ops.select(all_same, 0.0, t21 / D)
-    t22 = ops.select(same, u_z, v_z)
-    t23 = E_11 * t14 + t19 * t20 + E_13 * t22
-    t24 = t14 - E_11 * t23
-    t25 = t20 - t19 * t23
-    m_z = t22 - E_13 * t23
-    t26 = E_11 * t24 + t19 * t25 + E_13 * m_z
-    t27 = t24 - E_11 * t26
-    t28 = t25 - t19 * t26
-    n_z = m_z - E_13 * t26
-    j = ops.sqrt(t27 * t27 + t28 * t28 + n_z * n_z)
-    in_line = j <= t11
-    t29 = t14 * (t17 - t14) + t20 * (t18 - t20) + t22 * (t21 - t22)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
-    t32 = l - ops.sqrt(X * X + t31 * t31)
-    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
+    same = u_u <= t14
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, 1.0, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t29 = l * size * 2.0
+    t30 = l * l
+    side = ops.sign(t15 * a_x)
+    t31 = t15 + a_x * side
+    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t33 = c_alpha1 * s_alpha2
-    touching = ops.max(t32, 0.0) <= t11
-    t34 = ops.opposite(failed)
-    t35 = t34 & ops.opposite(touching)
-    t36 = t34 & ops.opposite(all_same)
-    t37 = ops.select(t36 & ops.opposite(same), t10, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t36 & same, t16, 1.0)), ops.sqrt(t37))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t38 = t34 & ops.opposite(in_line)
-    t39 = ops.select(t36, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t17 / t39)
-    t40 = ops.select(all_same, 0.0, t18 / t39)
-    E_13_2 = ops.select(all_same, 0.0, t21 / t39)
-    t41 = E_11_2 * t14 + t40 * t20 + E_13_2 * t22
-    t42 = t14 - E_11_2 * t41
-    t43 = t20 - t40 * t41
-    m_z_2 = t22 - E_13_2 * t41
-    t44 = E_11_2 * t42 + t40 * t43 + E_13_2 * m_z_2
-    t45 = t42 - E_11_2 * t44
-    t46 = t43 - t40 * t44
-    n_z_2 = m_z_2 - E_13_2 * t44
-    t47 = ops.select(t38, t45 * t45 + t46 * t46 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t47)
-    t48 = ops.select(in_line, 0.0, t29 / ops.select(t38, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t35, X_2 * X_2 + t48 * t48, 1.0))
-    t49 = ops.select(t35, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t49))
-    t50 = ops.sign(E_13)
-    t51 = E_11_2 * t50
-    t52 = ops.select(t34 & in_line, E_13_2 + t50, 1.0)
-    t53 = ops.select(t38, j_2, 1.0)
-    E_22 = ops.select(in_line, -(t40 * t51 / t52), t46 / t53)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t50 / t52, t45 / t53)
-    t54 = h * (E_11_2 * E_22 - t40 * E_21)
-    E_23 = ops.select(in_line, -t51, n_z_2 / t53)
-    t55 = X_2 * E_13_2 - t48 * E_23
-    t56 = t54 - t55
-    t57 = s_alpha3 * t56
-    t58 = t33 * t57
-    t59 = u_z + t56
-    t60 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t61 = X_2 * t40 - t48 * E_22
-    A_12 = t60 + t61
-    t62 = t59 * (t15 - A_12)
-    t63 = c_alpha3 * t33
-    t64 = (t40 * E_23 - E_13_2 * E_22) * h
-    t65 = E_11_2 * X_2 - E_21 * t48
-    t66 = t64 - t65
-    t67 = v_z + t56
-    t68 = t59 * t67
-    t69 = t66 * t68
-    t70 = c_alpha1 * c_alpha2
-    t71 = s_alpha3 * t70
-    t72 = s_alpha1 * s_alpha2
-    t73 = c_alpha3 * t72
-    t74 = t68 * A_12
-    t75 = s_alpha1 * c_alpha2
-    t76 = s_alpha3 * t75
-    t77 = t63 * t69 - t71 * t69 - t73 * t74 + t76 * t74
-    t78 = c_alpha3 * t56
-    t79 = t75 * t78
-    t80 = t67 * (t7 + t66)
-    t81 = t67 * (t9 - A_12)
-    t82 = t77 - t79 * t80 + t70 * t80 * t57 - t72 * t78 * t81
-    t83 = t59 * (t13 + t66)
-    t84 = t82 + t81 * t58 + t79 * t83 - t33 * t78 * t83
-    t85 = ops.select(failed, ops.nan, t58 * t62 - (t84 + t75 * t57 * t62))
-    A_11_above = t64 + t65
-    A_13_above = t54 + t55
-    t86 = u_z - A_13_above
-    t87 = v_z - A_13_above
-    t88 = t86 * t87
-    t89 = A_11_above * t88
-    t90 = t60 - t61
-    t91 = t88 * t90
-    t92 = t63 * t89 - t71 * t89 - t73 * t91 + t76 * t91
-    t93 = c_alpha3 * A_13_above
-    t94 = t75 * t93
-    t95 = t87 * (t7 - A_11_above)
-    t96 = s_alpha3 * A_13_above
-    t97 = t87 * (t9 + t90)
-    t98 = t92 - t94 * t95 + t70 * t95 * t96 - t72 * t93 * t97
-    t99 = t33 * t96
-    t100 = t86 * (t13 - A_11_above)
-    t101 = t98 + t97 * t99 + t94 * t100 - t33 * t93 * t100
-    t102 = t86 * (t15 + t90)
-    t103 = ops.select(failed, ops.nan, t101 + t75 * t96 * t102 - t99 * t102)
+    t37 = c_alpha1 * s_alpha2
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = ops.opposite(failed)
+    t39 = t38 & ops.opposite(touching)
+    t40 = t38 | (t39 & ops.opposite(all_same))
+    t41 = ops.opposite(in_line)
+    t42 = t39 | (t40 & t41)
+    t43 = t42 & t41
+    over_2 = 1.0 / ops.select(t40 | t43, mu, 1.0)
+    t44 = over_2 * t21
+    t45 = over_2 * t24
+    n_z_2 = over_2 * t26
+    nu_2 = t44 * t44 + t45 * t45 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t32, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
+    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
+    t48 = ops.select(t39, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    w_z = ops.select(in_line, -t31, a_x * t45 + t15 * t44)
+    t49 = h * w_z
+    t50 = n_z_2 * t46 - d_z * 0.5
+    t51 = t49 + t50
+    t52 = s_alpha3 * t51
+    t53 = t37 * t52
+    t54 = u_z + t51
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    t55 = h * w_y
+    t56 = t45 * t46 - t15 * 0.5
+    t57 = t55 + t56
+    t58 = t54 * (t12 + t57)
+    t59 = c_alpha3 * t37
+    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t45)
+    t60 = w_x * h
+    t61 = t44 * t46 + d_x * 0.5
+    t62 = t60 - t61
+    t63 = v_z + t51
+    t64 = t54 * t63
+    t65 = t62 * t64
+    t66 = c_alpha1 * c_alpha2
+    t67 = s_alpha3 * t66
+    t68 = s_alpha1 * s_alpha2
+    t69 = c_alpha3 * t68
+    t70 = t64 * t57
+    t71 = s_alpha1 * c_alpha2
+    t72 = s_alpha3 * t71
+    t73 = t59 * t65 - t67 * t65 + t69 * t70 - t72 * t70
+    t74 = c_alpha3 * t51
+    t75 = t71 * t74
+    t76 = t63 * (t7 + t62)
+    t77 = t63 * (t9 + t57)
+    t78 = t73 - t75 * t76 + t66 * t76 * t52 - t68 * t74 * t77
+    t79 = t54 * (t11 + t62)
+    t80 = t78 + t77 * t53 + t75 * t79 - t37 * t74 * t79
+    t81 = ops.select(failed, ops.nan, t53 * t58 - (t80 + t71 * t52 * t58))
+    A_11_above = t60 + t61
+    t82 = t49 - t50
+    t83 = u_z - t82
+    t84 = v_z - t82
+    t85 = t83 * t84
+    t86 = A_11_above * t85
+    A_12_above = t55 - t56
+    t87 = t85 * A_12_above
+    t88 = t59 * t86 - t67 * t86 + t69 * t87 - t72 * t87
+    t89 = c_alpha3 * t82
+    t90 = t71 * t89
+    t91 = t84 * (t7 - A_11_above)
+    t92 = s_alpha3 * t82
+    t93 = t84 * (t9 - A_12_above)
+    t94 = t88 - t90 * t91 + t66 * t91 * t92 - t68 * t89 * t93
+    t95 = t37 * t92
+    t96 = t83 * (t11 - A_11_above)
+    t97 = t94 + t93 * t95 + t90 * t96 - t37 * t89 * t96
+    t98 = t83 * (t12 - A_12_above)
+    t99 = ops.select(failed, ops.nan, t97 + t71 * t92 * t98 - t95 * t98)
     return (
-        t85,
-        t103,
+        t81,
+        t99,
     )
 
 
@@ -1943,7 +1885,6 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 3),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 63 add, 12 divide, 79 multiply, 9 sqrt
-#   skeleton: 113 compare and select, 97 add, 21 divide, 68 multiply, 9 sqrt
-#   jacobian_parallel: 83 compare and select, 71 add, 19 divide, 68 multiply, 9 sqrt
-#   jacobian_serial: 73 compare and select, 57 add, 19 divide, 58 multiply, 9 sqrt
-#   jacobian: 86 compare and select, 89 add, 37 divide, 120 multiply, 9 sqrt
-#   determinant: 70 compare and select, 57 add, 21 divide, 64 multiply, 9 sqrt
-#   singularities: 75 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
-#   condition_number: 72 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
-#   constraint: 69 compare and select, 79 add, 25 divide, 92 multiply, 9 sqrt
+#   fk: 67 compare and select, 48 add, 16 divide, 70 multiply, 1 sqrt
+#   skeleton: 106 compare and select, 82 add, 18 divide, 69 multiply, 1 sqrt
+#   jacobian_parallel: 76 compare and select, 56 add, 16 divide, 70 multiply, 1 sqrt
+#   jacobian_serial: 64 compare and select, 42 add, 14 divide, 61 multiply, 1 sqrt
+#   jacobian: 79 compare and select, 74 add, 34 divide, 121 multiply, 1 sqrt
+#   determinant: 61 compare and select, 42 add, 16 divide, 66 multiply, 1 sqrt
+#   singularities: 66 compare and select, 42 add, 14 divide, 62 multiply, 1 sqrt
+#   condition_number: 65 compare and select, 106 add, 18 divide, 140 multiply, 3 sqrt
+#   constraint: 62 compare and select, 64 add, 22 divide, 94 multiply, 1 sqrt
 #   ik: 75 compare and select, 66 add, 5 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -140,95 +140,87 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     invalid = ops.opposite(t2)
+    t3 = rho1 - rho2
     c1_x = f - e
-    t3 = c1_x - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t4 = c1_x - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    t10 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, -(t3 * t10))
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 * t12)
-    t13 = ops.select(same, t4, t7)
-    t14 = ops.select(same, t7, t4)
-    t15 = ops.select(all_same, 0.0, t10 * t14)
-    t16 = t3 * E_11 - t11 * E_12 - t13 * t15
-    t17 = t3 - E_11 * t16
-    m_y = t11 + E_12 * t16
-    t18 = t13 + t15 * t16
-    t19 = E_11 * t17 - E_12 * m_y - t15 * t18
-    t20 = t17 - E_11 * t19
-    n_y = m_y + E_12 * t19
-    t21 = t18 + t15 * t19
-    j = ops.sqrt(t20 * t20 + n_y * n_y + t21 * t21)
-    in_line = j <= t9
-    left = t11 * (t11 - t12) + t13 * (t13 - t14)
-    t22 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, left / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = d_y * t11 - t9 * t10
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = invalid | unreachable
-    t25 = ops.opposite(failed)
-    t26 = t25 & ops.opposite(all_same)
-    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
-    t28 = 1.0 / ops.select(t26, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 * t28))
-    t29 = ops.sign(-t15)
-    t30 = ops.select(all_same, 0.0, t28 * t14)
-    t31 = 1.0 / ops.select(t25 & in_line, t30 - t29, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t28 * t12)
-    t32 = t3 * E_11_2 - t11 * E_12_2 - t13 * t30
-    t33 = t3 - E_11_2 * t32
-    m_y_2 = t11 + E_12_2 * t32
-    t34 = t13 + t30 * t32
-    t35 = E_11_2 * t33 - E_12_2 * m_y_2 - t30 * t34
-    t36 = t33 - E_11_2 * t35
-    t37 = t25 & ops.opposite(in_line)
-    n_y_2 = m_y_2 + E_12_2 * t35
-    t38 = t34 + t30 * t35
-    t39 = ops.select(t37, t36 * t36 + n_y_2 * n_y_2 + t38 * t38, 1.0)
-    j_2 = ops.sqrt(t39)
-    t40 = 1.0 / ops.select(t37, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t29 * t31, -(t36 * t40))
-    t41 = ops.select(in_line, 0.0, left / ops.select(t37, 2.0 * j_2, 1.0))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t42 = E_21 * t41 + (c1_x + E_11_2 * X_2)
-    touching = ops.max(t24, 0.0) <= t9
-    t43 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
-    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t44))
-    t45 = E_11_2 * t29
-    t46 = ops.select(in_line, t45, t38 * t40)
-    E_22 = ops.select(in_line, t31 * (E_12_2 * t45), n_y_2 * t40)
-    t47 = h * (E_12_2 * t46 - t30 * E_22)
-    t48 = E_12_2 * X_2 + t41 * E_22
-    t49 = h * (E_11_2 * t46 - t30 * E_21)
-    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t51 = t41 * t46 - (rho1 - t30 * X_2)
-    t52 = ops.status(invalid, unreachable, in_line)
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t16
+    n_y_2 = over_2 * t15
+    t34 = ops.select(in_line, t10 * side, d_y * t33 - t10 * n_y_2)
+    t35 = over_2 * t12
+    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t33 * t33
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
+    t38 = ops.select(t28, part_2 * ops.max(t21 - t37, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t38))
+    t39 = t34 * h
+    t40 = t4 * 0.5 - (c1_x + t35 * t36)
+    t41 = n_y_2 * t36 - d_y * 0.5
+    w_y = ops.select(in_line, -t10, a_x * t33 + t10 * t35)
+    t42 = h * w_y
+    t43 = t10 * 0.5 - (rho1 + t33 * t36)
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    t44 = h * w_z
+    t45 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t42 + t47),
-        ops.select(failed, ops.nan, t48 - t49),
-        ops.select(failed, ops.nan, t50 - t51),
-        ops.select(failed, ops.nan, t42 - t47),
-        ops.select(failed, ops.nan, t48 + t49),
-        ops.select(failed, ops.nan, -(t51 + t50)),
-        t52,
-        t52,
+        ops.select(failed, ops.nan, t39 - t40),
+        ops.select(failed, ops.nan, -(t41 + t42)),
+        ops.select(failed, ops.nan, -(t43 + t44)),
+        ops.select(failed, ops.nan, -(t40 + t39)),
+        ops.select(failed, ops.nan, t42 - t41),
+        ops.select(failed, ops.nan, t44 - t43),
+        t45,
+        t45,
     )
 
 
@@ -239,7 +231,6 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
 
@@ -287,269 +278,258 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = rho1 - rho2
     c1_x = f - e
-    t3 = e * 0.5
-    t4 = f * 0.5
-    t5 = c1_x - (t3 - t4)
-    t6 = rho1 - rho2
+    t4 = e * 0.5
+    t5 = f * 0.5
+    t6 = c1_x - (t4 - t5)
     t7 = e * 1.7320508075688772
     t8 = t7 * 0.5
     t9 = f * 1.7320508075688772 * 0.5
     c3_y = t8 - t9
-    t10 = t5 * t5 + c3_y * c3_y
-    t11 = t6 * t6 + t10
-    size_u = ops.sqrt(t11)
-    t12 = rho1 - rho3
-    t13 = t12 * t12 + t10
-    size_v = ops.sqrt(t13)
+    t10 = t6 * t6 + c3_y * c3_y
+    u_u = t3 * t3 + t10
+    t11 = rho1 - rho3
+    v_v = t11 * t11 + t10
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t14 = size * ops.vanishing
-    all_same = size_u + size_v <= t14
-    same = size_u <= t14
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t5 / D))
-    t15 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t15 / D)
-    t16 = ops.select(same, -c3_y, c3_y)
-    t17 = ops.select(same, t12, t6)
-    t18 = ops.select(all_same, 0.0, t17 / D)
-    t19 = ops.select(same, t6, t12)
-    t20 = t5 * E_11 - E_12 * t16 - t18 * t19
-    t21 = t5 - E_11 * t20
-    m_y = t16 + E_12 * t20
-    t22 = t19 + t18 * t20
-    t23 = E_11 * t21 - E_12 * m_y - t18 * t22
-    t24 = t21 - E_11 * t23
-    n_y = m_y + E_12 * t23
-    t25 = t22 + t18 * t23
-    j = ops.sqrt(t24 * t24 + n_y * n_y + t25 * t25)
-    in_line = j <= t14
-    t26 = t16 * (t15 - t16) + t19 * (t17 - t19)
-    t27 = ops.abs(ops.select(in_line, -t26, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t28 = ops.select(in_line, 0.0, t26 / (2.0 * j))
-    t29 = l - ops.sqrt(X * X + t28 * t28)
-    unreachable = ops.opposite(t27 & (-(size * ops.feasibility) <= t29))
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing * t12
+    all_same = u_u + v_v <= t13
+    same = u_u <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t6)
+    t14 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t14 + t6 * d_y
+    t15 = ops.select(same, t11, t3)
+    t16 = ops.select(same, t3, t11)
+    m_y = a_x * t16 + t6 * t15
+    t17 = d_y * m_z + t15 * m_y
+    t18 = over * t17
+    t19 = d_y * t16 - t14 * t15
+    t20 = a_x * m_z - t15 * t19
+    n_y = over * t20
+    t21 = a_x * m_y + d_y * t19
+    t22 = over * t21
+    nu = t18 * t18 + n_y * n_y + t22 * t22
+    in_line = nu <= t13
+    t23 = t14 * (d_y - t14) + t16 * (t15 - t16)
+    t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t12 * ops.feasibility
+    t25 = l * size * 2.0
+    t26 = l * l
+    t27 = mu * t23
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t28 = 2.0 * (t15 * t15) + last * last
+    part = ops.select(in_line, 1.0 / t28, 1.0 / (mu * nu))
+    t29 = ops.select(in_line, 0.0, t27 * part * 0.5)
+    t30 = mu * 0.25
+    t31 = ops.select(all_same, 0.0, nu * (t29 * t29) + t30)
+    t32 = t26 - t31
+    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t32))
     failed = ops.opposite(t2) | unreachable
-    t30 = ops.select(failed, ops.nan, f)
-    t31 = ops.select(failed, ops.nan, 0.0)
-    t32 = ops.select(failed, ops.nan, rho1)
-    t33 = e + c1_x
-    t34 = ops.opposite(failed)
-    t35 = t34 & ops.opposite(all_same)
-    t36 = ops.select(t35 & ops.opposite(same), t11, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t35 & same, t13, 1.0)), ops.sqrt(t36))
-    t37 = ops.select(t35, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t5 / t37))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t38 = t34 & ops.opposite(in_line)
-    E_12_2 = ops.select(all_same, 0.0, t15 / t37)
-    t39 = ops.select(all_same, 0.0, t17 / t37)
-    t40 = t5 * E_11_2 - E_12_2 * t16 - t39 * t19
-    t41 = t5 - E_11_2 * t40
-    m_y_2 = t16 + E_12_2 * t40
-    t42 = t19 + t39 * t40
-    t43 = E_11_2 * t41 - E_12_2 * m_y_2 - t39 * t42
-    t44 = t41 - E_11_2 * t43
-    n_y_2 = m_y_2 + E_12_2 * t43
-    t45 = t42 + t39 * t43
-    t46 = ops.select(t38, t44 * t44 + n_y_2 * n_y_2 + t45 * t45, 1.0)
-    j_2 = ops.sqrt(t46)
-    t47 = ops.select(in_line, 0.0, t26 / ops.select(t38, 2.0 * j_2, 1.0))
-    t48 = ops.sign(-t18)
-    t49 = ops.select(t34 & in_line, t39 - t48, 1.0)
-    t50 = ops.select(t38, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t48 / t49, -(t44 / t50))
-    t51 = E_11_2 * X_2 - t47 * E_21
-    touching = ops.max(t29, 0.0) <= t14
-    t52 = t34 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t47 * t47, 1.0))
-    t53 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t53))
-    t54 = E_11_2 * t48
-    t55 = ops.select(in_line, t54, t45 / t50)
-    E_22 = ops.select(in_line, E_12_2 * t54 / t49, n_y_2 / t50)
-    t56 = h * (E_12_2 * t55 - t39 * E_22)
-    A_11 = t51 + t56
-    t57 = ops.select(failed, ops.nan, t33 + A_11)
-    t58 = E_12_2 * X_2 - t47 * E_22
-    t59 = h * (E_11_2 * t55 - t39 * E_21)
-    A_12 = t58 - t59
-    t60 = ops.select(failed, ops.nan, A_12)
-    t61 = t39 * X_2 - t47 * t55
-    t62 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t63 = ops.select(failed, ops.nan, rho1 - (t61 - t62))
-    t64 = ops.select(failed, ops.nan, t3)
-    t65 = ops.select(failed, ops.nan, -t3)
-    t66 = ops.select(failed, ops.nan, -t4)
-    t67 = ops.select(failed, ops.nan, t9)
-    t68 = ops.select(failed, ops.nan, rho2)
-    t69 = c1_x - t3
-    t70 = t69 + A_11
-    t71 = ops.select(failed, ops.nan, t70)
-    t72 = t7 * 0.25
-    t73 = ops.select(failed, ops.nan, -(t4 + t72))
-    t74 = e * 0.25
-    t75 = t9 - t74
-    t76 = ops.select(failed, ops.nan, t75)
-    t77 = ops.select(failed, ops.nan, t72 - t4)
-    t78 = t9 + t74
-    t79 = ops.select(failed, ops.nan, t78)
-    t80 = ops.select(failed, ops.nan, t70 - t72)
-    t81 = t8 - t74
-    t82 = ops.select(failed, ops.nan, t72 + t70)
-    t83 = t8 + t74
-    t84 = ops.select(failed, ops.nan, -t9)
-    t85 = ops.select(failed, ops.nan, rho3)
-    t86 = ops.select(failed, ops.nan, -t78)
-    t87 = ops.select(failed, ops.nan, -t75)
-    A_11_above = t51 - t56
-    t88 = ops.select(failed, ops.nan, t33 + A_11_above)
-    A_12_above = t58 + t59
-    t89 = ops.select(failed, ops.nan, A_12_above)
-    t90 = ops.select(failed, ops.nan, rho1 - (t61 + t62))
-    t91 = t69 + A_11_above
-    t92 = ops.select(failed, ops.nan, t91)
-    t93 = ops.select(failed, ops.nan, t91 - t72)
-    t94 = ops.select(failed, ops.nan, t81 + A_12_above)
-    t95 = ops.select(failed, ops.nan, t72 + t91)
-    t96 = ops.select(failed, ops.nan, t83 + A_12_above)
-    t97 = ops.select(failed, ops.nan, A_12_above - t83)
-    t98 = ops.select(failed, ops.nan, A_12_above - t81)
-    t99 = ops.select(failed, ops.nan, c1_x + A_11_above)
+    t33 = ops.select(failed, ops.nan, f)
+    t34 = ops.select(failed, ops.nan, 0.0)
+    t35 = ops.select(failed, ops.nan, rho1)
+    t36 = e + c1_x
+    t37 = ops.opposite(failed)
+    touching = ops.max(t32, 0.0) <= ops.vanishing * t25
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    t43 = over_2 * t17
+    n_y_2 = over_2 * t20
+    t44 = over_2 * t21
+    nu_2 = t43 * t43 + n_y_2 * n_y_2 + t44 * t44
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t28, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
+    t45 = ops.select(in_line, 0.0, t27 * part_2 * 0.5)
+    t46 = t6 * 0.5 - t43 * t45
+    t47 = ops.select(in_line, t15 * side, d_y * t44 - t15 * n_y_2)
+    t48 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t30)
+    t49 = ops.select(t38, part_2 * ops.max(t26 - t48, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t49))
+    t50 = t47 * h
+    t51 = t46 - t50
+    t52 = ops.select(failed, ops.nan, t36 - t51)
+    t53 = n_y_2 * t45 - d_y * 0.5
+    w_y = ops.select(in_line, -t15, a_x * t44 + t15 * t43)
+    t54 = h * w_y
+    t55 = t53 + t54
+    t56 = ops.select(failed, ops.nan, -t55)
+    t57 = t44 * t45 - t15 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t43)
+    t58 = h * w_z
+    t59 = ops.select(failed, ops.nan, rho1 + (t57 - t58))
+    t60 = ops.select(failed, ops.nan, t4)
+    t61 = ops.select(failed, ops.nan, -t4)
+    t62 = ops.select(failed, ops.nan, -t5)
+    t63 = ops.select(failed, ops.nan, t9)
+    t64 = ops.select(failed, ops.nan, rho2)
+    t65 = c1_x - t4
+    t66 = t65 - t51
+    t67 = ops.select(failed, ops.nan, t66)
+    t68 = t7 * 0.25
+    t69 = ops.select(failed, ops.nan, -(t5 + t68))
+    t70 = e * 0.25
+    t71 = t9 - t70
+    t72 = ops.select(failed, ops.nan, t71)
+    t73 = ops.select(failed, ops.nan, t68 - t5)
+    t74 = t9 + t70
+    t75 = ops.select(failed, ops.nan, t74)
+    t76 = ops.select(failed, ops.nan, t66 - t68)
+    t77 = t8 - t70
+    t78 = ops.select(failed, ops.nan, t68 + t66)
+    t79 = t8 + t70
+    t80 = ops.select(failed, ops.nan, -t9)
+    t81 = ops.select(failed, ops.nan, rho3)
+    t82 = ops.select(failed, ops.nan, -t74)
+    t83 = ops.select(failed, ops.nan, -t71)
+    t84 = t46 + t50
+    t85 = ops.select(failed, ops.nan, t36 - t84)
+    t86 = t53 - t54
+    t87 = ops.select(failed, ops.nan, -t86)
+    t88 = ops.select(failed, ops.nan, rho1 + (t57 + t58))
+    t89 = t65 - t84
+    t90 = ops.select(failed, ops.nan, t89)
+    t91 = ops.select(failed, ops.nan, t89 - t68)
+    t92 = ops.select(failed, ops.nan, t68 + t89)
     return (
-        t30,
-        t31,
-        t31,
-        t30,
-        t31,
-        t32,
-        t57,
+        t33,
+        t34,
+        t34,
+        t33,
+        t34,
+        t35,
+        t52,
+        t56,
+        t59,
+        t33,
         t60,
+        t35,
+        t33,
+        t61,
+        t35,
+        t52,
+        ops.select(failed, ops.nan, t4 - t55),
+        t59,
+        t52,
+        ops.select(failed, ops.nan, -(t4 + t55)),
+        t59,
+        t62,
         t63,
-        t30,
+        t34,
+        t62,
+        t63,
         t64,
-        t32,
-        t30,
-        t65,
-        t32,
-        t57,
-        ops.select(failed, ops.nan, t3 + A_12),
-        t63,
-        t57,
-        ops.select(failed, ops.nan, A_12 - t3),
-        t63,
-        t66,
         t67,
-        t31,
-        t66,
-        t67,
-        t68,
-        t71,
-        ops.select(failed, ops.nan, t8 + A_12),
-        t63,
+        ops.select(failed, ops.nan, t8 - t55),
+        t59,
+        t69,
+        t72,
+        t64,
         t73,
+        t75,
+        t64,
         t76,
-        t68,
-        t77,
-        t79,
-        t68,
+        ops.select(failed, ops.nan, t77 - t55),
+        t59,
+        t78,
+        ops.select(failed, ops.nan, t79 - t55),
+        t59,
+        t62,
         t80,
-        ops.select(failed, ops.nan, t81 + A_12),
-        t63,
-        t82,
-        ops.select(failed, ops.nan, t83 + A_12),
-        t63,
-        t66,
-        t84,
-        t31,
-        t66,
-        t84,
-        t85,
-        t71,
-        ops.select(failed, ops.nan, A_12 - t8),
-        t63,
-        t77,
-        t86,
-        t85,
+        t34,
+        t62,
+        t80,
+        t81,
+        t67,
+        ops.select(failed, ops.nan, -(t8 + t55)),
+        t59,
         t73,
-        t87,
-        t85,
         t82,
-        ops.select(failed, ops.nan, A_12 - t83),
-        t63,
-        t80,
-        ops.select(failed, ops.nan, A_12 - t81),
-        t63,
-        ops.select(failed, ops.nan, c1_x + A_11),
+        t81,
+        t69,
+        t83,
+        t81,
+        t78,
+        ops.select(failed, ops.nan, -(t79 + t55)),
+        t59,
+        t76,
+        ops.select(failed, ops.nan, -(t77 + t55)),
+        t59,
+        ops.select(failed, ops.nan, c1_x - t51),
+        t56,
+        t59,
+        t33,
+        t34,
+        t34,
+        t33,
+        t34,
+        t35,
+        t85,
+        t87,
+        t88,
+        t33,
         t60,
+        t35,
+        t33,
+        t61,
+        t35,
+        t85,
+        ops.select(failed, ops.nan, t4 - t86),
+        t88,
+        t85,
+        ops.select(failed, ops.nan, -(t4 + t86)),
+        t88,
+        t62,
         t63,
-        t30,
-        t31,
-        t31,
-        t30,
-        t31,
-        t32,
-        t88,
-        t89,
-        t90,
-        t30,
+        t34,
+        t62,
+        t63,
         t64,
-        t32,
-        t30,
-        t65,
-        t32,
+        t90,
+        ops.select(failed, ops.nan, t8 - t86),
         t88,
-        ops.select(failed, ops.nan, t3 + A_12_above),
-        t90,
+        t69,
+        t72,
+        t64,
+        t73,
+        t75,
+        t64,
+        t91,
+        ops.select(failed, ops.nan, t77 - t86),
         t88,
-        ops.select(failed, ops.nan, A_12_above - t3),
-        t90,
-        t66,
-        t67,
-        t31,
-        t66,
-        t67,
-        t68,
         t92,
-        ops.select(failed, ops.nan, t8 + A_12_above),
+        ops.select(failed, ops.nan, t79 - t86),
+        t88,
+        t62,
+        t80,
+        t34,
+        t62,
+        t80,
+        t81,
         t90,
+        ops.select(failed, ops.nan, -(t8 + t86)),
+        t88,
         t73,
-        t76,
-        t68,
-        t77,
-        t79,
-        t68,
-        t93,
-        t94,
-        t90,
-        t95,
-        t96,
-        t90,
-        t66,
-        t84,
-        t31,
-        t66,
-        t84,
-        t85,
+        t82,
+        t81,
+        t69,
+        t83,
+        t81,
         t92,
-        ops.select(failed, ops.nan, A_12_above - t8),
-        t90,
-        t77,
-        t86,
-        t85,
-        t73,
+        ops.select(failed, ops.nan, -(t79 + t86)),
+        t88,
+        t91,
+        ops.select(failed, ops.nan, -(t77 + t86)),
+        t88,
+        ops.select(failed, ops.nan, c1_x - t84),
         t87,
-        t85,
-        t95,
-        t97,
-        t90,
-        t93,
-        t98,
-        t90,
-        t99,
-        t89,
-        t90,
+        t88,
     )
 
 
@@ -560,7 +540,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2),
 )
 
 
@@ -599,112 +578,103 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = d_y * t11 - t9 * t10
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = t25 & ops.opposite(all_same)
-    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
-    t28 = ops.select(t26, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t29 = ops.sign(-t13)
-    t30 = ops.select(all_same, 0.0, t12 / t28)
-    t31 = ops.select(t25 & in_line, t30 - t29, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
-    t32 = t3 * E_11_2 - E_12_2 * t11 - t30 * t14
-    t33 = t3 - E_11_2 * t32
-    m_y_2 = t11 + E_12_2 * t32
-    t34 = t14 + t30 * t32
-    t35 = E_11_2 * t33 - E_12_2 * m_y_2 - t30 * t34
-    t36 = t33 - E_11_2 * t35
-    t37 = t25 & ops.opposite(in_line)
-    n_y_2 = m_y_2 + E_12_2 * t35
-    t38 = t34 + t30 * t35
-    t39 = ops.select(t37, t36 * t36 + n_y_2 * n_y_2 + t38 * t38, 1.0)
-    j_2 = ops.sqrt(t39)
-    t40 = ops.select(t37, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t29 / t31, -(t36 / t40))
-    t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
-    t42 = E_11_2 * X_2 - E_21 * t41
-    touching = ops.max(t24, 0.0) <= t9
-    t43 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
-    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t44))
-    t45 = E_11_2 * t29
-    t46 = ops.select(in_line, t45, t38 / t40)
-    E_22 = ops.select(in_line, E_12_2 * t45 / t31, n_y_2 / t40)
-    t47 = h * (E_12_2 * t46 - t30 * E_22)
-    A_11 = t42 + t47
-    t48 = X_2 * E_12_2 - t41 * E_22
-    t49 = h * (E_11_2 * t46 - t30 * E_21)
-    A_12 = t48 - t49
-    t50 = X_2 * t30 - t41 * t46
-    t51 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t52 = t50 - t51
-    t53 = ops.select(failed, ops.nan, t3 + A_11)
-    A_11_above = t42 - t47
-    A_12_above = t48 + t49
-    t54 = t50 + t51
-    t55 = ops.select(failed, ops.nan, t3 + A_11_above)
-    t56 = ops.select(failed, ops.nan, c3_y + A_12_above)
-    t57 = ops.select(failed, ops.nan, A_12_above - c3_y)
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t12
+    n_y_2 = over_2 * t15
+    t34 = over_2 * t16
+    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
+    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t36 = t4 * 0.5 - t33 * t35
+    t37 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
+    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = t37 * h
+    t41 = t36 - t40
+    t42 = n_y_2 * t35 - d_y * 0.5
+    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
+    t43 = h * w_y
+    t44 = t42 + t43
+    t45 = t34 * t35 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
+    t46 = h * w_z
+    A_13 = t45 - t46
+    t47 = ops.select(failed, ops.nan, t4 - t41)
+    t48 = t36 + t40
+    t49 = t42 - t43
+    A_13_above = t45 + t46
+    t50 = ops.select(failed, ops.nan, t4 - t48)
     return (
-        ops.select(failed, ops.nan, A_11),
-        ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t52),
-        t53,
-        ops.select(failed, ops.nan, c3_y + A_12),
-        ops.select(failed, ops.nan, t4 - t52),
-        t53,
-        ops.select(failed, ops.nan, A_12 - c3_y),
-        ops.select(failed, ops.nan, t7 - t52),
-        ops.select(failed, ops.nan, A_11_above),
-        ops.select(failed, ops.nan, A_12_above),
-        ops.select(failed, ops.nan, -t54),
-        t55,
-        t56,
-        ops.select(failed, ops.nan, t4 - t54),
-        t55,
-        t57,
-        ops.select(failed, ops.nan, t7 - t54),
+        ops.select(failed, ops.nan, -t41),
+        ops.select(failed, ops.nan, -t44),
+        ops.select(failed, ops.nan, A_13),
+        t47,
+        ops.select(failed, ops.nan, c3_y - t44),
+        ops.select(failed, ops.nan, t3 + A_13),
+        t47,
+        ops.select(failed, ops.nan, -(c3_y + t44)),
+        ops.select(failed, ops.nan, t6 + A_13),
+        ops.select(failed, ops.nan, -t48),
+        ops.select(failed, ops.nan, -t49),
+        ops.select(failed, ops.nan, A_13_above),
+        t50,
+        ops.select(failed, ops.nan, c3_y - t49),
+        ops.select(failed, ops.nan, t3 + A_13_above),
+        t50,
+        ops.select(failed, ops.nan, -(c3_y + t49)),
+        ops.select(failed, ops.nan, t6 + A_13_above),
     )
 
 
@@ -715,7 +685,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
 )
 
 
@@ -753,86 +722,77 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = t11 * d_y - t10 * t9
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    last = d_y + a_x * ops.sign(a_x * d_y)
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = t25 & ops.opposite(all_same)
-    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
-    t28 = ops.select(t26, D_2, 1.0)
-    t29 = ops.select(all_same, 0.0, t12 / t28)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
-    t30 = ops.sign(-t13)
-    t31 = E_11_2 * t30
-    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
-    t32 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
-    t33 = t14 + t29 * t32
-    t34 = t3 - E_11_2 * t32
-    m_y_2 = t11 + E_12_2 * t32
-    t35 = E_11_2 * t34 - E_12_2 * m_y_2 - t29 * t33
-    t36 = t33 + t29 * t35
-    t37 = t25 & ops.opposite(in_line)
-    t38 = t34 - E_11_2 * t35
-    n_y_2 = m_y_2 + E_12_2 * t35
-    t39 = ops.select(t37, t38 * t38 + n_y_2 * n_y_2 + t36 * t36, 1.0)
-    j_2 = ops.sqrt(t39)
-    t40 = ops.select(t37, j_2, 1.0)
-    t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
-    t42 = t29 * X_2 - ops.select(in_line, t31, t36 / t40) * t41
-    touching = ops.max(t24, 0.0) <= t9
-    t43 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
-    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    t45 = ops.select(t25 & in_line, t29 - t30, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t30 * (E_11_2 * E_11_2) / t45, -(t38 / t40))
-    E_22 = ops.select(in_line, E_12_2 * t31 / t45, n_y_2 / t40)
-    t46 = ops.select(touching, 0.0, ops.sqrt(t44)) * (E_12_2 * E_21 - E_11_2 * E_22)
-    t47 = t42 - t46
-    t48 = t42 + t46
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t16
+    t34 = over_2 * t12
+    n_y_2 = over_2 * t15
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
+    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t36 = t33 * t35 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t37 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
+    t38 = ops.select(t28, part_2 * ops.max(t21 - t37, 0.0), 1.0)
+    t39 = w_z * ops.select(touching, 0.0, ops.sqrt(t38))
+    A_13 = t36 - t39
+    A_13_above = t36 + t39
     return (
-        ops.select(failed, ops.nan, -t47),
-        ops.select(failed, ops.nan, t4 - t47),
-        ops.select(failed, ops.nan, t7 - t47),
-        ops.select(failed, ops.nan, -t48),
-        ops.select(failed, ops.nan, t4 - t48),
-        ops.select(failed, ops.nan, t7 - t48),
+        ops.select(failed, ops.nan, A_13),
+        ops.select(failed, ops.nan, t3 + A_13),
+        ops.select(failed, ops.nan, t6 + A_13),
+        ops.select(failed, ops.nan, A_13_above),
+        ops.select(failed, ops.nan, t3 + A_13_above),
+        ops.select(failed, ops.nan, t6 + A_13_above),
     )
 
 
@@ -843,7 +803,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
 
@@ -881,140 +840,136 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = t11 * d_y - t10 * t9
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    side = ops.sign(a_x * d_y)
+    last = d_y + a_x * side
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
-    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
-    t28 = ops.select(all_same, 0.0, t12 / t27)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
-    t29 = ops.sign(-t13)
-    t30 = E_11_2 * t29
-    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
-    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
-    t32 = t14 + t28 * t31
-    t33 = t3 - E_11_2 * t31
-    m_y_2 = t11 + E_12_2 * t31
-    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
-    t35 = t32 + t28 * t34
-    t36 = t25 & ops.opposite(in_line)
-    t37 = t33 - E_11_2 * t34
-    n_y_2 = m_y_2 + E_12_2 * t34
-    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
-    j_2 = ops.sqrt(t38)
-    t39 = ops.select(t36, j_2, 1.0)
-    t40 = ops.select(in_line, t30, t35 / t39)
-    t41 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
-    t42 = t28 * X_2 - t40 * t41
-    touching = ops.max(t24, 0.0) <= t9
-    t43 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
-    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t44))
-    t45 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t45, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t45, n_y_2 / t39)
-    t46 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t47 = t42 - t46
-    t48 = X_2 * E_12_2 - t41 * E_22
-    t49 = h * (E_11_2 * t40 - t28 * E_21)
-    A_12 = t48 - t49
-    A_22 = c3_y + A_12
-    A_33 = t7 - t47
-    A_23 = t4 - t47
-    t50 = c3_y - A_12
-    t51 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t52 = ops.select(failed, ops.nan, t47 * (A_22 * A_33 + A_23 * t50) / t51)
-    t53 = ops.select(failed, ops.nan, A_23 * (A_12 * A_33 - t47 * t50) / t51)
-    t54 = ops.select(failed, ops.nan, -(A_33 * (A_12 * A_23 + t47 * A_22) / t51))
-    t55 = X_2 * E_11_2 - t41 * E_21
-    t56 = h * (E_12_2 * t40 - t28 * E_22)
-    A_11 = t55 + t56
-    A_21 = t3 + A_11
-    t57 = ops.select(failed, ops.nan, -(t47 * (A_33 * A_21 - A_23 * A_21) / t51))
-    t58 = t47 * A_21
-    t59 = ops.select(failed, ops.nan, -(A_23 * (A_33 * A_11 + t58) / t51))
-    t60 = ops.select(failed, ops.nan, A_33 * (t58 + A_23 * A_11) / t51)
-    t61 = ops.select(failed, ops.nan, -(t47 * (t50 * A_21 + A_22 * A_21) / t51))
-    t62 = A_12 * A_21
-    t63 = ops.select(failed, ops.nan, -(A_23 * (t50 * A_11 + t62) / t51))
-    t64 = ops.select(failed, ops.nan, A_33 * (t62 - A_22 * A_11) / t51)
-    t65 = t42 + t46
-    A_12_above = t48 + t49
-    A_22_above = c3_y + A_12_above
-    A_33_above = t7 - t65
-    A_23_above = t4 - t65
-    t66 = c3_y - A_12_above
-    t67 = t65 * (A_22_above * A_33_above + A_23_above * t66)
-    t68 = A_23_above * (A_12_above * A_33_above - t65 * t66)
-    t69 = A_33_above * (A_12_above * A_23_above + t65 * A_22_above)
-    A_11_above = t55 - t56
-    A_21_above = t3 + A_11_above
-    t70 = A_33_above * A_21_above - A_23_above * A_21_above
-    t71 = t65 * A_21_above
-    t72 = A_23_above * (A_33_above * A_11_above + t71) / t51
-    t73 = A_33_above * (t71 + A_23_above * A_11_above) / t51
-    t74 = t65 * (t66 * A_21_above + A_22_above * A_21_above)
-    t75 = A_12_above * A_21_above
-    t76 = ops.select(failed, ops.nan, A_23_above * (t66 * A_11_above + t75) / t51)
-    t77 = A_33_above * (t75 - A_22_above * A_11_above) / t51
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t16
+    t34 = over_2 * t12
+    n_y_2 = over_2 * t15
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
+    t35 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t33 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
+    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = w_z * h
+    A_13 = t37 - t40
+    t41 = n_y_2 * t36 - d_y * 0.5
+    w_y = ops.select(in_line, -t10, a_x * t33 + t10 * t34)
+    t42 = h * w_y
+    t43 = t41 + t42
+    A_22 = c3_y - t43
+    A_33 = t6 + A_13
+    A_23 = t3 + A_13
+    t44 = c3_y + t43
+    t45 = ops.select(t27, t35 * h, 1.0)
+    t46 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t44) / t45))
+    t47 = ops.select(failed, ops.nan, -(A_23 * (t43 * A_33 - A_13 * t44) / t45))
+    t48 = ops.select(failed, ops.nan, A_33 * (t43 * A_23 + A_13 * A_22) / t45)
+    t49 = t4 * 0.5 - t34 * t36
+    t50 = ops.select(in_line, t10 * side, d_y * t33 - t10 * n_y_2)
+    t51 = h * t50
+    t52 = t49 - t51
+    A_21 = t4 - t52
+    t53 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t45)
+    t54 = A_13 * A_21
+    t55 = ops.select(failed, ops.nan, A_23 * (A_33 * t52 + t54) / t45)
+    t56 = ops.select(failed, ops.nan, -(A_33 * (t54 + A_23 * t52) / t45))
+    t57 = ops.select(failed, ops.nan, A_13 * (t44 * A_21 + A_22 * A_21) / t45)
+    t58 = t43 * A_21
+    t59 = ops.select(failed, ops.nan, A_23 * (t44 * t52 + t58) / t45)
+    t60 = ops.select(failed, ops.nan, -(A_33 * (t58 - A_22 * t52) / t45))
+    A_13_above = t37 + t40
+    t61 = t41 - t42
+    A_22_above = c3_y - t61
+    A_33_above = t6 + A_13_above
+    A_23_above = t3 + A_13_above
+    t62 = c3_y + t61
+    t63 = A_13_above * (A_22_above * A_33_above + A_23_above * t62)
+    t64 = A_23_above * (t61 * A_33_above - A_13_above * t62)
+    t65 = A_33_above * (t61 * A_23_above + A_13_above * A_22_above)
+    t66 = t49 + t51
+    A_21_above = t4 - t66
+    t67 = A_33_above * A_21_above - A_23_above * A_21_above
+    t68 = ops.select(failed, ops.nan, -(A_13_above * t67 / t45))
+    t69 = A_13_above * A_21_above
+    t70 = -(A_23_above * (A_33_above * t66 + t69) / t45)
+    t71 = ops.select(failed, ops.nan, A_33_above * (t69 + A_23_above * t66) / t45)
+    t72 = A_13_above * (t62 * A_21_above + A_22_above * A_21_above)
+    t73 = t61 * A_21_above
+    t74 = ops.select(failed, ops.nan, -(A_23_above * (t62 * t66 + t73) / t45))
+    t75 = ops.select(failed, ops.nan, A_33_above * (t73 - A_22_above * t66) / t45)
     return (
-        t52,
+        t46,
+        t47,
+        t48,
         t53,
-        t54,
+        t55,
+        t56,
         t57,
         t59,
         t60,
-        t61,
-        t63,
-        t64,
-        ops.select(failed, ops.nan, -(t67 / t51)),
-        ops.select(failed, ops.nan, -(t68 / t51)),
-        ops.select(failed, ops.nan, t69 / t51),
-        ops.select(failed, ops.nan, t65 * t70 / t51),
-        ops.select(failed, ops.nan, t72),
-        ops.select(failed, ops.nan, -t73),
-        ops.select(failed, ops.nan, t74 / t51),
-        t76,
-        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, t63 / t45),
+        ops.select(failed, ops.nan, t64 / t45),
+        ops.select(failed, ops.nan, -(t65 / t45)),
+        t68,
+        ops.select(failed, ops.nan, t70),
+        t71,
+        ops.select(failed, ops.nan, -(t72 / t45)),
+        t74,
+        t75,
     )
 
 
@@ -1025,7 +980,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 3),
 )
 
 
@@ -1064,85 +1018,78 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = t11 * d_y - t10 * t9
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    last = d_y + a_x * ops.sign(a_x * d_y)
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
-    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
-    t28 = ops.select(all_same, 0.0, t12 / t27)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
-    t29 = ops.sign(-t13)
-    t30 = E_11_2 * t29
-    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
-    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
-    t32 = t14 + t28 * t31
-    t33 = t3 - E_11_2 * t31
-    m_y_2 = t11 + E_12_2 * t31
-    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
-    t35 = t32 + t28 * t34
-    t36 = t25 & ops.opposite(in_line)
-    t37 = t33 - E_11_2 * t34
-    n_y_2 = m_y_2 + E_12_2 * t34
-    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
-    j_2 = ops.sqrt(t38)
-    t39 = ops.select(t36, j_2, 1.0)
-    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
-    t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
-    touching = ops.max(t24, 0.0) <= t9
-    t42 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
-    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
-    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t41 - t45
-    t47 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t48 = ops.select(failed, ops.nan, t46 * (t4 - t46) * (t7 - t46) / t47)
-    t49 = t41 + t45
-    t50 = ops.select(failed, ops.nan, -(t49 * (t4 - t49) * (t7 - t49) / t47))
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t16
+    t34 = over_2 * t12
+    n_y_2 = over_2 * t15
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
+    t35 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t33 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
+    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = w_z * h
+    A_13 = t37 - t40
+    t41 = ops.select(t27, t35 * h, 1.0)
+    t42 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t6 + A_13) / t41))
+    A_13_above = t37 + t40
+    t43 = A_13_above * (t3 + A_13_above) * (t6 + A_13_above)
     return (
-        t48,
-        t50,
+        t42,
+        ops.select(failed, ops.nan, t43 / t41),
     )
 
 
@@ -1153,7 +1100,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 3),
 )
 
 
@@ -1191,88 +1137,81 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = t11 * d_y - t10 * t9
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    last = d_y + a_x * ops.sign(a_x * d_y)
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
-    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
-    t28 = ops.select(all_same, 0.0, t12 / t27)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
-    t29 = ops.sign(-t13)
-    t30 = E_11_2 * t29
-    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
-    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
-    t32 = t14 + t28 * t31
-    t33 = t3 - E_11_2 * t31
-    m_y_2 = t11 + E_12_2 * t31
-    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
-    t35 = t32 + t28 * t34
-    t36 = t25 & ops.opposite(in_line)
-    t37 = t33 - E_11_2 * t34
-    n_y_2 = m_y_2 + E_12_2 * t34
-    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
-    j_2 = ops.sqrt(t38)
-    t39 = ops.select(t36, j_2, 1.0)
-    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
-    t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
-    touching = ops.max(t24, 0.0) <= t9
-    t42 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
-    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
-    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t41 - t45
-    Delta = D_2 * j_2 * h
-    t47 = t41 + t45
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t16
+    t34 = over_2 * t12
+    n_y_2 = over_2 * t15
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
+    t35 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t33 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
+    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = w_z * h
+    A_13 = t37 - t40
+    Delta = t35 * h
+    A_13_above = t37 + t40
     return (
-        ops.select(failed, ops.nan, -t46),
-        ops.select(failed, ops.nan, t4 - t46),
-        ops.select(failed, ops.nan, t7 - t46),
+        ops.select(failed, ops.nan, A_13),
+        ops.select(failed, ops.nan, t3 + A_13),
+        ops.select(failed, ops.nan, t6 + A_13),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, -t47),
-        ops.select(failed, ops.nan, t4 - t47),
-        ops.select(failed, ops.nan, t7 - t47),
+        ops.select(failed, ops.nan, A_13_above),
+        ops.select(failed, ops.nan, t3 + A_13_above),
+        ops.select(failed, ops.nan, t6 + A_13_above),
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1284,7 +1223,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 3),
 )
 
 
@@ -1322,138 +1260,133 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = d_y * t11 - t9 * t10
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
-    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t28 = ops.sign(-t13)
-    t29 = ops.select(all_same, 0.0, t12 / t27)
-    t30 = ops.select(t25 & in_line, t29 - t28, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
-    t31 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
-    t32 = t3 - E_11_2 * t31
-    m_y_2 = t11 + E_12_2 * t31
-    t33 = t14 + t29 * t31
-    t34 = E_11_2 * t32 - E_12_2 * m_y_2 - t29 * t33
-    t35 = t32 - E_11_2 * t34
-    t36 = t25 & ops.opposite(in_line)
-    n_y_2 = m_y_2 + E_12_2 * t34
-    t37 = t33 + t29 * t34
-    t38 = ops.select(t25, t35 * t35 + n_y_2 * n_y_2 + t37 * t37, 1.0)
-    j_2 = ops.sqrt(t38)
-    t39 = ops.select(t36, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t28 / t30, -(t35 / t39))
-    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
-    t41 = E_11_2 * X_2 - E_21 * t40
-    touching = ops.max(t24, 0.0) <= t9
-    t42 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
-    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = E_11_2 * t28
-    t45 = ops.select(in_line, t44, t37 / t39)
-    E_22 = ops.select(in_line, E_12_2 * t44 / t30, n_y_2 / t39)
-    t46 = h * (E_12_2 * t45 - t29 * E_22)
-    A_11 = t41 + t46
-    t47 = X_2 * E_12_2 - t40 * E_22
-    t48 = h * (E_11_2 * t45 - t29 * E_21)
-    A_12 = t47 - t48
-    t49 = X_2 * t29 - t40 * t45
-    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t51 = t49 - t50
-    A_21 = t3 + A_11
-    t52 = A_21 * A_21
-    A_22 = c3_y + A_12
-    A_23 = t4 - t51
-    t53 = A_11 * A_11 + A_12 * A_12 + t51 * t51 + (t52 + A_22 * A_22 + A_23 * A_23)
-    t54 = c3_y - A_12
-    A_33 = t7 - t51
-    t55 = A_12 * A_21
-    t56 = A_11 * A_22 - t55
-    t57 = t51 * A_21
-    t58 = A_11 * A_23 + t57
-    t59 = t55 + A_11 * t54
-    t60 = t57 + A_11 * A_33
-    t61 = t56 * t56 + t58 * t58 + t59 * t59 + t60 * t60
-    t62 = A_12 * A_23 + t51 * A_22
-    t63 = A_12 * A_33 - t51 * t54
-    t64 = A_21 * t54 + A_21 * A_22
-    t65 = A_21 * A_33 - A_21 * A_23
-    t66 = t61 + t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65
-    t67 = A_22 * A_33 + A_23 * t54
-    t68 = (t53 + (t52 + t54 * t54 + A_33 * A_33)) * (t66 + t67 * t67)
-    t69 = ops.select(t25, 3.0 * (D_2 * j_2 * h), 1.0)
-    t70 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t25, t68, 1.0)) / t69)
-    A_11_above = t41 - t46
-    A_12_above = t47 + t48
-    t71 = A_11_above * A_11_above + A_12_above * A_12_above
-    t72 = t49 + t50
-    A_21_above = t3 + A_11_above
-    t73 = A_21_above * A_21_above
-    A_22_above = c3_y + A_12_above
-    A_23_above = t4 - t72
-    square2_above = t73 + A_22_above * A_22_above + A_23_above * A_23_above
-    t74 = c3_y - A_12_above
-    A_33_above = t7 - t72
-    t75 = t71 + t72 * t72 + square2_above + (t73 + t74 * t74 + A_33_above * A_33_above)
-    t76 = A_12_above * A_21_above
-    t77 = A_11_above * A_22_above - t76
-    t78 = t72 * A_21_above
-    t79 = A_11_above * A_23_above + t78
-    t80 = t76 + A_11_above * t74
-    t81 = t78 + A_11_above * A_33_above
-    t82 = t77 * t77 + t79 * t79 + t80 * t80 + t81 * t81
-    t83 = A_12_above * A_23_above + t72 * A_22_above
-    t84 = A_12_above * A_33_above - t72 * t74
-    t85 = A_21_above * t74 + A_21_above * A_22_above
-    t86 = A_21_above * A_33_above - A_21_above * A_23_above
-    t87 = t82 + t83 * t83 + t84 * t84 + t85 * t85 + t86 * t86
-    t88 = A_22_above * A_33_above + A_23_above * t74
-    t89 = ops.select(t25, t75 * (t87 + t88 * t88), 1.0)
-    t90 = ops.select(failed, ops.nan, ops.sqrt(t89) / t69)
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t12
+    n_y_2 = over_2 * t15
+    t34 = over_2 * t16
+    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
+    t35 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t4 * 0.5 - t33 * t36
+    t38 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
+    t40 = ops.select(t28, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = t38 * h
+    t42 = t37 - t41
+    t43 = n_y_2 * t36 - d_y * 0.5
+    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
+    t44 = h * w_y
+    t45 = t43 + t44
+    t46 = t34 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
+    t47 = h * w_z
+    A_13 = t46 - t47
+    A_21 = t4 - t42
+    t48 = A_21 * A_21
+    A_22 = c3_y - t45
+    A_23 = t3 + A_13
+    t49 = t42 * t42 + t45 * t45 + A_13 * A_13 + (t48 + A_22 * A_22 + A_23 * A_23)
+    t50 = c3_y + t45
+    A_33 = t6 + A_13
+    t51 = t45 * A_21
+    t52 = t42 * A_22 - t51
+    t53 = A_13 * A_21
+    t54 = t42 * A_23 + t53
+    t55 = t51 + t42 * t50
+    t56 = t53 + t42 * A_33
+    t57 = t52 * t52 + t54 * t54 + t55 * t55 + t56 * t56
+    t58 = t45 * A_23 + A_13 * A_22
+    t59 = t45 * A_33 - A_13 * t50
+    t60 = A_21 * t50 + A_21 * A_22
+    t61 = A_21 * A_33 - A_21 * A_23
+    t62 = t57 + t58 * t58 + t59 * t59 + t60 * t60 + t61 * t61
+    t63 = A_22 * A_33 + A_23 * t50
+    t64 = (t49 + (t48 + t50 * t50 + A_33 * A_33)) * (t62 + t63 * t63)
+    t65 = ops.select(t27, 3.0 * (t35 * h), 1.0)
+    t66 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t27, t64, 1.0)) / t65)
+    t67 = t37 + t41
+    t68 = t43 - t44
+    A_13_above = t46 + t47
+    square1_above = t67 * t67 + t68 * t68 + A_13_above * A_13_above
+    A_21_above = t4 - t67
+    t69 = A_21_above * A_21_above
+    A_22_above = c3_y - t68
+    A_23_above = t3 + A_13_above
+    square2_above = t69 + A_22_above * A_22_above + A_23_above * A_23_above
+    t70 = c3_y + t68
+    A_33_above = t6 + A_13_above
+    t71 = square1_above + square2_above + (t69 + t70 * t70 + A_33_above * A_33_above)
+    t72 = t68 * A_21_above
+    t73 = t67 * A_22_above - t72
+    t74 = A_13_above * A_21_above
+    t75 = t67 * A_23_above + t74
+    t76 = t72 + t67 * t70
+    t77 = t74 + t67 * A_33_above
+    t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
+    t79 = t68 * A_23_above + A_13_above * A_22_above
+    t80 = t68 * A_33_above - A_13_above * t70
+    t81 = A_21_above * t70 + A_21_above * A_22_above
+    t82 = A_21_above * A_33_above - A_21_above * A_23_above
+    t83 = t78 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
+    t84 = A_22_above * A_33_above + A_23_above * t70
+    t85 = ops.select(t27, t71 * (t83 + t84 * t84), 1.0)
+    t86 = ops.select(failed, ops.nan, ops.sqrt(t85) / t65)
     return (
-        t70,
-        t90,
+        t66,
+        t86,
     )
 
 
@@ -1464,7 +1397,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 6),
 )
 
 
@@ -1503,106 +1435,99 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = f - e - (e * 0.5 - f * 0.5)
-    t4 = rho1 - rho2
+    t3 = rho1 - rho2
+    t4 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t3 * t3 + c3_y * c3_y
-    t6 = t4 * t4 + t5
-    size_u = ops.sqrt(t6)
-    t7 = rho1 - rho3
-    t8 = t7 * t7 + t5
-    size_v = ops.sqrt(t8)
+    t5 = t4 * t4 + c3_y * c3_y
+    u_u = t3 * t3 + t5
+    t6 = rho1 - rho3
+    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t9 = size * ops.vanishing
-    all_same = size_u + size_v <= t9
-    same = size_u <= t9
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(t3 / D))
-    t10 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t10 / D)
-    t11 = ops.select(same, -c3_y, c3_y)
-    t12 = ops.select(same, t7, t4)
-    t13 = ops.select(all_same, 0.0, t12 / D)
-    t14 = ops.select(same, t4, t7)
-    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
-    t16 = t3 - E_11 * t15
-    m_y = t11 + E_12 * t15
-    t17 = t14 + t13 * t15
-    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
-    t19 = t16 - E_11 * t18
-    n_y = m_y + E_12 * t18
-    t20 = t17 + t13 * t18
-    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
-    in_line = j <= t9
-    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
-    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    t7 = size * size
+    t8 = ops.vanishing * ops.vanishing * t7
+    all_same = u_u + v_v <= t8
+    same = u_u <= t8
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, c3_y, -c3_y)
+    a_x = ops.select(all_same, 1.0, -t4)
+    t9 = ops.select(same, -c3_y, c3_y)
+    m_z = a_x * t9 + t4 * d_y
+    t10 = ops.select(same, t6, t3)
+    t11 = ops.select(same, t3, t6)
+    m_y = a_x * t11 + t4 * t10
+    t12 = d_y * m_z + t10 * m_y
+    t13 = over * t12
+    t14 = d_y * t11 - t9 * t10
+    t15 = a_x * m_z - t10 * t14
+    n_y = over * t15
+    t16 = a_x * m_y + d_y * t14
+    t17 = over * t16
+    nu = t13 * t13 + n_y * n_y + t17 * t17
+    in_line = nu <= t8
+    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    t20 = l * size * 2.0
+    t21 = l * l
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t22 = 2.0 * (t10 * t10) + last * last
+    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
+    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t24 = mu * 0.25
+    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t25 = ops.opposite(failed)
-    t26 = t25 & ops.opposite(all_same)
-    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t28 = ops.select(t26, D_2, 1.0)
-    t29 = ops.select(all_same, 0.0, t12 / t28)
-    t30 = t25 & ops.opposite(in_line)
-    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
-    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
-    t31 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
-    t32 = t3 - E_11_2 * t31
-    m_y_2 = t11 + E_12_2 * t31
-    t33 = t14 + t29 * t31
-    t34 = E_11_2 * t32 - E_12_2 * m_y_2 - t29 * t33
-    t35 = t32 - E_11_2 * t34
-    n_y_2 = m_y_2 + E_12_2 * t34
-    t36 = t33 + t29 * t34
-    t37 = ops.select(t30, t35 * t35 + n_y_2 * n_y_2 + t36 * t36, 1.0)
-    j_2 = ops.sqrt(t37)
-    t38 = ops.select(in_line, 0.0, t21 / ops.select(t30, 2.0 * j_2, 1.0))
-    t39 = ops.sign(-t13)
-    t40 = E_11_2 * t39
-    t41 = ops.select(t30, j_2, 1.0)
-    t42 = ops.select(in_line, t40, t36 / t41)
-    t43 = X_2 * t29 - t38 * t42
-    touching = ops.max(t24, 0.0) <= t9
-    t44 = t25 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t44, X_2 * X_2 + t38 * t38, 1.0))
-    t45 = ops.select(t44, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t45))
-    t46 = ops.select(t25 & in_line, t29 - t39, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t39 / t46, -(t35 / t41))
-    E_22 = ops.select(in_line, E_12_2 * t40 / t46, n_y_2 / t41)
-    t47 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t48 = t43 - t47
-    A_23 = t4 - t48
-    t49 = 0.75 * t48
-    t50 = X_2 * E_12_2 - t38 * E_22
-    t51 = h * (E_11_2 * t42 - t29 * E_21)
-    A_12 = t50 - t51
-    t52 = E_11_2 * X_2 - E_21 * t38
-    t53 = h * (E_12_2 * t42 - t29 * E_22)
-    A_11 = t52 + t53
-    A_33 = t7 - t48
-    t54 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5
-    t55 = (t3 + A_11) * (1.7320508075688772 * t48)
-    t56 = t54 + A_33 * t55 * 0.25 - A_33 * t49 * (c3_y + A_12)
-    t57 = A_23 * t49 * (c3_y - A_12) - (t56 + A_23 * t55 * 0.25)
-    t58 = t43 + t47
-    A_23_above = t4 - t58
-    t59 = 0.75 * t58
-    A_12_above = t50 + t51
-    A_11_above = t52 - t53
-    A_33_above = t7 - t58
-    t60 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above
-    t61 = (t3 + A_11_above) * (1.7320508075688772 * t58)
-    t62 = t60 * 0.5 + A_33_above * t61 * 0.25 - A_33_above * t59 * (c3_y + A_12_above)
-    t63 = A_23_above * t59 * (c3_y - A_12_above) - (t62 + A_23_above * t61 * 0.25)
+    t27 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t28 = t27 & ops.opposite(touching)
+    t29 = t27 | (t28 & ops.opposite(all_same))
+    t30 = ops.opposite(in_line)
+    t31 = t28 | (t29 & t30)
+    t32 = t31 & t30
+    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
+    t33 = over_2 * t12
+    n_y_2 = over_2 * t15
+    t34 = over_2 * t16
+    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
+    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
+    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t36 = t4 * 0.5 - t33 * t35
+    t37 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
+    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = t37 * h
+    t41 = t36 - t40
+    t42 = t34 * t35 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
+    t43 = h * w_z
+    A_13 = t42 - t43
+    A_23 = t3 + A_13
+    A_33 = t6 + A_13
+    t44 = (t4 - t41) * (1.7320508075688772 * A_13)
+    t45 = 1.7320508075688772 * t41 * A_23 * A_33 * 0.5 + A_33 * t44 * 0.25
+    t46 = n_y_2 * t35 - d_y * 0.5
+    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
+    t47 = h * w_y
+    t48 = t46 + t47
+    t49 = 0.75 * A_13
+    t50 = t45 - A_33 * (c3_y - t48) * t49 + A_23 * t44 * 0.25
+    t51 = ops.select(failed, ops.nan, t50 - A_23 * t49 * (c3_y + t48))
+    t52 = t36 + t40
+    A_13_above = t42 + t43
+    A_23_above = t3 + A_13_above
+    A_33_above = t6 + A_13_above
+    t53 = 1.7320508075688772 * t52 * A_23_above * A_33_above
+    t54 = (t4 - t52) * (1.7320508075688772 * A_13_above)
+    t55 = t46 - t47
+    t56 = 0.75 * A_13_above
+    t57 = t53 * 0.5 + A_33_above * t54 * 0.25 - A_33_above * (c3_y - t55) * t56
+    t58 = t57 + A_23_above * t54 * 0.25 - A_23_above * t56 * (c3_y + t55)
     return (
-        ops.select(failed, ops.nan, t57),
-        ops.select(failed, ops.nan, t63),
+        t51,
+        ops.select(failed, ops.nan, t58),
     )
 
 
@@ -1613,7 +1538,6 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 3),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 70 compare and select, 53 add, 8 divide, 76 multiply, 9 sqrt
-#   skeleton: 87 compare and select, 66 add, 16 divide, 65 multiply, 9 sqrt
-#   jacobian_parallel: 75 compare and select, 58 add, 15 divide, 65 multiply, 9 sqrt
-#   jacobian_serial: 69 compare and select, 56 add, 15 divide, 65 multiply, 9 sqrt
-#   jacobian: 82 compare and select, 76 add, 33 divide, 109 multiply, 9 sqrt
-#   determinant: 66 compare and select, 56 add, 17 divide, 71 multiply, 9 sqrt
-#   singularities: 71 compare and select, 56 add, 15 divide, 67 multiply, 9 sqrt
-#   condition_number: 68 compare and select, 108 add, 17 divide, 124 multiply, 11 sqrt
-#   constraint: 65 compare and select, 60 add, 15 divide, 73 multiply, 9 sqrt
+#   fk: 63 compare and select, 38 add, 12 divide, 67 multiply, 1 sqrt
+#   skeleton: 80 compare and select, 51 add, 13 divide, 67 multiply, 1 sqrt
+#   jacobian_parallel: 68 compare and select, 43 add, 12 divide, 67 multiply, 1 sqrt
+#   jacobian_serial: 62 compare and select, 41 add, 12 divide, 67 multiply, 1 sqrt
+#   jacobian: 75 compare and select, 61 add, 30 divide, 110 multiply, 1 sqrt
+#   determinant: 59 compare and select, 41 add, 14 divide, 72 multiply, 1 sqrt
+#   singularities: 64 compare and select, 41 add, 12 divide, 68 multiply, 1 sqrt
+#   condition_number: 61 compare and select, 93 add, 14 divide, 125 multiply, 3 sqrt
+#   constraint: 58 compare and select, 45 add, 12 divide, 75 multiply, 1 sqrt
 #   ik: 71 compare and select, 48 add, 1 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -130,89 +130,81 @@ def _fk(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     invalid = ops.opposite(t1)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    t6 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, -(rho1 * t6))
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t8 * t6)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t10 * t6)
-    t11 = rho1 * E_11 - t7 * E_12 - t9 * E_13
-    t12 = rho1 - E_11 * t11
-    m_y = t7 + E_12 * t11
-    m_z = t9 + E_13 * t11
-    t13 = E_11 * t12 - E_12 * m_y - E_13 * m_z
-    t14 = t12 - E_11 * t13
-    n_y = m_y + E_12 * t13
-    n_z = m_z + E_13 * t13
-    j = ops.sqrt(t14 * t14 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t15 = t7 * (t8 - t7) + t9 * (t10 - t9)
-    t16 = ops.abs(ops.select(in_line, -t15, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t17 = ops.select(in_line, 0.0, t15 / (2.0 * j))
-    t18 = L - ops.sqrt(X * X + t17 * t17)
-    unreachable = ops.opposite(t16 & (-(size * ops.feasibility) <= t18))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = invalid | unreachable
-    touching = ops.max(t18, 0.0) <= t5
-    t19 = ops.opposite(failed)
-    t20 = t19 & ops.opposite(touching)
-    t21 = t19 & ops.opposite(all_same)
-    t22 = ops.select(t21 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t21 & same, t4, 1.0)), ops.sqrt(t22))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t23 = t19 & ops.opposite(in_line)
-    t24 = 1.0 / ops.select(t21, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 * t24))
-    E_12_2 = ops.select(all_same, 0.0, t8 * t24)
-    E_13_2 = ops.select(all_same, 0.0, t10 * t24)
-    t25 = rho1 * E_11_2 - t7 * E_12_2 - t9 * E_13_2
-    t26 = rho1 - E_11_2 * t25
-    m_y_2 = t7 + E_12_2 * t25
-    m_z_2 = t9 + E_13_2 * t25
-    t27 = E_11_2 * t26 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t28 = t26 - E_11_2 * t27
-    n_y_2 = m_y_2 + E_12_2 * t27
-    n_z_2 = m_z_2 + E_13_2 * t27
-    t29 = ops.select(t23, t28 * t28 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t29)
-    t30 = ops.select(in_line, 0.0, t15 / ops.select(t23, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t20, X_2 * X_2 + t30 * t30, 1.0))
-    t31 = ops.select(t20, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t31))
-    t32 = ops.sign(E_13)
-    t33 = E_11_2 * t32
-    t34 = 1.0 / ops.select(t23, j_2, 1.0)
-    E_23 = ops.select(in_line, -t33, n_z_2 * t34)
-    t35 = 1.0 / ops.select(t19 & in_line, E_13_2 + t32, 1.0)
-    E_22 = ops.select(in_line, -(t35 * (E_12_2 * t33)), n_y_2 * t34)
-    t36 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t32 * t35, -(t28 * t34))
-    t37 = E_21 * t30 - (rho1 + X_2 * E_11_2)
-    t38 = X_2 * E_12_2 - t30 * E_22
-    t39 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t40 = X_2 * E_13_2 - t30 * E_23
-    t41 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t42 = ops.status(invalid, unreachable, in_line)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_x * h
+    t32 = rho1 * 0.5 - (rho1 + t27 * t28)
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t35 = w_z * h
+    t36 = n_z_2 * t28 - d_z * 0.5
+    t37 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t36 - t37),
-        ops.select(failed, ops.nan, t38 - t39),
-        ops.select(failed, ops.nan, t40 - t41),
-        ops.select(failed, ops.nan, -(t36 + t37)),
-        ops.select(failed, ops.nan, t39 + t38),
-        ops.select(failed, ops.nan, t41 + t40),
-        t42,
-        t42,
+        ops.select(failed, ops.nan, t31 - t32),
+        ops.select(failed, ops.nan, t33 - t34),
+        ops.select(failed, ops.nan, t35 - t36),
+        ops.select(failed, ops.nan, -(t31 + t32)),
+        ops.select(failed, ops.nan, -(t33 + t34)),
+        ops.select(failed, ops.nan, -(t35 + t36)),
+        t37,
+        t37,
     )
 
 
@@ -223,7 +215,6 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
 
@@ -271,216 +262,205 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 def _skeleton(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t18 = ops.select(failed, ops.nan, 0.0)
-    t19 = ops.select(failed, ops.nan, rho1)
-    t20 = L * 0.0625
-    t21 = ops.select(failed, ops.nan, t20)
-    t22 = ops.select(failed, ops.nan, -t20)
-    touching = ops.max(t17, 0.0) <= t5
-    t23 = ops.opposite(failed)
-    t24 = t23 & ops.opposite(touching)
-    t25 = t23 & ops.opposite(all_same)
-    t26 = ops.select(t25 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t4, 1.0)), ops.sqrt(t26))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t27 = t23 & ops.opposite(in_line)
-    t28 = ops.select(t25, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t28))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t28)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t28)
-    t29 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t30 = rho1 - E_11_2 * t29
-    m_y_2 = t7 + E_12_2 * t29
-    m_z_2 = t9 + E_13_2 * t29
-    t31 = E_11_2 * t30 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t32 = t30 - E_11_2 * t31
-    n_y_2 = m_y_2 + E_12_2 * t31
-    n_z_2 = m_z_2 + E_13_2 * t31
-    t33 = ops.select(t27, t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t33)
-    t34 = ops.select(in_line, 0.0, t14 / ops.select(t27, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t24, X_2 * X_2 + t34 * t34, 1.0))
-    t35 = ops.select(t24, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    t21 = ops.select(failed, ops.nan, 0.0)
+    t22 = ops.select(failed, ops.nan, rho1)
+    t23 = L * 0.0625
+    t24 = ops.select(failed, ops.nan, t23)
+    t25 = ops.select(failed, ops.nan, -t23)
+    t26 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t27 = t26 & ops.opposite(touching)
+    t28 = t26 | (t27 & ops.opposite(all_same))
+    t29 = ops.opposite(in_line)
+    t30 = t27 | (t28 & t29)
+    t31 = t30 & t29
+    over_2 = 1.0 / ops.select(t28 | t31, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t32 = over_2 * t8
+    nu_2 = t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t30 & in_line, t16, 1.0), 1.0 / ops.select(t31, mu * nu_2, 1.0))
+    t33 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t34 = ops.select(all_same, 0.0, nu_2 * (t33 * t33) + t18)
+    t35 = ops.select(t27, part_2 * ops.max(t15 - t34, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t35))
-    t36 = ops.sign(E_13)
-    t37 = E_11_2 * t36
-    t38 = ops.select(t27, j_2, 1.0)
-    E_23 = ops.select(in_line, -t37, n_z_2 / t38)
-    t39 = ops.select(t23 & in_line, E_13_2 + t36, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t37 / t39), n_y_2 / t38)
-    t40 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t36 / t39, -(t32 / t38))
-    t41 = E_11_2 * X_2 - E_21 * t34
-    t42 = rho1 + (t40 + t41)
-    t43 = ops.select(failed, ops.nan, t42)
-    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t45 = E_12_2 * X_2 - t34 * E_22
-    t46 = t44 - t45
-    t47 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t48 = E_13_2 * X_2 - E_23 * t34
-    t49 = t47 - t48
-    t50 = ops.select(failed, ops.nan, -t49)
-    t51 = ops.select(failed, ops.nan, rho2)
-    t52 = ops.select(failed, ops.nan, -t46)
-    t53 = ops.select(failed, ops.nan, rho3)
-    t54 = rho1 - (t40 - t41)
-    t55 = ops.select(failed, ops.nan, t54)
-    A_12_inner = t44 + t45
-    t56 = ops.select(failed, ops.nan, t20 + A_12_inner)
-    A_13_inner = t47 + t48
-    t57 = ops.select(failed, ops.nan, A_13_inner)
-    t58 = ops.select(failed, ops.nan, A_12_inner - t20)
-    t59 = ops.select(failed, ops.nan, A_12_inner)
-    t60 = ops.select(failed, ops.nan, t20 + A_13_inner)
-    t61 = ops.select(failed, ops.nan, A_13_inner - t20)
+    t36 = w_x * h
+    t37 = t32 * t33 - rho1 * 0.5
+    t38 = rho1 + (t36 + t37)
+    t39 = ops.select(failed, ops.nan, t38)
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t32))
+    t40 = w_y * h
+    t41 = n_y_2 * t33 - d_y * 0.5
+    A_12 = t40 - t41
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t32)
+    t42 = w_z * h
+    t43 = n_z_2 * t33 - d_z * 0.5
+    A_13 = t42 - t43
+    t44 = ops.select(failed, ops.nan, A_13)
+    t45 = ops.select(failed, ops.nan, rho2)
+    t46 = ops.select(failed, ops.nan, A_12)
+    t47 = ops.select(failed, ops.nan, rho3)
+    t48 = rho1 - (t36 - t37)
+    t49 = ops.select(failed, ops.nan, t48)
+    t50 = t40 + t41
+    t51 = t42 + t43
+    t52 = ops.select(failed, ops.nan, -t51)
+    t53 = ops.select(failed, ops.nan, -t50)
     return (
-        t18,
-        t18,
-        t18,
-        t19,
-        t18,
-        t18,
-        t19,
         t21,
-        t18,
-        t19,
-        t22,
-        t18,
-        t43,
-        ops.select(failed, ops.nan, t20 - t46),
-        t50,
-        t43,
-        ops.select(failed, ops.nan, -(t20 + t46)),
-        t50,
-        t18,
-        t18,
-        t18,
-        t18,
-        t51,
-        t18,
-        t18,
-        t51,
         t21,
-        t18,
-        t51,
+        t21,
         t22,
-        t43,
+        t21,
+        t21,
+        t22,
+        t24,
+        t21,
+        t22,
+        t25,
+        t21,
+        t39,
+        ops.select(failed, ops.nan, t23 + A_12),
+        t44,
+        t39,
+        ops.select(failed, ops.nan, A_12 - t23),
+        t44,
+        t21,
+        t21,
+        t21,
+        t21,
+        t45,
+        t21,
+        t21,
+        t45,
+        t24,
+        t21,
+        t45,
+        t25,
+        t39,
+        t46,
+        ops.select(failed, ops.nan, t23 + A_13),
+        t39,
+        t46,
+        ops.select(failed, ops.nan, A_13 - t23),
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t47,
+        t24,
+        t21,
+        t47,
+        t25,
+        t21,
+        t47,
+        ops.select(failed, ops.nan, t23 + t38),
+        t46,
+        t44,
+        ops.select(failed, ops.nan, t38 - t23),
+        t46,
+        t44,
+        t39,
+        t46,
+        t44,
+        t21,
+        t21,
+        t21,
+        t22,
+        t21,
+        t21,
+        t22,
+        t24,
+        t21,
+        t22,
+        t25,
+        t21,
+        t49,
+        ops.select(failed, ops.nan, t23 - t50),
         t52,
-        ops.select(failed, ops.nan, t20 - t49),
-        t43,
+        t49,
+        ops.select(failed, ops.nan, -(t23 + t50)),
         t52,
-        ops.select(failed, ops.nan, -(t20 + t49)),
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t53,
         t21,
-        t18,
+        t21,
+        t21,
+        t21,
+        t45,
+        t21,
+        t21,
+        t45,
+        t24,
+        t21,
+        t45,
+        t25,
+        t49,
         t53,
-        t22,
-        t18,
+        ops.select(failed, ops.nan, t23 - t51),
+        t49,
         t53,
-        ops.select(failed, ops.nan, t20 + t42),
+        ops.select(failed, ops.nan, -(t23 + t51)),
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t47,
+        t24,
+        t21,
+        t47,
+        t25,
+        t21,
+        t47,
+        ops.select(failed, ops.nan, t23 + t48),
+        t53,
         t52,
-        t50,
-        ops.select(failed, ops.nan, t42 - t20),
+        ops.select(failed, ops.nan, t48 - t23),
+        t53,
         t52,
-        t50,
-        t43,
+        t49,
+        t53,
         t52,
-        t50,
-        t18,
-        t18,
-        t18,
-        t19,
-        t18,
-        t18,
-        t19,
-        t21,
-        t18,
-        t19,
-        t22,
-        t18,
-        t55,
-        t56,
-        t57,
-        t55,
-        t58,
-        t57,
-        t18,
-        t18,
-        t18,
-        t18,
-        t51,
-        t18,
-        t18,
-        t51,
-        t21,
-        t18,
-        t51,
-        t22,
-        t55,
-        t59,
-        t60,
-        t55,
-        t59,
-        t61,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t53,
-        t21,
-        t18,
-        t53,
-        t22,
-        t18,
-        t53,
-        ops.select(failed, ops.nan, t20 + t54),
-        t59,
-        t57,
-        ops.select(failed, ops.nan, t54 - t20),
-        t59,
-        t57,
-        t55,
-        t59,
-        t57,
     )
 
 
@@ -491,7 +471,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 2),
 )
 
 
@@ -530,111 +509,102 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t17, 0.0) <= t5
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(touching)
-    t20 = t18 & ops.opposite(all_same)
-    t21 = ops.select(t20 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t20 & same, t4, 1.0)), ops.sqrt(t21))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t22 = t18 & ops.opposite(in_line)
-    t23 = ops.select(t20, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t23))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t23)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t23)
-    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t25 = rho1 - E_11_2 * t24
-    m_y_2 = t7 + E_12_2 * t24
-    m_z_2 = t9 + E_13_2 * t24
-    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t27 = t25 - E_11_2 * t26
-    n_y_2 = m_y_2 + E_12_2 * t26
-    n_z_2 = m_z_2 + E_13_2 * t26
-    t28 = ops.select(t22, t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t28)
-    t29 = ops.select(in_line, 0.0, t14 / ops.select(t22, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t29 * t29, 1.0))
-    t30 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = ops.sign(E_13)
-    t32 = E_11_2 * t31
-    t33 = ops.select(t22, j_2, 1.0)
-    E_23 = ops.select(in_line, -t32, n_z_2 / t33)
-    t34 = ops.select(t18 & in_line, E_13_2 + t31, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t32 / t34), n_y_2 / t33)
-    t35 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t31 / t34, -(t27 / t33))
-    t36 = E_11_2 * X_2 - E_21 * t29
-    A_11 = t35 + t36
-    t37 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t38 = E_12_2 * X_2 - t29 * E_22
-    t39 = t37 - t38
-    t40 = ops.select(failed, ops.nan, -t39)
-    t41 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t42 = E_13_2 * X_2 - E_23 * t29
-    t43 = t41 - t42
+    t31 = w_x * h
+    t32 = t27 * t28 - rho1 * 0.5
+    A_11 = t31 + t32
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    A_12 = t33 - t34
+    t35 = ops.select(failed, ops.nan, A_12)
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t28 - d_z * 0.5
+    A_13 = t36 - t37
+    t38 = ops.select(failed, ops.nan, A_13)
+    t39 = ops.select(failed, ops.nan, rho1 + A_11)
+    t40 = t31 - t32
+    t41 = t33 + t34
+    t42 = ops.select(failed, ops.nan, -t41)
+    t43 = t36 + t37
     t44 = ops.select(failed, ops.nan, -t43)
-    t45 = ops.select(failed, ops.nan, rho1 + A_11)
-    t46 = t35 - t36
-    A_12_inner = t37 + t38
-    t47 = ops.select(failed, ops.nan, A_12_inner)
-    A_13_inner = t41 + t42
-    t48 = ops.select(failed, ops.nan, A_13_inner)
-    t49 = ops.select(failed, ops.nan, rho1 - t46)
-    t50 = ops.select(failed, ops.nan, A_12_inner - rho2)
-    t51 = ops.select(failed, ops.nan, A_13_inner - rho3)
+    t45 = ops.select(failed, ops.nan, rho1 - t40)
     return (
         ops.select(failed, ops.nan, A_11),
-        t40,
+        t35,
+        t38,
+        t39,
+        ops.select(failed, ops.nan, A_12 - rho2),
+        t38,
+        t39,
+        t35,
+        ops.select(failed, ops.nan, A_13 - rho3),
+        ops.select(failed, ops.nan, -t40),
+        t42,
         t44,
         t45,
-        ops.select(failed, ops.nan, -(rho2 + t39)),
+        ops.select(failed, ops.nan, -(rho2 + t41)),
         t44,
         t45,
-        t40,
+        t42,
         ops.select(failed, ops.nan, -(rho3 + t43)),
-        ops.select(failed, ops.nan, -t46),
-        t47,
-        t48,
-        t49,
-        t50,
-        t48,
-        t49,
-        t47,
-        t51,
     )
 
 
@@ -645,7 +615,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
 )
 
 
@@ -683,89 +652,82 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t17, 0.0) <= t5
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(touching)
-    t20 = t18 & ops.opposite(all_same)
-    t21 = ops.select(t20 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t20 & same, t4, 1.0)), ops.sqrt(t21))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t22 = t18 & ops.opposite(in_line)
-    t23 = ops.select(t20, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t23))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t23)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t23)
-    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t25 = rho1 - E_11_2 * t24
-    m_y_2 = t7 + E_12_2 * t24
-    m_z_2 = t9 + E_13_2 * t24
-    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t27 = t25 - E_11_2 * t26
-    n_y_2 = m_y_2 + E_12_2 * t26
-    n_z_2 = m_z_2 + E_13_2 * t26
-    t28 = ops.select(t22, t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t28)
-    t29 = ops.select(in_line, 0.0, t14 / ops.select(t22, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t29 * t29, 1.0))
-    t30 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = ops.sign(E_13)
-    t32 = E_11_2 * t31
-    t33 = ops.select(t22, j_2, 1.0)
-    E_23 = ops.select(in_line, -t32, n_z_2 / t33)
-    t34 = ops.select(t18 & in_line, E_13_2 + t31, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t32 / t34), n_y_2 / t33)
-    t35 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t31 / t34, -(t27 / t33))
-    t36 = E_11_2 * X_2 - E_21 * t29
-    t37 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t38 = E_12_2 * X_2 - t29 * E_22
-    t39 = ops.select(failed, ops.nan, -(rho2 + (t37 - t38)))
-    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t41 = E_13_2 * X_2 - E_23 * t29
-    t42 = ops.select(failed, ops.nan, -(rho3 + (t40 - t41)))
-    t43 = ops.select(failed, ops.nan, t37 + t38 - rho2)
-    t44 = ops.select(failed, ops.nan, t40 + t41 - rho3)
+    t31 = w_x * h
+    t32 = t27 * t28 - rho1 * 0.5
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t28 - d_z * 0.5
+    t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
+    t39 = ops.select(failed, ops.nan, -(rho2 + (t33 + t34)))
+    t40 = ops.select(failed, ops.nan, -(rho3 + (t36 + t37)))
     return (
-        ops.select(failed, ops.nan, t35 + t36),
+        ops.select(failed, ops.nan, t31 + t32),
+        t35,
+        t38,
+        ops.select(failed, ops.nan, t32 - t31),
         t39,
-        t42,
-        ops.select(failed, ops.nan, t36 - t35),
-        t43,
-        t44,
+        t40,
     )
 
 
@@ -776,7 +738,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
 
@@ -814,124 +775,119 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t17, 0.0) <= t5
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(touching)
-    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t29))
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    A_11 = t34 + t35
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = t36 - t37
-    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t40 = E_13_2 * X_2 - E_23 * t28
-    t41 = t39 - t40
-    t42 = t38 * t41
-    t43 = rho2 + t38
-    t44 = rho3 + t41
-    t45 = ops.select(t18, D_2 * j_2 * h, 1.0)
-    t46 = ops.select(failed, ops.nan, -(A_11 * (t42 - t43 * t44) / t45))
-    t47 = ops.select(failed, ops.nan, -(t43 * (t42 - t38 * t44) / t45))
-    t48 = ops.select(failed, ops.nan, -(t44 * (t42 - t41 * t43) / t45))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    A_11 = t32 + t33
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    t36 = t34 - t35
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t37 = w_z * h
+    t38 = n_z_2 * t29 - d_z * 0.5
+    t39 = t37 - t38
+    t40 = t36 * t39
+    t41 = rho2 - t36
+    t42 = rho3 - t39
+    t43 = ops.select(t21, t28 * h, 1.0)
+    t44 = ops.select(failed, ops.nan, -(A_11 * (t40 - t41 * t42) / t43))
+    t45 = ops.select(failed, ops.nan, -(t41 * (t40 + t36 * t42) / t43))
+    t46 = ops.select(failed, ops.nan, -(t42 * (t40 + t39 * t41) / t43))
     A_21 = rho1 + A_11
-    t49 = t41 * A_21
-    t50 = ops.select(failed, ops.nan, -(A_11 * (t49 - t44 * A_21) / t45))
-    t51 = ops.select(failed, ops.nan, -(t43 * (t49 - A_11 * t44) / t45))
-    t52 = ops.select(failed, ops.nan, t44 * (t49 - A_11 * t41) / t45)
-    t53 = t38 * A_21
-    t54 = ops.select(failed, ops.nan, -(A_11 * (t53 - t43 * A_21) / t45))
-    t55 = ops.select(failed, ops.nan, t43 * (t53 - A_11 * t38) / t45)
-    t56 = ops.select(failed, ops.nan, -(t44 * (t53 - A_11 * t43) / t45))
-    t57 = t34 - t35
-    A_12_inner = t36 + t37
-    A_13_inner = t39 + t40
-    t58 = A_12_inner * A_13_inner
-    t59 = rho2 - A_12_inner
-    t60 = rho3 - A_13_inner
-    t61 = ops.select(failed, ops.nan, -(t57 * (t58 - t59 * t60) / t45))
-    t62 = ops.select(failed, ops.nan, t59 * (t58 + A_12_inner * t60) / t45)
-    t63 = ops.select(failed, ops.nan, t60 * (t58 + A_13_inner * t59) / t45)
-    A_21_inner = rho1 - t57
-    t64 = A_13_inner * A_21_inner
-    t65 = ops.select(failed, ops.nan, t57 * (t64 + t60 * A_21_inner) / t45)
-    t66 = ops.select(failed, ops.nan, -(t59 * (t64 - t57 * t60) / t45))
-    t67 = ops.select(failed, ops.nan, t60 * (t64 + t57 * A_13_inner) / t45)
-    t68 = A_12_inner * A_21_inner
-    t69 = ops.select(failed, ops.nan, t57 * (t68 + t59 * A_21_inner) / t45)
-    t70 = ops.select(failed, ops.nan, t59 * (t68 + t57 * A_12_inner) / t45)
-    t71 = ops.select(failed, ops.nan, -(t60 * (t68 - t57 * t59) / t45))
+    t47 = t39 * A_21
+    t48 = ops.select(failed, ops.nan, A_11 * (t47 + t42 * A_21) / t43)
+    t49 = ops.select(failed, ops.nan, t41 * (t47 + A_11 * t42) / t43)
+    t50 = ops.select(failed, ops.nan, -(t42 * (t47 - A_11 * t39) / t43))
+    t51 = t36 * A_21
+    t52 = ops.select(failed, ops.nan, A_11 * (t51 + t41 * A_21) / t43)
+    t53 = ops.select(failed, ops.nan, -(t41 * (t51 - A_11 * t36) / t43))
+    t54 = ops.select(failed, ops.nan, t42 * (t51 + A_11 * t41) / t43)
+    t55 = t32 - t33
+    t56 = t34 + t35
+    t57 = t37 + t38
+    t58 = t56 * t57
+    t59 = rho2 + t56
+    t60 = rho3 + t57
+    t61 = ops.select(failed, ops.nan, -(t55 * (t58 - t59 * t60) / t43))
+    t62 = ops.select(failed, ops.nan, t59 * (t58 - t56 * t60) / t43)
+    t63 = ops.select(failed, ops.nan, t60 * (t58 - t57 * t59) / t43)
+    A_21_inner = rho1 - t55
+    t64 = t57 * A_21_inner
+    t65 = ops.select(failed, ops.nan, -(t55 * (t64 - t60 * A_21_inner) / t43))
+    t66 = ops.select(failed, ops.nan, t59 * (t64 + t55 * t60) / t43)
+    t67 = ops.select(failed, ops.nan, -(t60 * (t64 + t55 * t57) / t43))
+    t68 = t56 * A_21_inner
+    t69 = ops.select(failed, ops.nan, -(t55 * (t68 - t59 * A_21_inner) / t43))
+    t70 = ops.select(failed, ops.nan, -(t59 * (t68 + t55 * t56) / t43))
+    t71 = ops.select(failed, ops.nan, t60 * (t68 + t55 * t59) / t43)
     return (
+        t44,
+        t45,
         t46,
-        t47,
         t48,
+        t49,
         t50,
-        t51,
         t52,
+        t53,
         t54,
-        t55,
-        t56,
         t61,
         t62,
         t63,
@@ -951,7 +907,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 3),
 )
 
 
@@ -990,83 +945,78 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _determinant(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t17, 0.0) <= t5
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(touching)
-    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t29))
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t39 = E_13_2 * X_2 - E_23 * t28
-    t40 = (t34 + t35) * (rho2 + (t36 - t37)) * (rho3 + (t38 - t39))
-    t41 = ops.select(t18, D_2 * j_2 * h, 1.0)
-    t42 = (t34 - t35) * (rho2 - (t36 + t37)) * (rho3 - (t38 + t39))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t29 - d_z * 0.5
+    t38 = (t32 + t33) * (rho2 - (t34 - t35)) * (rho3 - (t36 - t37))
+    t39 = ops.select(t21, t28 * h, 1.0)
+    t40 = (t32 - t33) * (rho2 + (t34 + t35)) * (rho3 + (t36 + t37))
     return (
-        ops.select(failed, ops.nan, t40 / t41),
-        ops.select(failed, ops.nan, t42 / t41),
+        ops.select(failed, ops.nan, t38 / t39),
+        ops.select(failed, ops.nan, t40 / t39),
     )
 
 
@@ -1077,7 +1027,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 3),
 )
 
 
@@ -1115,90 +1064,85 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _singularities(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t17, 0.0) <= t5
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(touching)
-    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t29))
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = ops.select(failed, ops.nan, -(rho2 + (t36 - t37)))
-    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t40 = E_13_2 * X_2 - E_23 * t28
-    t41 = ops.select(failed, ops.nan, -(rho3 + (t39 - t40)))
-    Delta = D_2 * j_2 * h
-    t42 = ops.select(failed, ops.nan, t36 + t37 - rho2)
-    t43 = ops.select(failed, ops.nan, t39 + t40 - rho3)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    t36 = ops.select(failed, ops.nan, t34 - t35 - rho2)
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t37 = w_z * h
+    t38 = n_z_2 * t29 - d_z * 0.5
+    t39 = ops.select(failed, ops.nan, t37 - t38 - rho3)
+    Delta = t28 * h
+    t40 = ops.select(failed, ops.nan, -(rho2 + (t34 + t35)))
+    t41 = ops.select(failed, ops.nan, -(rho3 + (t37 + t38)))
     return (
-        ops.select(failed, ops.nan, t34 + t35),
-        t38,
-        t41,
+        ops.select(failed, ops.nan, t32 + t33),
+        t36,
+        t39,
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, t35 - t34),
-        t42,
-        t43,
+        ops.select(failed, ops.nan, t33 - t32),
+        t40,
+        t41,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1210,7 +1154,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 3),
 )
 
 
@@ -1248,132 +1191,127 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _condition_number(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t18 = ops.opposite(failed)
-    touching = ops.max(t17, 0.0) <= t5
-    t19 = t18 & ops.opposite(touching)
-    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t29))
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    A_11 = t34 + t35
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = t36 - t37
-    t39 = t38 * t38
-    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t41 = E_13_2 * X_2 - E_23 * t28
-    t42 = t40 - t41
-    t43 = t42 * t42
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    A_11 = t32 + t33
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    t36 = t34 - t35
+    t37 = t36 * t36
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t38 = w_z * h
+    t39 = n_z_2 * t29 - d_z * 0.5
+    t40 = t38 - t39
+    t41 = t40 * t40
     A_21 = rho1 + A_11
-    t44 = A_21 * A_21
-    t45 = rho2 + t38
-    t46 = A_11 * A_11 + t39 + t43 + (t43 + t44 + t45 * t45)
-    t47 = rho3 + t42
-    t48 = t38 * A_21
-    t49 = A_11 * t38 - t48
-    t50 = t42 * A_21
-    t51 = A_11 * t42 - t50
-    t52 = t48 - A_11 * t45
-    t53 = t50 - A_11 * t47
-    t54 = t49 * t49 + t51 * t51 + t52 * t52 + t53 * t53
-    t55 = t38 * t42
-    t56 = t55 - t45 * t47
-    t57 = t55 - t38 * t47
-    t58 = t55 - t42 * t45
-    t59 = t48 - A_21 * t45
-    t60 = t54 + t56 * t56 + t57 * t57 + t58 * t58 + t59 * t59
-    t61 = t50 - A_21 * t47
-    t62 = (t46 + (t39 + t44 + t47 * t47)) * (t60 + t61 * t61)
-    t63 = ops.select(t18, 3.0 * (D_2 * j_2 * h), 1.0)
-    t64 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t62, 1.0)) / t63)
-    t65 = t34 - t35
-    A_12_inner = t36 + t37
-    t66 = A_12_inner * A_12_inner
-    A_13_inner = t40 + t41
-    t67 = A_13_inner * A_13_inner
-    A_21_inner = rho1 - t65
+    t42 = A_21 * A_21
+    t43 = rho2 - t36
+    t44 = A_11 * A_11 + t37 + t41 + (t41 + t42 + t43 * t43)
+    t45 = rho3 - t40
+    t46 = t36 * A_21
+    t47 = A_11 * t36 - t46
+    t48 = t40 * A_21
+    t49 = A_11 * t40 - t48
+    t50 = t46 + A_11 * t43
+    t51 = t48 + A_11 * t45
+    t52 = t47 * t47 + t49 * t49 + t50 * t50 + t51 * t51
+    t53 = t36 * t40
+    t54 = t53 - t43 * t45
+    t55 = t53 + t36 * t45
+    t56 = t53 + t40 * t43
+    t57 = t46 + A_21 * t43
+    t58 = t52 + t54 * t54 + t55 * t55 + t56 * t56 + t57 * t57
+    t59 = t48 + A_21 * t45
+    t60 = (t44 + (t37 + t42 + t45 * t45)) * (t58 + t59 * t59)
+    t61 = ops.select(t21, 3.0 * (t28 * h), 1.0)
+    t62 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t60, 1.0)) / t61)
+    t63 = t32 - t33
+    t64 = t34 + t35
+    t65 = t64 * t64
+    t66 = t38 + t39
+    t67 = t66 * t66
+    A_21_inner = rho1 - t63
     t68 = A_21_inner * A_21_inner
-    t69 = rho2 - A_12_inner
-    t70 = t65 * t65 + t66 + t67 + (t67 + t68 + t69 * t69)
-    t71 = rho3 - A_13_inner
-    t72 = A_12_inner * A_21_inner
-    t73 = t65 * A_12_inner + t72
-    t74 = A_13_inner * A_21_inner
-    t75 = t65 * A_13_inner + t74
-    t76 = t72 - t65 * t69
-    t77 = t74 - t65 * t71
+    t69 = rho2 + t64
+    t70 = t63 * t63 + t65 + t67 + (t67 + t68 + t69 * t69)
+    t71 = rho3 + t66
+    t72 = t64 * A_21_inner
+    t73 = t63 * t64 + t72
+    t74 = t66 * A_21_inner
+    t75 = t63 * t66 + t74
+    t76 = t72 + t63 * t69
+    t77 = t74 + t63 * t71
     t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
-    t79 = A_12_inner * A_13_inner
+    t79 = t64 * t66
     t80 = t79 - t69 * t71
-    t81 = t79 + A_12_inner * t71
-    t82 = t79 + A_13_inner * t69
-    t83 = t72 + A_21_inner * t69
+    t81 = t79 - t64 * t71
+    t82 = t79 - t66 * t69
+    t83 = t72 - A_21_inner * t69
     t84 = t78 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
-    t85 = t74 + A_21_inner * t71
-    t86 = (t70 + (t66 + t68 + t71 * t71)) * (t84 + t85 * t85)
-    t87 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t86, 1.0)) / t63)
+    t85 = t74 - A_21_inner * t71
+    t86 = (t70 + (t65 + t68 + t71 * t71)) * (t84 + t85 * t85)
+    t87 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t86, 1.0)) / t61)
     return (
-        t64,
+        t62,
         t87,
     )
 
@@ -1385,7 +1323,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 6),
 )
 
 
@@ -1424,90 +1361,82 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _constraint(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
-    t3 = t2 + rho2 * rho2
-    size_u = ops.sqrt(t3)
-    t4 = t2 + rho3 * rho3
-    size_v = ops.sqrt(t4)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t5 = size * ops.vanishing
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
-    t6 = ops.select(same, 0.0, rho2)
-    E_12 = ops.select(all_same, 0.0, t6 / D)
-    t7 = ops.select(same, rho2, 0.0)
-    t8 = ops.select(same, rho3, 0.0)
-    E_13 = ops.select(all_same, 0.0, t8 / D)
-    t9 = ops.select(same, 0.0, rho3)
-    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
-    t11 = rho1 - E_11 * t10
-    m_y = t7 + E_12 * t10
-    m_z = t9 + E_13 * t10
-    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
-    t13 = t11 - E_11 * t12
-    n_y = m_y + E_12 * t12
-    n_z = m_z + E_13 * t12
-    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
-    in_line = j <= t5
-    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
-    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
-    X = ops.select(all_same, 0.0, D * 0.5)
-    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = L - ops.sqrt(X * X + t16 * t16)
-    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    t3 = size * size
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, 1.0, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
+    t14 = L * size * 2.0
+    t15 = L * L
+    side = ops.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t16 = 2.0 * (d_z * d_z) + last * last
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(all_same)
-    t20 = ops.select(t19 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t19 & same, t4, 1.0)), ops.sqrt(t20))
-    t21 = ops.select(t19, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
-    t22 = ops.sign(E_13)
-    t23 = E_11_2 * t22
-    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
-    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
-    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    m_z_2 = t9 + E_13_2 * t24
-    t25 = rho1 - E_11_2 * t24
-    m_y_2 = t7 + E_12_2 * t24
-    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    n_z_2 = m_z_2 + E_13_2 * t26
-    t27 = t18 & ops.opposite(in_line)
-    t28 = t25 - E_11_2 * t26
-    n_y_2 = m_y_2 + E_12_2 * t26
-    t29 = ops.select(t27, t28 * t28 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t29)
-    t30 = ops.select(t27, j_2, 1.0)
-    E_23 = ops.select(in_line, -t23, n_z_2 / t30)
-    t31 = ops.select(t18 & in_line, E_13_2 + t22, 1.0)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t22 / t31, -(t28 / t30))
-    touching = ops.max(t17, 0.0) <= t5
-    t32 = t18 & ops.opposite(touching)
-    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t33 = ops.select(in_line, 0.0, t14 / ops.select(t27, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t32, X_2 * X_2 + t33 * t33, 1.0))
-    t34 = ops.select(t32, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t34))
-    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t23 / t31), n_y_2 / t30)
-    t36 = E_12_2 * X_2 - t33 * E_22
-    t37 = t35 - t36
-    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t39 = E_13_2 * X_2 - E_23 * t33
-    t40 = t38 - t39
-    t41 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t42 = E_11_2 * X_2 - E_21 * t33
-    A_11 = t41 + t42
-    t43 = t37 * t40 * (rho1 + A_11) - A_11 * (rho2 + t37) * (rho3 + t40)
-    t44 = t41 - t42
-    A_12_inner = t35 + t36
-    A_13_inner = t38 + t39
-    t45 = t44 * (rho2 - A_12_inner) * (rho3 - A_13_inner)
-    t46 = ops.select(failed, ops.nan, t45 + A_12_inner * A_13_inner * (rho1 - t44))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    t27 = over_2 * t8
+    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    n_y_2 = over_2 * t10
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_y * h
+    t32 = n_y_2 * t28 - d_y * 0.5
+    t33 = t31 - t32
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    t34 = w_z * h
+    t35 = n_z_2 * t28 - d_z * 0.5
+    t36 = t34 - t35
+    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    t37 = w_x * h
+    t38 = t27 * t28 - rho1 * 0.5
+    A_11 = t37 + t38
+    t39 = t33 * t36 * (rho1 + A_11) - A_11 * (rho2 - t33) * (rho3 - t36)
+    t40 = t37 - t38
+    t41 = t31 + t32
+    t42 = t34 + t35
+    t43 = t40 * (rho2 + t41) * (rho3 + t42) + t41 * t42 * (rho1 - t40)
     return (
+        ops.select(failed, ops.nan, t39),
         ops.select(failed, ops.nan, t43),
-        t46,
     )
 
 
@@ -1518,7 +1447,6 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 3),
 )
 
 

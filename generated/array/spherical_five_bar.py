@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 101 compare and select, 89 add, 16 divide, 116 multiply, 7 sincos, 9 sqrt
-#   skeleton: 109 compare and select, 92 add, 24 divide, 103 multiply, 7 sincos, 9 sqrt
-#   jacobian_parallel: 112 compare and select, 98 add, 24 divide, 103 multiply, 7 sincos, 9 sqrt
-#   jacobian_serial: 98 compare and select, 98 add, 24 divide, 115 multiply, 7 sincos, 9 sqrt
-#   jacobian: 106 compare and select, 116 add, 36 divide, 153 multiply, 7 sincos, 9 sqrt
-#   singularities: 99 compare and select, 98 add, 24 divide, 117 multiply, 7 sincos, 9 sqrt
-#   condition_number: 102 compare and select, 142 add, 32 divide, 162 multiply, 7 sincos, 13 sqrt
+#   fk: 99 compare and select, 75 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
+#   skeleton: 107 compare and select, 78 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 110 compare and select, 84 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 96 compare and select, 84 add, 16 divide, 126 multiply, 7 sincos, 7 sqrt
+#   jacobian: 105 compare and select, 102 add, 28 divide, 164 multiply, 7 sincos, 7 sqrt
+#   singularities: 98 compare and select, 84 add, 16 divide, 128 multiply, 7 sincos, 7 sqrt
+#   condition_number: 101 compare and select, 128 add, 24 divide, 173 multiply, 7 sincos, 11 sqrt
 #   ik: 137 compare and select, 103 add, 4 atan2, 11 divide, 129 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -124,8 +124,8 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
-    s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
+    s_beta1_half = ops.sin(beta1 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
@@ -141,125 +141,125 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
     c1_z = s1 * t9
     t11 = c1_z - s2 * t5
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    t26 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, -(t25 * t26))
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_y, t10)
-    t29 = ops.select(all_same, 0.0, t26 * t28)
-    t30 = ops.select(same, t11, c1_z)
-    t31 = ops.select(same, c1_z, t11)
-    t32 = ops.select(all_same, 0.0, t26 * t31)
-    t33 = E_11 * t24 - t27 * t29 - t30 * t32
-    t34 = t24 - E_11 * t33
-    t35 = t27 + t29 * t33
-    t36 = t30 + t32 * t33
-    t37 = E_11 * t34 - t29 * t35 - t32 * t36
-    t38 = t34 - E_11 * t37
-    t39 = t35 + t29 * t37
-    t40 = t36 + t32 * t37
-    j = ops.sqrt(t38 * t38 + t39 * t39 + t40 * t40)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, t11)
+    t29 = ops.select(same, t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t41 = ops.sqrt(outer * inner * slack * (t15 + t19))
-    rho = ops.select(all_same, r_1, share * t41)
-    t42 = j * (2.0 * rho)
-    t43 = ops.select(same, r_2 * r_2, r * r)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t33 + t37 + ops.select(all_same, 0.0, t44)
-    t46 = t43 - j * j - rho * rho - t45 * t45
-    t47 = t42 - t46
-    t48 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t47)
-    t49 = t46 + t42
-    unreachable = ops.opposite(t48 & (-t23 <= t49))
+    slack = ops.max(t17, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t45 = left + t44
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
+    t47 = t44 - left
+    unreachable = ops.opposite(t46 & (-t22 <= t47))
     failed = invalid | unreachable
-    in_line = j <= t13
-    t50 = ops.opposite(failed)
-    t51 = t50 & ops.opposite(all_same)
-    t52 = ops.select(t51 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t51 & same, t16, 1.0)), ops.sqrt(t52))
-    t53 = 1.0 / ops.select(t51, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t25 * t53))
-    t54 = ops.sign(-t32)
-    t55 = ops.select(all_same, 0.0, t53 * t31)
-    t56 = 1.0 / ops.select(t50 & in_line, t55 - t54, 1.0)
-    t57 = ops.select(all_same, 0.0, t53 * t28)
-    t58 = E_11_2 * t24 - t27 * t57 - t30 * t55
-    t59 = t24 - E_11_2 * t58
-    t60 = t27 + t57 * t58
-    t61 = t30 + t55 * t58
-    t62 = E_11_2 * t59 - t57 * t60 - t55 * t61
-    t63 = t59 - E_11_2 * t62
-    t64 = t50 & ops.opposite(in_line)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t22)
-    t65 = t50 & ops.opposite(flat)
-    t66 = t60 + t57 * t62
-    t67 = t61 + t55 * t62
-    t68 = ops.select(t64 | t65, t63 * t63 + t66 * t66 + t67 * t67, 1.0)
-    j_2 = ops.sqrt(t68)
-    t69 = 1.0 / ops.select(t64, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t54 * t56, -(t63 * t69))
-    t70 = D_2 + r_1
-    outer_2 = ops.max(t70 - t15, 0.0)
-    t71 = D_2 - r_1
-    inner_2 = ops.max(t15 + t71, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t71, 0.0)
-    t72 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t15 + t70), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t72))
-    t73 = 2.0 * rho_2
-    t74 = j_2 * t73
-    t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
-    t76 = t58 + t62 + X
-    t77 = t43 - j_2 * j_2 - rho_2 * rho_2 - t76 * t76
-    upper = ops.max(t74 - t77, 0.0)
-    lower = ops.max(t77 + t74, 0.0)
-    t78 = 1.0 / ops.select(t65, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) * t78)
-    t79 = E_21 * Y + (c1_x + E_11_2 * X)
-    t80 = E_11_2 * t54
-    t81 = ops.select(in_line, t80, t67 * t69)
-    t82 = ops.select(in_line, t56 * (t57 * t80), t66 * t69)
-    t83 = ops.sqrt(ops.select(t65, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t78 * (t73 * t83))
-    t84 = (t57 * t81 - t55 * t82) * h
-    t85 = (E_11_2 * t81 - t55 * E_21) * h
-    t86 = t82 * Y - (c1_y - t57 * X)
-    t87 = t81 * Y - (c1_z - t55 * X)
-    t88 = (E_11_2 * t82 - t57 * E_21) * h
-    t89 = ops.status(invalid, unreachable, in_line)
+    t48 = ops.opposite(failed)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t34
+    t53 = over_2 * t32
+    w_x = ops.select(in_line, -(t28 * side), t23 * t52 - t28 * t53)
+    t54 = ops.opposite(all_same)
+    t55 = t48 & t54
+    length_a_2 = ops.sqrt(ops.select(t48 | (t55 & t54), mu, 1.0))
+    t56 = over_2 * t30
+    nu_2 = t56 * t56 + t53 * t53 + t52 * t52
+    t57 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
+    over_a = length_n_2 * part
+    t62 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t62 * 0.5)
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    t65 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t65)
+    t66 = w_x * h
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    X = over_a * along
+    t67 = t56 * Y - (c1_x - t24 * X)
+    w_y = ops.select(in_line, -t28, a_x * t52 + t28 * t56)
+    t68 = w_y * h
+    t69 = t53 * Y - (c1_y - t23 * X)
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t56))
+    t70 = w_z * h
+    t71 = t52 * Y - (c1_z - t28 * X)
+    t72 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t79 + t84),
-        ops.select(failed, ops.nan, t85 - t86),
-        ops.select(failed, ops.nan, -(t87 + t88)),
-        ops.select(failed, ops.nan, t79 - t84),
-        ops.select(failed, ops.nan, -(t86 + t85)),
-        ops.select(failed, ops.nan, t88 - t87),
-        t89,
-        t89,
+        ops.select(failed, ops.nan, t66 - t67),
+        ops.select(failed, ops.nan, t68 - t69),
+        ops.select(failed, ops.nan, t70 - t71),
+        ops.select(failed, ops.nan, -(t67 + t66)),
+        ops.select(failed, ops.nan, -(t69 + t68)),
+        ops.select(failed, ops.nan, -(t71 + t70)),
+        t72,
+        t72,
     )
 
 
@@ -270,7 +270,6 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -346,58 +345,66 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c1_z = s1 * t11
     c2_z = s2 * t5
     t14 = c1_z - c2_z
-    t15 = t10 * t10 + t13 * t13 + t14 * t14
-    size_u = ops.sqrt(t15)
-    t16 = r * ops.vanishing
-    same = size_u <= t16
+    u_u = t10 * t10 + t13 * t13 + t14 * t14
+    t15 = r * r
+    t16 = ops.vanishing * ops.vanishing * t15
+    same = u_u <= t16
     t17 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t17
     t18 = ops.select(same, r, r_2)
     r_1 = ops.abs(s_beta1_half) * t17
-    t19 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t19)
-    D = ops.select(same, size_v, size_u)
-    t20 = r_1 - D
-    t21 = t18 + t20
-    t22 = r_1 + D
-    t23 = t22 - t18
-    t24 = t18 - t20
-    t25 = ops.select(same, r_2, r)
-    t26 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t25) * 0.5)
-    t27 = ops.select(same, t10, c1_x)
-    all_same = size_u + size_v <= t16
-    t28 = ops.select(same, c1_x, t10)
-    E_11 = ops.select(all_same, 1.0, -(t28 / D))
-    t29 = ops.select(same, c1_y, t13)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, t13, c1_y)
-    t32 = ops.select(same, c1_z, t14)
-    t33 = ops.select(all_same, 0.0, t32 / D)
-    t34 = ops.select(same, t14, c1_z)
-    t35 = t27 * E_11 - t30 * t31 - t33 * t34
-    t36 = t27 - E_11 * t35
-    t37 = t31 + t30 * t35
-    t38 = t34 + t33 * t35
-    t39 = E_11 * t36 - t30 * t37 - t33 * t38
-    t40 = t36 - E_11 * t39
-    t41 = t37 + t30 * t39
-    t42 = t38 + t33 * t39
-    j = ops.sqrt(t40 * t40 + t41 * t41 + t42 * t42)
-    t43 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t23, 0.0)
-    inner = ops.max(t24, 0.0)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t16
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
+    t19 = r_1 - D
+    t20 = t18 + t19
+    t21 = r_1 + D
+    t22 = t21 - t18
+    t23 = t18 - t19
+    t24 = ops.select(same, r_2, r)
+    t25 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t24) * 0.5)
+    over = 1.0 / mu
+    t26 = ops.select(same, c1_y, t13)
+    t27 = ops.select(same, c1_x, t10)
+    a_x = ops.select(all_same, 1.0, -t27)
+    t28 = ops.select(same, t13, c1_y)
+    t29 = ops.select(same, t10, c1_x)
+    t30 = a_x * t28 + t26 * t29
+    t31 = ops.select(same, c1_z, t14)
+    t32 = ops.select(same, t14, c1_z)
+    m_y = a_x * t32 + t29 * t31
+    t33 = t26 * t30 + t31 * m_y
+    t34 = over * t33
+    m_x = t26 * t32 - t28 * t31
+    t35 = a_x * t30 - t31 * m_x
+    t36 = over * t35
+    t37 = a_x * m_y + t26 * m_x
+    t38 = over * t37
+    nu = t34 * t34 + t36 * t36 + t38 * t38
+    t39 = ops.select(same, r_2 * r_2, t15)
+    in_line = nu <= t16
+    side = ops.sign(-(t26 * a_x))
+    t40 = t26 - a_x * side
+    t41 = 2.0 * (t31 * t31) + t40 * t40
+    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
+    t42 = a_x * t29 - t26 * t28 - t31 * t32
+    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    outer = ops.max(t22, 0.0)
+    inner = ops.max(t23, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t21, 0.0)
+    slack = ops.max(t20, 0.0)
     t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t35 + t39 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t18 + t22))
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.sqrt(outer * inner * slack * (t18 + t21))
     rho = ops.select(all_same, r_1, share * t46)
-    left = j * j - t43 + t45 * t45 + rho * rho
-    t47 = j * (2.0 * rho)
+    left = nu - t39 + t45 * t45 + rho * rho
+    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t48 = left + t47
-    t49 = (t4 <= t21) & (t4 <= t23) & (t4 <= t24) & (-t26 <= t48)
+    t49 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (-t25 <= t48)
     t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (-t26 <= t50))
+    failed = invalid | ops.opposite(t49 & (-t25 <= t50))
     t51 = ops.select(failed, ops.nan, 0.0)
     t52 = ops.select(failed, ops.nan, c1_x)
     t53 = ops.select(failed, ops.nan, c1_y)
@@ -408,66 +415,59 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t58 = ops.select(failed, ops.nan, c2_y)
     t59 = ops.select(failed, ops.nan, c2_z)
     t60 = ops.opposite(failed)
-    t61 = t60 & ops.opposite(all_same)
-    t62 = ops.select(t61 & ops.opposite(same), t15, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t61 & same, t19, 1.0)), ops.sqrt(t62))
-    t63 = ops.select(t61, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t28 / t63))
-    t64 = r_1 + D_2
-    outer_2 = ops.max(t64 - t18, 0.0)
-    t65 = r_1 - D_2
-    inner_2 = ops.max(t18 - t65, 0.0)
-    share_2 = 1.0 / ops.select(t61, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t18 + t65, 0.0)
-    t66 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t66 * 0.5)
-    in_line = j <= t16
-    t67 = ops.sign(-t33)
-    t68 = ops.select(all_same, 0.0, t32 / t63)
-    t69 = ops.select(t60 & in_line, t68 - t67, 1.0)
-    t70 = ops.select(all_same, 0.0, t29 / t63)
-    t71 = t27 * E_11_2 - t70 * t31 - t68 * t34
-    t72 = t27 - E_11_2 * t71
-    t73 = t31 + t70 * t71
-    t74 = t34 + t68 * t71
-    t75 = E_11_2 * t72 - t70 * t73 - t68 * t74
-    t76 = t72 - E_11_2 * t75
-    t77 = t60 & ops.opposite(in_line)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t25)
-    t78 = t60 & ops.opposite(flat)
-    t79 = t73 + t70 * t75
-    t80 = t74 + t68 * t75
-    t81 = ops.select(t77 | t78, t76 * t76 + t79 * t79 + t80 * t80, 1.0)
-    j_2 = ops.sqrt(t81)
-    t82 = ops.select(t77, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t67 / t69, -(t76 / t82))
-    t83 = ops.select(t61, outer_2 * inner_2 * slack_2 * (t18 + t64), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t83))
-    t84 = t71 + t75 + X
-    left_2 = j_2 * j_2 - t43 + t84 * t84 + rho_2 * rho_2
-    t85 = 2.0 * rho_2
-    t86 = j_2 * t85
-    upper = ops.max(left_2 + t86, 0.0)
-    lower = ops.max(t86 - left_2, 0.0)
-    t87 = ops.select(t78, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t87)
-    t88 = E_11_2 * X + E_21 * Y
-    t89 = E_11_2 * t67
-    t90 = ops.select(in_line, t89, t80 / t82)
-    t91 = ops.select(in_line, t70 * t89 / t69, t79 / t82)
-    t92 = ops.sqrt(ops.select(t78, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t85 * t92 / t87)
-    t93 = (t70 * t90 - t68 * t91) * h
-    t94 = ops.select(failed, ops.nan, c1_x + (t88 + t93))
-    t95 = t70 * X + t91 * Y
-    t96 = (E_11_2 * t90 - t68 * E_21) * h
-    t97 = ops.select(failed, ops.nan, c1_y - (t95 - t96))
-    t98 = t68 * X + t90 * Y
-    t99 = (E_11_2 * t91 - t70 * E_21) * h
-    t100 = ops.select(failed, ops.nan, c1_z - (t98 + t99))
-    t101 = ops.select(failed, ops.nan, c1_x + (t88 - t93))
-    t102 = ops.select(failed, ops.nan, c1_y - (t95 + t96))
-    t103 = ops.select(failed, ops.nan, c1_z - (t98 - t99))
+    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t24)
+    t61 = flat | in_line
+    t62 = t60 & ops.opposite(t61)
+    t63 = t60 | (t62 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t63, mu, 1.0)
+    t64 = over_2 * t33
+    t65 = over_2 * t35
+    t66 = over_2 * t37
+    nu_2 = t64 * t64 + t65 * t65 + t66 * t66
+    t67 = ops.select(t63, ops.select(in_line, over_2 * t41, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t67)
+    t68 = ops.opposite(all_same)
+    t69 = t60 & t68
+    length_a_2 = ops.sqrt(ops.select(t60 | (t69 & t68), mu, 1.0))
+    t70 = ops.select(t60, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t70
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t71 = r_1 + D_2
+    outer_2 = ops.max(t71 - t18, 0.0)
+    t72 = r_1 - D_2
+    inner_2 = ops.max(t18 - t72, 0.0)
+    share_2 = 1.0 / ops.select(t69, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t18 + t72, 0.0)
+    t73 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t73 * 0.5)
+    X = over_a * along
+    t74 = ops.select(t69, outer_2 * inner_2 * slack_2 * (t18 + t71), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t74))
+    t75 = over_a * t42 + along
+    left_2 = nu_2 - t39 + t75 * t75 + rho_2 * rho_2
+    t76 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t76, 0.0)
+    lower = ops.max(t76 - left_2, 0.0)
+    half = rho_2 / ops.select(t62, upper + lower, 1.0)
+    Y = ops.select(t61, 0.0, length_a_2 * part * half * (upper - lower))
+    t77 = t27 * X + t64 * Y
+    w_x = ops.select(in_line, -(t31 * side), t26 * t66 - t31 * t65)
+    t78 = ops.sqrt(ops.select(t62, upper * lower, 1.0))
+    h = part * ops.select(t61, rho_2, 2.0 * half * t78)
+    t79 = w_x * h
+    t80 = ops.select(failed, ops.nan, c1_x - (t77 - t79))
+    t81 = t26 * X + t65 * Y
+    w_y = ops.select(in_line, -t31, a_x * t66 + t31 * t64)
+    t82 = w_y * h
+    t83 = ops.select(failed, ops.nan, c1_y - (t81 - t82))
+    t84 = t31 * X + t66 * Y
+    w_z = ops.select(in_line, t40, -(a_x * t65 + t26 * t64))
+    t85 = w_z * h
+    t86 = ops.select(failed, ops.nan, c1_z - (t84 - t85))
+    t87 = ops.select(failed, ops.nan, c1_x - (t77 + t79))
+    t88 = ops.select(failed, ops.nan, c1_y - (t81 + t82))
+    t89 = ops.select(failed, ops.nan, c1_z - (t84 + t85))
     return (
         t51,
         t51,
@@ -484,9 +484,9 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
         t57,
         t58,
         t59,
-        t94,
-        t97,
-        t100,
+        t80,
+        t83,
+        t86,
         t51,
         t51,
         t51,
@@ -502,9 +502,9 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
         t57,
         t58,
         t59,
-        t101,
-        t102,
-        t103,
+        t87,
+        t88,
+        t89,
     )
 
 
@@ -515,7 +515,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 4),
 )
 
 
@@ -578,139 +577,139 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
     c1_z = s1 * t9
     t11 = c1_z - s2 * t5
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    E_11 = ops.select(all_same, 1.0, -(t25 / D))
-    t26 = ops.select(same, c1_y, t10)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t10, c1_y)
-    t29 = ops.select(same, c1_z, t11)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, t11, c1_z)
-    t32 = E_11 * t24 - t27 * t28 - t30 * t31
-    t33 = t24 - E_11 * t32
-    t34 = t28 + t27 * t32
-    t35 = t31 + t30 * t32
-    t36 = E_11 * t33 - t27 * t34 - t30 * t35
-    t37 = t33 - E_11 * t36
-    t38 = t34 + t27 * t36
-    t39 = t35 + t30 * t36
-    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
-    t40 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, t11)
+    t29 = ops.select(same, t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
+    slack = ops.max(t17, 0.0)
     t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t40 + t42 * t42 + rho * rho
-    t44 = j * (2.0 * rho)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
     t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
     t48 = ops.opposite(failed)
-    t49 = t48 & ops.opposite(all_same)
-    t50 = ops.select(t49 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t49 & same, t16, 1.0)), ops.sqrt(t50))
-    t51 = ops.select(t49, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t15, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t15 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    in_line = j <= t13
-    t55 = ops.sign(-t30)
-    t56 = ops.select(all_same, 0.0, t29 / t51)
-    t57 = ops.select(t48 & in_line, t56 - t55, 1.0)
-    t58 = ops.select(all_same, 0.0, t26 / t51)
-    t59 = E_11_2 * t24 - t58 * t28 - t56 * t31
-    t60 = t24 - E_11_2 * t59
-    t61 = t28 + t58 * t59
-    t62 = t31 + t56 * t59
-    t63 = E_11_2 * t60 - t58 * t61 - t56 * t62
-    t64 = t60 - E_11_2 * t63
-    t65 = t48 & ops.opposite(in_line)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t66 = t48 & ops.opposite(flat)
-    t67 = t61 + t58 * t63
-    t68 = t62 + t56 * t63
-    t69 = ops.select(t65 | t66, t64 * t64 + t67 * t67 + t68 * t68, 1.0)
-    j_2 = ops.sqrt(t69)
-    t70 = ops.select(t65, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t55 / t57, -(t64 / t70))
-    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t52), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
-    t72 = t59 + t63 + X
-    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
-    t73 = 2.0 * rho_2
-    t74 = j_2 * t73
-    upper = ops.max(left_2 + t74, 0.0)
-    lower = ops.max(t74 - left_2, 0.0)
-    t75 = ops.select(t66, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t75)
-    t76 = E_11_2 * X + E_21 * Y
-    t77 = E_11_2 * t55
-    t78 = ops.select(in_line, t77, t68 / t70)
-    t79 = ops.select(in_line, t58 * t77 / t57, t67 / t70)
-    t80 = ops.sqrt(ops.select(t66, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t73 * t80 / t75)
-    t81 = (t58 * t78 - t56 * t79) * h
-    A_11 = t76 + t81
-    t82 = t58 * X + t79 * Y
-    t83 = (E_11_2 * t78 - t56 * E_21) * h
-    t84 = t82 - t83
-    t85 = t56 * X + t78 * Y
-    t86 = (E_11_2 * t79 - t58 * E_21) * h
-    t87 = t85 + t86
-    A_11_below = t76 - t81
-    t88 = ops.select(failed, ops.nan, c1_x + A_11_below)
-    t89 = t82 + t83
-    t90 = t85 - t86
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t30
+    t53 = over_2 * t32
+    t54 = over_2 * t34
+    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
+    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t55)
+    t56 = ops.opposite(all_same)
+    t57 = t48 & t56
+    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    X = over_a * along
+    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t65 = t24 * X + t52 * Y
+    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
+    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
+    t67 = w_x * h
+    t68 = t65 - t67
+    t69 = t23 * X + t53 * Y
+    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
+    t70 = w_y * h
+    t71 = t69 - t70
+    t72 = t28 * X + t54 * Y
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
+    t73 = w_z * h
+    t74 = t72 - t73
+    t75 = t65 + t67
+    t76 = t69 + t70
+    t77 = t72 + t73
     return (
-        ops.select(failed, ops.nan, c1_x + A_11),
-        ops.select(failed, ops.nan, c1_y - t84),
-        ops.select(failed, ops.nan, c1_z - t87),
-        ops.select(failed, ops.nan, A_11),
-        ops.select(failed, ops.nan, -t84),
-        ops.select(failed, ops.nan, -t87),
-        ops.select(failed, ops.nan, t8 + A_11),
-        ops.select(failed, ops.nan, t10 - t84),
-        ops.select(failed, ops.nan, t11 - t87),
-        t88,
-        ops.select(failed, ops.nan, c1_y - t89),
-        ops.select(failed, ops.nan, c1_z - t90),
-        ops.select(failed, ops.nan, A_11_below),
-        ops.select(failed, ops.nan, -t89),
-        ops.select(failed, ops.nan, -t90),
-        ops.select(failed, ops.nan, t8 + A_11_below),
-        ops.select(failed, ops.nan, t10 - t89),
-        ops.select(failed, ops.nan, t11 - t90),
+        ops.select(failed, ops.nan, c1_x - t68),
+        ops.select(failed, ops.nan, c1_y - t71),
+        ops.select(failed, ops.nan, c1_z - t74),
+        ops.select(failed, ops.nan, -t68),
+        ops.select(failed, ops.nan, -t71),
+        ops.select(failed, ops.nan, -t74),
+        ops.select(failed, ops.nan, t8 - t68),
+        ops.select(failed, ops.nan, t10 - t71),
+        ops.select(failed, ops.nan, t11 - t74),
+        ops.select(failed, ops.nan, c1_x - t75),
+        ops.select(failed, ops.nan, c1_y - t76),
+        ops.select(failed, ops.nan, c1_z - t77),
+        ops.select(failed, ops.nan, -t75),
+        ops.select(failed, ops.nan, -t76),
+        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, t8 - t75),
+        ops.select(failed, ops.nan, t10 - t76),
+        ops.select(failed, ops.nan, t11 - t77),
     )
 
 
@@ -721,7 +720,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -785,127 +783,128 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     c2_z = s2 * t5
     c1_z = s1 * t9
     t11 = c2_z - c1_z
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    E_11 = ops.select(all_same, 1.0, -(t25 / D))
-    t26 = ops.select(same, c1_y, t10)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t10, c1_y)
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, -t11, c1_z)
-    t32 = t24 * E_11 - t27 * t28 - t30 * t31
-    t33 = t24 - E_11 * t32
-    t34 = t28 + t27 * t32
-    t35 = t31 + t30 * t32
-    t36 = E_11 * t33 - t27 * t34 - t30 * t35
-    t37 = t33 - E_11 * t36
-    t38 = t34 + t27 * t36
-    t39 = t35 + t30 * t36
-    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
-    t40 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, -t11)
+    t29 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
+    slack = ops.max(t17, 0.0)
     t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t40 + t42 * t42 + rho * rho
-    t44 = j * (2.0 * rho)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
     t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
     t48 = ops.opposite(failed)
-    t49 = t48 & ops.opposite(all_same)
-    t50 = ops.select(t49 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t49 & same, t16, 1.0)), ops.sqrt(t50))
-    t51 = ops.select(t49, D_2, 1.0)
-    t52 = ops.select(all_same, 0.0, t26 / t51)
-    t53 = D_2 + r_1
-    outer_2 = ops.max(t53 - t15, 0.0)
-    t54 = D_2 - r_1
-    inner_2 = ops.max(t15 + t54, 0.0)
-    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t54, 0.0)
-    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
-    in_line = j <= t13
-    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
-    t56 = ops.sign(-t30)
-    t57 = E_11_2 * t56
-    t58 = ops.select(all_same, 0.0, t29 / t51)
-    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
-    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
-    t61 = t28 + t52 * t60
-    t62 = t24 - E_11_2 * t60
-    t63 = t31 + t58 * t60
-    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
-    t65 = t61 + t52 * t64
-    t66 = t48 & ops.opposite(in_line)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t67 = t48 & ops.opposite(flat)
-    t68 = t62 - E_11_2 * t64
-    t69 = t63 + t58 * t64
-    t70 = ops.select(t66 | t67, t68 * t68 + t65 * t65 + t69 * t69, 1.0)
-    j_2 = ops.sqrt(t70)
-    t71 = ops.select(t66, j_2, 1.0)
-    t72 = ops.select(in_line, t52 * t57 / t59, t65 / t71)
-    t73 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t73))
-    t74 = t60 + t64 + X
-    left_2 = j_2 * j_2 - t40 + t74 * t74 + rho_2 * rho_2
-    t75 = 2.0 * rho_2
-    t76 = j_2 * t75
-    upper = ops.max(left_2 + t76, 0.0)
-    lower = ops.max(t76 - left_2, 0.0)
-    t77 = ops.select(t67, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t77)
-    t78 = t52 * X + t72 * Y
-    t79 = ops.select(in_line, t57, t69 / t71)
-    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t68 / t71))
-    t80 = ops.sqrt(ops.select(t67, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t75 * t80 / t77)
-    t81 = (E_11_2 * t79 - t58 * E_21) * h
-    t82 = t78 - t81
-    t83 = t58 * X + t79 * Y
-    t84 = (E_11_2 * t72 - t52 * E_21) * h
-    t85 = t83 + t84
-    t86 = ops.select(failed, ops.nan, c1_z * t82 - c1_y * t85)
-    t87 = s_gamma * c2_z
-    t88 = E_11_2 * X + E_21 * Y
-    t89 = (t52 * t79 - t58 * t72) * h
-    t90 = c_gamma * c2_z
-    B_22 = t87 * (t8 + (t88 + t89)) - t90 * (t10 - t82) - t6 * (t11 + t85)
-    t91 = t78 + t81
-    t92 = t83 - t84
-    t93 = ops.select(failed, ops.nan, c1_z * t91 - c1_y * t92)
-    B_22_below = t87 * (t8 + (t88 - t89)) - t90 * (t10 - t91) - t6 * (t11 + t92)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t30
+    t53 = over_2 * t32
+    t54 = over_2 * t34
+    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
+    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t55)
+    t56 = ops.opposite(all_same)
+    t57 = t48 & t56
+    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    X = over_a * along
+    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t65 = t23 * X + t53 * Y
+    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
+    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
+    t67 = w_y * h
+    t68 = t65 - t67
+    t69 = t28 * X + t54 * Y
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
+    t70 = w_z * h
+    t71 = t69 - t70
+    t72 = ops.select(failed, ops.nan, c1_z * t68 - c1_y * t71)
+    t73 = s_gamma * c2_z
+    t74 = t24 * X + t52 * Y
+    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
+    t75 = w_x * h
+    t76 = c_gamma * c2_z
+    B_22 = t73 * (t8 - (t74 - t75)) - t76 * (t10 - t68) - t6 * (t11 + t71)
+    t77 = t65 + t67
+    t78 = t69 + t70
+    t79 = ops.select(failed, ops.nan, c1_z * t77 - c1_y * t78)
+    B_22_below = t73 * (t8 - (t74 + t75)) - t76 * (t10 - t77) - t6 * (t11 + t78)
     return (
-        t86,
+        t72,
         ops.select(failed, ops.nan, B_22),
-        t93,
+        t79,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -917,7 +916,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 4),
 )
 
 
@@ -981,163 +979,165 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t5
     c1_z = s1 * t9
     t11 = c2_z - c1_z
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    E_11 = ops.select(all_same, 1.0, -(t25 / D))
-    t26 = ops.select(same, c1_y, t10)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t10, c1_y)
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, -t11, c1_z)
-    t32 = t24 * E_11 - t27 * t28 - t30 * t31
-    t33 = t24 - E_11 * t32
-    t34 = t28 + t27 * t32
-    t35 = t31 + t30 * t32
-    t36 = E_11 * t33 - t27 * t34 - t30 * t35
-    t37 = t33 - E_11 * t36
-    t38 = t34 + t27 * t36
-    t39 = t35 + t30 * t36
-    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
-    t40 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, -t11)
+    t29 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
+    slack = ops.max(t17, 0.0)
     t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t40 + t42 * t42 + rho * rho
-    t44 = j * (2.0 * rho)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
     t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
     t48 = ops.opposite(failed)
-    t49 = t48 & ops.opposite(all_same)
-    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
-    t51 = ops.select(t49, D_2, 1.0)
-    t52 = ops.select(all_same, 0.0, t26 / t51)
-    t53 = D_2 + r_1
-    outer_2 = ops.max(t53 - t15, 0.0)
-    t54 = D_2 - r_1
-    inner_2 = ops.max(t15 + t54, 0.0)
-    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t54, 0.0)
-    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
-    in_line = j <= t13
-    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
-    t56 = ops.sign(-t30)
-    t57 = E_11_2 * t56
-    t58 = ops.select(all_same, 0.0, t29 / t51)
-    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
-    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
-    t61 = t28 + t52 * t60
-    t62 = t24 - E_11_2 * t60
-    t63 = t31 + t58 * t60
-    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
-    t65 = t61 + t52 * t64
-    t66 = t62 - E_11_2 * t64
-    t67 = t63 + t58 * t64
-    t68 = ops.select(t48, t66 * t66 + t65 * t65 + t67 * t67, 1.0)
-    j_2 = ops.sqrt(t68)
-    t69 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
-    t70 = ops.select(in_line, t52 * t57 / t59, t65 / t69)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
-    t72 = t60 + t64 + X
-    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
-    t73 = 2.0 * rho_2
-    t74 = j_2 * t73
-    upper = ops.max(left_2 + t74, 0.0)
-    lower = ops.max(t74 - left_2, 0.0)
-    t75 = t48 & ops.opposite(flat)
-    t76 = ops.select(t75, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t76)
-    t77 = t52 * X + t70 * Y
-    t78 = ops.select(in_line, t57, t67 / t69)
-    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t66 / t69))
-    t79 = ops.sqrt(ops.select(t75, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t73 * t79 / t76)
-    t80 = (E_11_2 * t78 - t58 * E_21) * h
-    t81 = t77 - t80
-    t82 = t58 * X + t78 * Y
-    t83 = (E_11_2 * t70 - t52 * E_21) * h
-    t84 = t82 + t83
-    B_11 = c1_z * t81 - c1_y * t84
-    A_02 = c1_y - t81
-    t85 = t11 + t84
-    A_03 = c1_z - t84
-    A_22 = t10 - t81
-    t86 = ops.select(t48, D_2 * j_2 * h, 1.0)
-    t87 = ops.select(failed, ops.nan, B_11 * (A_02 * t85 + A_03 * A_22) / t86)
-    t88 = s_gamma * c2_z
-    t89 = E_11_2 * X + E_21 * Y
-    t90 = (t52 * t78 - t58 * t70) * h
-    A_11 = t89 + t90
-    A_21 = t8 + A_11
-    t91 = c_gamma * c2_z
-    B_22 = t88 * A_21 - t91 * A_22 - t6 * t85
-    t92 = ops.select(failed, ops.nan, -(B_22 * (t84 * A_02 - t81 * A_03) / t86))
-    A_01 = c1_x + A_11
-    t93 = ops.select(failed, ops.nan, -(B_11 * (t85 * A_01 + A_03 * A_21) / t86))
-    t94 = ops.select(failed, ops.nan, B_22 * (t84 * A_01 + A_03 * A_11) / t86)
-    t95 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t86))
-    t96 = ops.select(failed, ops.nan, -(B_22 * (t81 * A_01 + A_02 * A_11) / t86))
-    t97 = t77 + t80
-    t98 = t82 - t83
-    B_11_below = c1_z * t97 - c1_y * t98
-    A_02_below = c1_y - t97
-    t99 = t11 + t98
-    A_03_below = c1_z - t98
-    A_22_below = t10 - t97
-    t100 = B_11_below * (A_02_below * t99 + A_03_below * A_22_below)
-    A_11_below = t89 - t90
-    A_21_below = t8 + A_11_below
-    B_22_below = t88 * A_21_below - t91 * A_22_below - t6 * t99
-    t101 = B_22_below * (t98 * A_02_below - t97 * A_03_below)
-    A_01_below = c1_x + A_11_below
-    t102 = B_11_below * (t99 * A_01_below + A_03_below * A_21_below)
-    t103 = B_22_below * (t98 * A_01_below + A_03_below * A_11_below)
-    t104 = A_22_below * A_01_below - A_02_below * A_21_below
-    t105 = ops.select(failed, ops.nan, B_11_below * t104 / t86)
-    t106 = B_22_below * (t97 * A_01_below + A_02_below * A_11_below)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t30
+    t53 = over_2 * t32
+    t54 = over_2 * t34
+    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
+    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t55)
+    t56 = ops.opposite(all_same)
+    t57 = t48 & t56
+    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    X = over_a * along
+    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t65 = t23 * X + t53 * Y
+    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
+    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
+    t67 = w_y * h
+    t68 = t65 - t67
+    t69 = t28 * X + t54 * Y
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
+    t70 = w_z * h
+    t71 = t69 - t70
+    B_11 = c1_z * t68 - c1_y * t71
+    A_02 = c1_y - t68
+    t72 = t11 + t71
+    A_03 = c1_z - t71
+    A_22 = t10 - t68
+    t73 = ops.select(t48, mu * nu_2 * h, 1.0)
+    t74 = ops.select(failed, ops.nan, B_11 * (A_02 * t72 + A_03 * A_22) / t73)
+    t75 = s_gamma * c2_z
+    t76 = t24 * X + t52 * Y
+    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
+    t77 = w_x * h
+    t78 = t76 - t77
+    A_21 = t8 - t78
+    t79 = c_gamma * c2_z
+    B_22 = t75 * A_21 - t79 * A_22 - t6 * t72
+    t80 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_02 - t68 * A_03) / t73))
+    A_01 = c1_x - t78
+    t81 = ops.select(failed, ops.nan, -(B_11 * (t72 * A_01 + A_03 * A_21) / t73))
+    t82 = ops.select(failed, ops.nan, B_22 * (t71 * A_01 - A_03 * t78) / t73)
+    t83 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t73))
+    t84 = ops.select(failed, ops.nan, -(B_22 * (t68 * A_01 - A_02 * t78) / t73))
+    t85 = t65 + t67
+    t86 = t69 + t70
+    B_11_below = c1_z * t85 - c1_y * t86
+    A_02_below = c1_y - t85
+    t87 = t11 + t86
+    A_03_below = c1_z - t86
+    A_22_below = t10 - t85
+    t88 = B_11_below * (A_02_below * t87 + A_03_below * A_22_below)
+    t89 = t76 + t77
+    A_21_below = t8 - t89
+    B_22_below = t75 * A_21_below - t79 * A_22_below - t6 * t87
+    t90 = B_22_below * (t86 * A_02_below - t85 * A_03_below)
+    A_01_below = c1_x - t89
+    t91 = B_11_below * (t87 * A_01_below + A_03_below * A_21_below)
+    t92 = B_22_below * (t86 * A_01_below - A_03_below * t89)
+    t93 = A_22_below * A_01_below - A_02_below * A_21_below
+    t94 = ops.select(failed, ops.nan, B_11_below * t93 / t73)
+    t95 = B_22_below * (t85 * A_01_below - A_02_below * t89)
     return (
-        t87,
-        t92,
-        t93,
+        t74,
+        t80,
+        t81,
+        t82,
+        t83,
+        t84,
+        ops.select(failed, ops.nan, -(t88 / t73)),
+        ops.select(failed, ops.nan, t90 / t73),
+        ops.select(failed, ops.nan, t91 / t73),
+        ops.select(failed, ops.nan, -(t92 / t73)),
         t94,
-        t95,
-        t96,
-        ops.select(failed, ops.nan, -(t100 / t86)),
-        ops.select(failed, ops.nan, t101 / t86),
-        ops.select(failed, ops.nan, t102 / t86),
-        ops.select(failed, ops.nan, -(t103 / t86)),
-        t105,
-        ops.select(failed, ops.nan, t106 / t86),
+        ops.select(failed, ops.nan, t95 / t73),
     )
 
 
@@ -1148,7 +1148,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 4),
 )
 
 
@@ -1213,128 +1212,130 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t5
     c1_z = s1 * t9
     t11 = c2_z - c1_z
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    E_11 = ops.select(all_same, 1.0, -(t25 / D))
-    t26 = ops.select(same, c1_y, t10)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t10, c1_y)
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, -t11, c1_z)
-    t32 = t24 * E_11 - t27 * t28 - t30 * t31
-    t33 = t24 - E_11 * t32
-    t34 = t28 + t27 * t32
-    t35 = t31 + t30 * t32
-    t36 = E_11 * t33 - t27 * t34 - t30 * t35
-    t37 = t33 - E_11 * t36
-    t38 = t34 + t27 * t36
-    t39 = t35 + t30 * t36
-    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
-    t40 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, -t11)
+    t29 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
+    slack = ops.max(t17, 0.0)
     t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t40 + t42 * t42 + rho * rho
-    t44 = j * (2.0 * rho)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
     t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
     t48 = ops.opposite(failed)
-    t49 = t48 & ops.opposite(all_same)
-    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
-    t51 = ops.select(t49, D_2, 1.0)
-    t52 = ops.select(all_same, 0.0, t26 / t51)
-    t53 = D_2 + r_1
-    outer_2 = ops.max(t53 - t15, 0.0)
-    t54 = D_2 - r_1
-    inner_2 = ops.max(t15 + t54, 0.0)
-    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t54, 0.0)
-    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
-    in_line = j <= t13
-    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
-    t56 = ops.sign(-t30)
-    t57 = E_11_2 * t56
-    t58 = ops.select(all_same, 0.0, t29 / t51)
-    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
-    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
-    t61 = t28 + t52 * t60
-    t62 = t24 - E_11_2 * t60
-    t63 = t31 + t58 * t60
-    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
-    t65 = t61 + t52 * t64
-    t66 = t62 - E_11_2 * t64
-    t67 = t63 + t58 * t64
-    t68 = ops.select(t48, t66 * t66 + t65 * t65 + t67 * t67, 1.0)
-    j_2 = ops.sqrt(t68)
-    t69 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
-    t70 = ops.select(in_line, t52 * t57 / t59, t65 / t69)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
-    t72 = t60 + t64 + X
-    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
-    t73 = 2.0 * rho_2
-    t74 = j_2 * t73
-    upper = ops.max(left_2 + t74, 0.0)
-    lower = ops.max(t74 - left_2, 0.0)
-    t75 = t48 & ops.opposite(flat)
-    t76 = ops.select(t75, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t76)
-    t77 = t52 * X + t70 * Y
-    t78 = ops.select(in_line, t57, t67 / t69)
-    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t66 / t69))
-    t79 = ops.sqrt(ops.select(t75, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t73 * t79 / t76)
-    t80 = (E_11_2 * t78 - t58 * E_21) * h
-    t81 = t77 - t80
-    t82 = t58 * X + t78 * Y
-    t83 = (E_11_2 * t70 - t52 * E_21) * h
-    t84 = t82 + t83
-    t85 = ops.select(failed, ops.nan, c1_z * t81 - c1_y * t84)
-    t86 = s_gamma * c2_z
-    t87 = E_11_2 * X + E_21 * Y
-    t88 = (t52 * t78 - t58 * t70) * h
-    t89 = c_gamma * c2_z
-    B_22 = t86 * (t8 + (t87 + t88)) - t89 * (t10 - t81) - t6 * (t11 + t84)
-    Delta = D_2 * j_2 * h
-    t90 = t77 + t80
-    t91 = t82 - t83
-    t92 = ops.select(failed, ops.nan, c1_z * t90 - c1_y * t91)
-    B_22_below = t86 * (t8 + (t87 - t88)) - t89 * (t10 - t90) - t6 * (t11 + t91)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t30
+    t53 = over_2 * t32
+    t54 = over_2 * t34
+    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
+    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t55)
+    t56 = ops.opposite(all_same)
+    t57 = t48 & t56
+    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    X = over_a * along
+    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t65 = t23 * X + t53 * Y
+    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
+    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
+    t67 = w_y * h
+    t68 = t65 - t67
+    t69 = t28 * X + t54 * Y
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
+    t70 = w_z * h
+    t71 = t69 - t70
+    t72 = ops.select(failed, ops.nan, c1_z * t68 - c1_y * t71)
+    t73 = s_gamma * c2_z
+    t74 = t24 * X + t52 * Y
+    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
+    t75 = w_x * h
+    t76 = c_gamma * c2_z
+    B_22 = t73 * (t8 - (t74 - t75)) - t76 * (t10 - t68) - t6 * (t11 + t71)
+    Delta = mu * nu_2 * h
+    t77 = t65 + t67
+    t78 = t69 + t70
+    t79 = ops.select(failed, ops.nan, c1_z * t77 - c1_y * t78)
+    B_22_below = t73 * (t8 - (t74 + t75)) - t76 * (t10 - t77) - t6 * (t11 + t78)
     return (
-        t85,
+        t72,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t92,
+        t79,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1347,7 +1348,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 4),
 )
 
 
@@ -1410,179 +1410,180 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
     c1_z = s1 * t9
     t11 = c1_z - s2 * t5
-    t12 = t8 * t8 + t10 * t10 + t11 * t11
-    size_u = ops.sqrt(t12)
-    t13 = r * ops.vanishing
-    same = size_u <= t13
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
     t15 = ops.select(same, r, r_2)
-    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_v = ops.sqrt(t16)
-    D = ops.select(same, size_v, size_u)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t13
+    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    length_a = ops.sqrt(mu)
+    D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
-    t17 = D - r_1
-    t18 = t15 - t17
-    t19 = D + r_1
-    t20 = t19 - t15
-    t21 = t15 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, t8, c1_x)
-    all_same = size_u + size_v <= t13
-    t25 = ops.select(same, c1_x, t8)
-    E_11 = ops.select(all_same, 1.0, -(t25 / D))
-    t26 = ops.select(same, c1_y, t10)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t10, c1_y)
-    t29 = ops.select(same, c1_z, t11)
-    t30 = ops.select(all_same, 0.0, t29 / D)
-    t31 = ops.select(same, t11, c1_z)
-    t32 = E_11 * t24 - t27 * t28 - t30 * t31
-    t33 = t24 - E_11 * t32
-    t34 = t28 + t27 * t32
-    t35 = t31 + t30 * t32
-    t36 = E_11 * t33 - t27 * t34 - t30 * t35
-    t37 = t33 - E_11 * t36
-    t38 = t34 + t27 * t36
-    t39 = t35 + t30 * t36
-    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
-    t40 = ops.select(same, r_2 * r_2, r * r)
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, 1.0, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, t11)
+    t29 = ops.select(same, t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    side = ops.sign(-(t23 * a_x))
+    t37 = t23 - a_x * side
+    t38 = 2.0 * (t28 * t28) + t37 * t37
+    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
+    t39 = a_x * t26 - t23 * t25 - t28 * t29
+    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
+    slack = ops.max(t17, 0.0)
     t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    t42 = t40 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t40 + t42 * t42 + rho * rho
-    t44 = j * (2.0 * rho)
+    left = nu - t36 + t42 * t42 + rho * rho
+    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
     t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
     t48 = ops.opposite(failed)
-    t49 = t48 & ops.opposite(all_same)
-    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
-    t51 = ops.select(t49, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t15, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t15 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    X = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    in_line = j <= t13
-    t55 = ops.sign(-t30)
-    t56 = ops.select(all_same, 0.0, t29 / t51)
-    t57 = ops.select(t48 & in_line, t56 - t55, 1.0)
-    t58 = ops.select(all_same, 0.0, t26 / t51)
-    t59 = E_11_2 * t24 - t58 * t28 - t56 * t31
-    t60 = t24 - E_11_2 * t59
-    t61 = t28 + t58 * t59
-    t62 = t31 + t56 * t59
-    t63 = E_11_2 * t60 - t58 * t61 - t56 * t62
-    t64 = t60 - E_11_2 * t63
-    t65 = t61 + t58 * t63
-    t66 = t62 + t56 * t63
-    t67 = ops.select(t48, t64 * t64 + t65 * t65 + t66 * t66, 1.0)
-    j_2 = ops.sqrt(t67)
-    t68 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t55 / t57, -(t64 / t68))
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t69 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t52), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t69))
-    t70 = t59 + t63 + X
-    left_2 = j_2 * j_2 - t40 + t70 * t70 + rho_2 * rho_2
-    t71 = 2.0 * rho_2
-    t72 = j_2 * t71
-    upper = ops.max(left_2 + t72, 0.0)
-    lower = ops.max(t72 - left_2, 0.0)
-    t73 = t48 & ops.opposite(flat)
-    t74 = ops.select(t73, upper + lower, 1.0)
-    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t74)
-    t75 = E_11_2 * X + E_21 * Y
-    t76 = E_11_2 * t55
-    t77 = ops.select(in_line, t76, t66 / t68)
-    t78 = ops.select(in_line, t58 * t76 / t57, t65 / t68)
-    t79 = ops.sqrt(ops.select(t73, upper * lower, 1.0))
-    h = ops.select(flat, rho_2, t71 * t79 / t74)
-    t80 = (t58 * t77 - t56 * t78) * h
-    A_11 = t75 + t80
-    A_01 = c1_x + A_11
-    t81 = t58 * X + t78 * Y
-    t82 = (E_11_2 * t77 - t56 * E_21) * h
-    t83 = t81 - t82
-    A_02 = c1_y - t83
-    t84 = t56 * X + t77 * Y
-    t85 = (E_11_2 * t78 - t58 * E_21) * h
-    t86 = t84 + t85
-    A_03 = c1_z - t86
-    t87 = ops.select(t48, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t87)
-    t88 = ops.select(t48, strut, 1.0)
-    radial_x = A_01 / t88
-    radial_y = A_02 / t88
-    radial_z = A_03 / t88
-    off1 = A_11 * radial_x - t83 * radial_y - t86 * radial_z
-    t1_x = A_11 - radial_x * off1
-    t89 = t83 + radial_y * off1
-    t90 = t86 + radial_z * off1
-    square1 = t1_x * t1_x + t89 * t89 + t90 * t90
-    A_21 = t8 + A_11
-    A_22 = t10 - t83
-    A_23 = t11 - t86
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
+    t49 = flat | in_line
+    t50 = t48 & ops.opposite(t49)
+    t51 = t48 | (t50 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t51, mu, 1.0)
+    t52 = over_2 * t30
+    t53 = over_2 * t32
+    t54 = over_2 * t34
+    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
+    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t55)
+    t56 = ops.opposite(all_same)
+    t57 = t48 & t56
+    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
+    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t58
+    over_a = length_n_2 * part
+    D_2 = ops.select(all_same, 0.0, length_a_2)
+    t59 = D_2 + r_1
+    outer_2 = ops.max(t59 - t15, 0.0)
+    t60 = D_2 - r_1
+    inner_2 = ops.max(t15 + t60, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t60, 0.0)
+    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    X = over_a * along
+    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    t63 = over_a * t39 + along
+    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
+    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t64, 0.0)
+    lower = ops.max(t64 - left_2, 0.0)
+    half = rho_2 / ops.select(t50, upper + lower, 1.0)
+    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t65 = t24 * X + t52 * Y
+    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
+    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
+    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
+    t67 = w_x * h
+    t68 = t65 - t67
+    A_01 = c1_x - t68
+    t69 = t23 * X + t53 * Y
+    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
+    t70 = w_y * h
+    t71 = t69 - t70
+    A_02 = c1_y - t71
+    t72 = t28 * X + t54 * Y
+    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
+    t73 = w_z * h
+    t74 = t72 - t73
+    A_03 = c1_z - t74
+    t75 = ops.select(t48, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t75)
+    t76 = ops.select(t48, strut, 1.0)
+    radial_x = A_01 / t76
+    radial_y = A_02 / t76
+    radial_z = A_03 / t76
+    t77 = t68 * radial_x + t71 * radial_y + t74 * radial_z
+    t78 = t68 - radial_x * t77
+    t79 = t71 - radial_y * t77
+    t80 = t74 - radial_z * t77
+    square1 = t78 * t78 + t79 * t79 + t80 * t80
+    A_21 = t8 - t68
+    A_22 = t10 - t71
+    A_23 = t11 - t74
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
     t2_z = A_23 - radial_z * off2
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t91 = square1 - square2
-    t92 = t1_x * t2_x - t89 * t2_y - t90 * t2_z
-    t93 = ops.select(t48, t91 * t91 + 4.0 * (t92 * t92), 1.0)
-    t94 = ops.select(t48, 2.0 * (D_2 * j_2 * h), 1.0)
-    t95 = strut * (square1 + square2 + ops.sqrt(t93)) / t94
-    A_11_below = t75 - t80
-    A_01_below = c1_x + A_11_below
-    t96 = t81 + t82
-    A_02_below = c1_y - t96
-    t97 = A_01_below * A_01_below + A_02_below * A_02_below
-    t98 = t84 - t85
-    A_03_below = c1_z - t98
-    t99 = ops.select(t48, t97 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t99)
-    t100 = ops.select(t48, strut_below, 1.0)
-    radial_x_below = A_01_below / t100
-    radial_y_below = A_02_below / t100
-    t101 = A_11_below * radial_x_below - t96 * radial_y_below
-    radial_z_below = A_03_below / t100
-    off1_below = t101 - t98 * radial_z_below
-    t1_x_below = A_11_below - radial_x_below * off1_below
-    t102 = t96 + radial_y_below * off1_below
-    t103 = t98 + radial_z_below * off1_below
-    square1_below = t1_x_below * t1_x_below + t102 * t102 + t103 * t103
-    A_21_below = t8 + A_11_below
-    A_22_below = t10 - t96
-    t104 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t98
-    off2_below = t104 + radial_z_below * A_23_below
+    t81 = square1 - square2
+    t82 = t78 * t2_x + t79 * t2_y + t80 * t2_z
+    t83 = ops.select(t48, t81 * t81 + 4.0 * (t82 * t82), 1.0)
+    t84 = ops.select(t48, 2.0 * (mu * nu_2 * h), 1.0)
+    t85 = strut * (square1 + square2 + ops.sqrt(t83)) / t84
+    t86 = t65 + t67
+    A_01_below = c1_x - t86
+    t87 = t69 + t70
+    A_02_below = c1_y - t87
+    t88 = A_01_below * A_01_below + A_02_below * A_02_below
+    t89 = t72 + t73
+    A_03_below = c1_z - t89
+    t90 = ops.select(t48, t88 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t90)
+    t91 = ops.select(t48, strut_below, 1.0)
+    radial_x_below = A_01_below / t91
+    radial_y_below = A_02_below / t91
+    radial_z_below = A_03_below / t91
+    t92 = t86 * radial_x_below + t87 * radial_y_below + t89 * radial_z_below
+    t93 = t86 - radial_x_below * t92
+    t94 = t87 - radial_y_below * t92
+    t95 = t89 - radial_z_below * t92
+    square1_below = t93 * t93 + t94 * t94 + t95 * t95
+    A_21_below = t8 - t86
+    A_22_below = t10 - t87
+    t96 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t89
+    off2_below = t96 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t105 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t97 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t105 + t2_z_below * t2_z_below
-    t106 = square1_below - square2_below
-    t107 = t1_x_below * t2_x_below - t102 * t2_y_below - t103 * t2_z_below
-    t108 = ops.select(t48, t106 * t106 + 4.0 * (t107 * t107), 1.0)
-    t109 = square1_below + square2_below + ops.sqrt(t108)
-    t110 = ops.select(failed, ops.nan, strut_below * t109 / t94)
+    square2_below = t97 + t2_z_below * t2_z_below
+    t98 = square1_below - square2_below
+    t99 = t93 * t2_x_below + t94 * t2_y_below + t95 * t2_z_below
+    t100 = ops.select(t48, t98 * t98 + 4.0 * (t99 * t99), 1.0)
+    t101 = square1_below + square2_below + ops.sqrt(t100)
+    t102 = ops.select(failed, ops.nan, strut_below * t101 / t84)
     return (
-        ops.select(failed, ops.nan, t95),
-        t110,
+        ops.select(failed, ops.nan, t85),
+        t102,
     )
 
 
@@ -1593,7 +1594,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), (), 4),
 )
 
 

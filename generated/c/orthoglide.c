@@ -3,29 +3,29 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
- *   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
- *   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
- *   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
- *   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
- *     multiply, 5 sqrt
- *   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
- *     5 sqrt
- *   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
- *   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
- *   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
- *   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
+ *   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+ *   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
+ *   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
+ *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
+ *     multiply, 1 sqrt
+ *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
+ *     1 sqrt
+ *   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+ *   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
+ *   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
  *     sqrt
- *   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
- *   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
+ *   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
  *     sqrt
- *   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
- *   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
- *     7 sqrt
- *   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
- *   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+ *   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+ *   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
+ *     3 sqrt
+ *   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+ *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
@@ -42,73 +42,70 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
-    const real_t size_v = cf_sqrt(t1 + cf_rounded(single, one, rho3 * rho3));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
+    const real_t v_v = t1 + cf_rounded(single, one, rho3 * rho3);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t3 = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 * t3));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 * t3);
-    const real_t t6 = cf_rounded(single, one, rho1 * E_11) - cf_rounded(single, one, t4 * E_12);
-    const real_t t7 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t8 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 * t3);
-    const real_t t9 = t6 - cf_rounded(single, one, t7 * E_13);
-    const real_t t10 = rho1 - cf_rounded(single, one, E_11 * t9);
-    const real_t m_y = t4 + cf_rounded(single, one, E_12 * t9);
-    const real_t t11 = cf_rounded(single, one, E_11 * t10) - cf_rounded(single, one, E_12 * m_y);
-    const real_t m_z = t7 + cf_rounded(single, one, E_13 * t9);
-    const real_t t12 = t11 - cf_rounded(single, one, E_13 * m_z);
-    const real_t t13 = t10 - cf_rounded(single, one, E_11 * t12);
-    const real_t n_y = m_y + cf_rounded(single, one, E_12 * t12);
-    const real_t t14 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
-    const real_t n_z = m_z + cf_rounded(single, one, E_13 * t12);
-    const real_t j = cf_sqrt(t14 + cf_rounded(single, one, n_z * n_z));
-    const int in_line = j <= t2;
-    const real_t t15 = cf_rounded(single, one, t4 * (t5 - t4)) + cf_rounded(single, one, t7 * (t8 - t7));
-    const real_t t16 = t15 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t t18 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t17 * t17);
-    const real_t rho = cf_sqrt(t18);
-    const real_t t19 = L - rho;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t20 = cf_sign(E_13);
-    const real_t t21 = E_11 * t20;
-    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, j);
-    const real_t E_23 = cf_rarely(single, in_line, -t21, n_z * t22);
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, E_13 + t20);
-    const real_t E_22 = cf_rarely(single, in_line, -(t23 * (E_12 * t21)), n_y * t22);
-    const real_t t24 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t20 * t23, -(t13 * t22));
-    const real_t t25 = E_21 * t17 - (rho1 + X * E_11);
-    const int t26 = cf_nought(L) == 0;
-    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t26 & (CLOSEDFORM_C(0.0) <= L) & t27);
-    const real_t t28 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t30 = t29 & (-(size * CLOSEDFORM_FEASIBILITY) <= t19);
-    const int unreachable = !t30;
-    const real_t t31 = cf_poison(single, invalid | unreachable);
-    const real_t t32 = X * E_12 - t17 * E_22;
-    const real_t t33 = h * (E_11 * E_23 - E_13 * E_21);
-    const real_t t34 = X * E_13 - t17 * E_23;
-    const real_t t35 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t36 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t24 - t25 + t31;
-    p[1] = t32 - t33 + t31;
-    p[2] = t34 - t35 + t31;
-    p[3] = -(t24 + t25) + t31;
-    p[4] = t33 + t32 + t31;
-    p[5] = t35 + t34 + t31;
-    status[0] = t36;
-    status[1] = t36;
+    const real_t m_z = cf_rounded(single, one, a_x * t4) + cf_rounded(single, one, rho1 * d_y);
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = cf_rounded(single, one, a_x * t5) + cf_rounded(single, one, rho1 * d_z);
+    const real_t t7 = cf_rounded(single, one, d_y * m_z) + cf_rounded(single, one, d_z * t6);
+    const real_t t8 = over * t7;
+    const real_t m_x = cf_rounded(single, one, d_y * t5) - cf_rounded(single, one, d_z * t4);
+    const real_t t9 = cf_rounded(single, one, a_x * m_z) - cf_rounded(single, one, d_z * m_x);
+    const real_t n_y = over * t9;
+    const real_t t10 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, n_y * n_y);
+    const real_t t11 = cf_rounded(single, one, a_x * t6) + cf_rounded(single, one, d_y * m_x);
+    const real_t n_z = over * t11;
+    const real_t nu = t10 + cf_rounded(single, one, n_z * n_z);
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t12 = CLOSEDFORM_C(2.0) * (d_z * d_z) + cf_rounded(single, one, last * last);
+    const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t12), t13);
+    const real_t t14 = cf_rounded(single, one, t4 * (d_y - t4)) + cf_rounded(single, one, t5 * (d_z - t5));
+    const real_t t15 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t14 * CLOSEDFORM_C(0.5));
+    const real_t t16 = cf_rounded(single, one, nu * (t15 * t15)) + mu * CLOSEDFORM_C(0.25);
+    const real_t t17 = cf_rounded(single, one, L * L) - cf_select(all_same, CLOSEDFORM_C(0.0), t16);
+    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t18, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t19 = w_x * h;
+    const real_t t20 = rho1 * CLOSEDFORM_C(0.5) - (rho1 + t8 * t15);
+    const int t21 = cf_nought(L) == 0;
+    const int t22 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t21 & (CLOSEDFORM_C(0.0) <= L) & t22);
+    const real_t t23 = cf_rarely(single, in_line, -t14, CLOSEDFORM_C(0.0));
+    const int t24 = cf_abs(t23) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t25 = t24 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t17);
+    const int unreachable = !t25;
+    const real_t t26 = cf_poison(single, invalid | unreachable);
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t8));
+    const real_t t27 = w_y * h;
+    const real_t t28 = n_y * t15 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t8);
+    const real_t t29 = w_z * h;
+    const real_t t30 = n_z * t15 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t31 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t19 - t20 + t26;
+    p[1] = t27 - t28 + t26;
+    p[2] = t29 - t30 + t26;
+    p[3] = -(t19 + t20) + t26;
+    p[4] = -(t27 + t28) + t26;
+    p[5] = -(t29 + t30) + t26;
+    status[0] = t31;
+    status[1] = t31;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -132,57 +129,51 @@ CF_INLINE void orthoglide_fk_common_kernel(const int single, const real_t one,
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const real_t t3 = CLOSEDFORM_C(1.0) / cf_divisor(single, size_u <= t2, size_u);
-    const real_t E_12 = rho2 * t3;
-    const real_t t4 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t5 = rho1 * t3;
-    const real_t t6 = rho1 * t5;
-    const real_t t7 = rho1 - cf_rounded(single, one, t5 * t6);
-    const real_t t8 = cf_rounded(single, one, t6 * E_12);
-    const real_t t9 = cf_rounded(single, one, t5 * t7) - cf_rounded(single, one, E_12 * t8);
-    const real_t t10 = t7 - cf_rounded(single, one, t5 * t9);
-    const real_t t11 = t8 + cf_rounded(single, one, E_12 * t9);
-    const real_t t12 = t4 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, t11 * t11);
-    const real_t j = cf_sqrt(t12);
-    const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, j <= t2, j);
-    const real_t E_23 = rho3 * t13;
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t14 = t4 / cf_divisor(single, j <= t2, CLOSEDFORM_C(2.0) * j);
-    const real_t t15 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t14 * t14);
-    const real_t rho = cf_sqrt(t15);
-    const real_t t16 = L - rho;
-    const real_t slack = cf_max(t16, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t17 = E_12 * E_23 * h;
-    const real_t t18 = t10 * t13;
-    const real_t t19 = t18 * t14 - (rho1 - X * t5);
-    const int t20 = cf_nought(L) == 0;
-    const int t21 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t20 & (CLOSEDFORM_C(0.0) <= L) & t21);
-    const int t22 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t23 = t22 & (-(size * CLOSEDFORM_FEASIBILITY) <= t16);
-    const int unreachable = !t23;
-    const real_t t24 = cf_poison(single, invalid | unreachable);
-    const real_t t25 = h * (t5 * E_23);
-    const real_t t26 = t11 * t13;
-    const real_t t27 = X * E_12 - t14 * t26;
-    const real_t t28 = t14 * E_23;
-    const real_t t29 = h * (t5 * t26 + E_12 * t18);
-    const real_t t30 = cf_status(single, invalid, unreachable, 0);
-    const int all_same = size_u + cf_sqrt(t1 + t4) <= t2;
-    const int t31 = (size_u <= t2) | all_same | (j <= t2) | (slack <= t2);
-    p[0] = t17 - t19 + t24;
-    p[1] = t25 + t27 + t24;
-    p[2] = t28 + t29 + t24;
-    p[3] = -(t17 + t19) + t24;
-    p[4] = t27 - t25 + t24;
-    p[5] = t28 - t29 + t24;
-    status[0] = t30;
-    status[1] = t30;
-    rare[0] = (t31) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t m_z = rho1 * rho2;
+    const real_t t6 = over * (rho2 * m_z);
+    const real_t t7 = over * (rho1 * m_z);
+    const real_t t8 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t7 * t7);
+    const real_t nu = t8 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), u_u * nu);
+    const real_t t9 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t10 = u_u * t9 * part * CLOSEDFORM_C(0.5);
+    const real_t t11 = cf_rounded(single, one, nu * (t10 * t10)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t12 = cf_rounded(single, one, L * L) - t11;
+    const real_t slack = cf_max(t12, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t13 = rho2 * n_z * h;
+    const real_t t14 = t6 * t10 - (rho1 - rho1 * CLOSEDFORM_C(0.5));
+    const int t15 = cf_nought(L) == 0;
+    const int t16 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t15 & (CLOSEDFORM_C(0.0) <= L) & t16);
+    const int t17 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const real_t t18 = L * size * CLOSEDFORM_C(2.0);
+    const int t19 = t17 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t12);
+    const int unreachable = !t19;
+    const real_t t20 = cf_poison(single, invalid | unreachable);
+    const real_t t21 = rho1 * n_z * h;
+    const real_t t22 = t7 * t10 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t23 = n_z * t10;
+    const real_t t24 = (rho1 * t7 + rho2 * t6) * h;
+    const real_t t25 = cf_status(single, invalid, unreachable, 0);
+    const int t26 = (u_u <= t3) | (u_u + (t1 + t9) <= t3) | (nu <= t3);
+    p[0] = t13 - t14 + t20;
+    p[1] = t21 - t22 + t20;
+    p[2] = t23 + t24 + t20;
+    p[3] = -(t13 + t14) + t20;
+    p[4] = -(t21 + t22) + t20;
+    p[5] = t23 - t24 + t20;
+    status[0] = t25;
+    status[1] = t25;
+    rare[0] = (t26 | (slack <= CLOSEDFORM_VANISHING * t18)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_fk_common_batch(size_t n, const orthoglide_params *params,
@@ -244,52 +235,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_fk(const orthoglide_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_fk_common(params, q, p, status, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_fk_whole(params, q, p, status);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(6, p_degrees, exponent, p, p);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_fk_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_2);
-}
-
-CF_RARE void orthoglide_fk_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *p, size_t p_stride,
-    uint8_t *status, size_t status_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_fk_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t p_i[6];
-        uint8_t status_i[2];
-        orthoglide_fk(params, q_i, p_i, status_i);
-        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
-        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -298,7 +246,6 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
     real_t *p, size_t p_stride,
     uint8_t *status, size_t status_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -314,11 +261,6 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_fk_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_fk_other_sizes(length, dimensions, params, q + start, q_stride, p + start, p_stride, status + start, status_stride);
     }
 }
 
@@ -333,39 +275,41 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const int t1 = cf_nought(L) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const real_t t3 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t3 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t3 + rho3 * rho3);
+    const real_t u_u = t3 + rho2 * rho2;
+    const real_t v_v = t3 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t4;
-    const int same = size_u <= t4;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
+    const real_t t4 = size * size;
+    const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t4;
+    const int all_same = u_u + v_v <= t5;
+    const int same = u_u <= t5;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t6 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t7 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t9 = rho1 * E_11 - E_12 * t6 - E_13 * t8;
-    const real_t t10 = rho1 - E_11 * t9;
-    const real_t m_y = t6 + E_12 * t9;
-    const real_t m_z = t8 + E_13 * t9;
-    const real_t t11 = E_11 * t10 - E_12 * m_y - E_13 * m_z;
-    const real_t t12 = t10 - E_11 * t11;
-    const real_t n_y = m_y + E_12 * t11;
-    const real_t n_z = m_z + E_13 * t11;
-    const real_t j = cf_sqrt(t12 * t12 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t4;
-    const real_t t13 = t6 * (t5 - t6) + t8 * (t7 - t8);
-    const real_t t14 = cf_rarely(single, in_line, -t13, CLOSEDFORM_C(0.0));
-    const int t15 = cf_abs(t14) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t16 = t13 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = L - rho;
-    const int t19 = t15 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
+    const real_t m_z = a_x * t6 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t7 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t8 = a_x * t7 + rho1 * d_z;
+    const real_t t9 = over * (d_y * m_z + d_z * t8);
+    const real_t m_x = d_y * t7 - d_z * t6;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t8 + d_y * m_x);
+    const real_t nu = t9 * t9 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t5;
+    const real_t t10 = t6 * (d_y - t6) + t7 * (d_z - t7);
+    const real_t t11 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
+    const int t12 = cf_abs(t11) <= t4 * CLOSEDFORM_FEASIBILITY;
+    const real_t t13 = L * size * CLOSEDFORM_C(2.0);
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t last = d_y + a_x * side;
+    const real_t t14 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t14), t15);
+    const real_t t16 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t17 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t16 * t16) + mu * CLOSEDFORM_C(0.25));
+    const real_t t18 = L * L - t17;
+    const int t19 = t12 & (-(CLOSEDFORM_FEASIBILITY * t13) <= t18);
     const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | (!t19);
     const real_t t20 = cf_poison(single, failed);
     const real_t t21 = CLOSEDFORM_C(0.0) + t20;
@@ -373,35 +317,31 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t23 = L * CLOSEDFORM_C(0.0625);
     const real_t t24 = t23 + t20;
     const real_t t25 = -t23 + t20;
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
     const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t4, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t26 = cf_sign(E_13);
-    const real_t t27 = E_11 * t26;
-    const real_t E_23 = cf_rarely(single, in_line, -t27, n_z / cf_divisor(single, in_line, j));
-    const real_t t28 = E_13 + t26;
-    const real_t t29 = cf_nonzero(single, t28);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t27 / t29), n_y / cf_divisor(single, in_line, j));
-    const real_t t30 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t26 / t29, -(t12 / cf_divisor(single, in_line, j)));
-    const real_t t31 = E_11 * X - E_21 * t17;
-    const real_t t32 = rho1 + (t30 + t31);
-    const real_t t33 = t32 + t20;
-    const real_t t34 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t35 = E_12 * X - t17 * E_22;
-    const real_t t36 = t34 - t35;
-    const real_t t37 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t38 = E_13 * X - E_23 * t17;
-    const real_t t39 = t37 - t38;
-    const real_t t40 = -t39 + t20;
-    const real_t t41 = rho2 + t20;
-    const real_t t42 = -t36 + t20;
-    const real_t t43 = rho3 + t20;
-    const real_t t44 = rho1 - (t30 - t31);
-    const real_t t45 = t44 + t20;
-    const real_t A_12_inner = t34 + t35;
-    const real_t A_13_inner = t37 + t38;
-    const real_t t46 = A_13_inner + t20;
-    const real_t t47 = A_12_inner + t20;
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t13, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t26 = w_x * h;
+    const real_t t27 = t9 * t16 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t t28 = rho1 + (t26 + t27);
+    const real_t t29 = t28 + t20;
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t9));
+    const real_t t30 = w_y * h;
+    const real_t t31 = n_y * t16 - d_y * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t30 - t31;
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t9);
+    const real_t t32 = w_z * h;
+    const real_t t33 = n_z * t16 - d_z * CLOSEDFORM_C(0.5);
+    const real_t A_13 = t32 - t33;
+    const real_t t34 = A_13 + t20;
+    const real_t t35 = rho2 + t20;
+    const real_t t36 = A_12 + t20;
+    const real_t t37 = rho3 + t20;
+    const real_t t38 = rho1 - (t26 - t27);
+    const real_t t39 = t38 + t20;
+    const real_t t40 = t30 + t31;
+    const real_t t41 = t32 + t33;
+    const real_t t42 = -t41 + t20;
+    const real_t t43 = -t40 + t20;
     points[0] = t21;
     points[1] = t21;
     points[2] = t21;
@@ -414,51 +354,51 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     points[9] = t22;
     points[10] = t25;
     points[11] = t21;
-    points[12] = t33;
-    points[13] = t23 - t36 + t20;
-    points[14] = t40;
-    points[15] = t33;
-    points[16] = -(t23 + t36) + t20;
-    points[17] = t40;
+    points[12] = t29;
+    points[13] = t23 + A_12 + t20;
+    points[14] = t34;
+    points[15] = t29;
+    points[16] = A_12 - t23 + t20;
+    points[17] = t34;
     points[18] = t21;
     points[19] = t21;
     points[20] = t21;
     points[21] = t21;
-    points[22] = t41;
+    points[22] = t35;
     points[23] = t21;
     points[24] = t21;
-    points[25] = t41;
+    points[25] = t35;
     points[26] = t24;
     points[27] = t21;
-    points[28] = t41;
+    points[28] = t35;
     points[29] = t25;
-    points[30] = t33;
-    points[31] = t42;
-    points[32] = t23 - t39 + t20;
-    points[33] = t33;
-    points[34] = t42;
-    points[35] = -(t23 + t39) + t20;
+    points[30] = t29;
+    points[31] = t36;
+    points[32] = t23 + A_13 + t20;
+    points[33] = t29;
+    points[34] = t36;
+    points[35] = A_13 - t23 + t20;
     points[36] = t21;
     points[37] = t21;
     points[38] = t21;
     points[39] = t21;
     points[40] = t21;
-    points[41] = t43;
+    points[41] = t37;
     points[42] = t24;
     points[43] = t21;
-    points[44] = t43;
+    points[44] = t37;
     points[45] = t25;
     points[46] = t21;
-    points[47] = t43;
-    points[48] = t23 + t32 + t20;
-    points[49] = t42;
-    points[50] = t40;
-    points[51] = t32 - t23 + t20;
-    points[52] = t42;
-    points[53] = t40;
-    points[54] = t33;
-    points[55] = t42;
-    points[56] = t40;
+    points[47] = t37;
+    points[48] = t23 + t28 + t20;
+    points[49] = t36;
+    points[50] = t34;
+    points[51] = t28 - t23 + t20;
+    points[52] = t36;
+    points[53] = t34;
+    points[54] = t29;
+    points[55] = t36;
+    points[56] = t34;
     points[57] = t21;
     points[58] = t21;
     points[59] = t21;
@@ -471,51 +411,51 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     points[66] = t22;
     points[67] = t25;
     points[68] = t21;
-    points[69] = t45;
-    points[70] = t23 + A_12_inner + t20;
-    points[71] = t46;
-    points[72] = t45;
-    points[73] = A_12_inner - t23 + t20;
-    points[74] = t46;
+    points[69] = t39;
+    points[70] = t23 - t40 + t20;
+    points[71] = t42;
+    points[72] = t39;
+    points[73] = -(t23 + t40) + t20;
+    points[74] = t42;
     points[75] = t21;
     points[76] = t21;
     points[77] = t21;
     points[78] = t21;
-    points[79] = t41;
+    points[79] = t35;
     points[80] = t21;
     points[81] = t21;
-    points[82] = t41;
+    points[82] = t35;
     points[83] = t24;
     points[84] = t21;
-    points[85] = t41;
+    points[85] = t35;
     points[86] = t25;
-    points[87] = t45;
-    points[88] = t47;
-    points[89] = t23 + A_13_inner + t20;
-    points[90] = t45;
-    points[91] = t47;
-    points[92] = A_13_inner - t23 + t20;
+    points[87] = t39;
+    points[88] = t43;
+    points[89] = t23 - t41 + t20;
+    points[90] = t39;
+    points[91] = t43;
+    points[92] = -(t23 + t41) + t20;
     points[93] = t21;
     points[94] = t21;
     points[95] = t21;
     points[96] = t21;
     points[97] = t21;
-    points[98] = t43;
+    points[98] = t37;
     points[99] = t24;
     points[100] = t21;
-    points[101] = t43;
+    points[101] = t37;
     points[102] = t25;
     points[103] = t21;
-    points[104] = t43;
-    points[105] = t23 + t44 + t20;
-    points[106] = t47;
-    points[107] = t46;
-    points[108] = t44 - t23 + t20;
-    points[109] = t47;
-    points[110] = t46;
-    points[111] = t45;
-    points[112] = t47;
-    points[113] = t46;
+    points[104] = t37;
+    points[105] = t23 + t38 + t20;
+    points[106] = t43;
+    points[107] = t42;
+    points[108] = t38 - t23 + t20;
+    points[109] = t43;
+    points[110] = t42;
+    points[111] = t39;
+    points[112] = t43;
+    points[113] = t42;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -537,176 +477,172 @@ CF_INLINE void orthoglide_skeleton_common_kernel(const int single, const real_t 
     const int t1 = cf_nought(L) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const int t3 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const real_t t4 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t4 + cf_rounded(single, one, rho2 * rho2));
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t5 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t6 = size * CLOSEDFORM_VANISHING;
-    const real_t t7 = rho1 / cf_divisor(single, size_u <= t6, size_u);
-    const real_t t8 = rho1 * t7;
-    const real_t t9 = rho1 - cf_rounded(single, one, t7 * t8);
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t6, size_u);
-    const real_t t10 = cf_rounded(single, one, t8 * E_12);
-    const real_t t11 = cf_rounded(single, one, t7 * t9) - cf_rounded(single, one, E_12 * t10);
-    const real_t t12 = t9 - cf_rounded(single, one, t7 * t11);
-    const real_t t13 = t10 + cf_rounded(single, one, E_12 * t11);
-    const real_t t14 = t5 + cf_rounded(single, one, t12 * t12) + cf_rounded(single, one, t13 * t13);
-    const real_t j = cf_sqrt(t14);
-    const real_t t15 = t5 / cf_divisor(single, j <= t6, CLOSEDFORM_C(2.0) * j);
-    const real_t t16 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t15 * t15);
-    const real_t rho = cf_sqrt(t16);
-    const real_t t17 = L - rho;
-    const int t18 = t3 & (-(size * CLOSEDFORM_FEASIBILITY) <= t17);
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | (!t18);
-    const real_t t19 = cf_poison(single, failed);
-    const real_t t20 = CLOSEDFORM_C(0.0) + t19;
-    const real_t t21 = rho1 + t19;
-    const real_t t22 = L * CLOSEDFORM_C(0.0625);
-    const real_t t23 = t22 + t19;
-    const real_t t24 = -t22 + t19;
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t6, j);
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t25 = E_12 * E_23 * h;
-    const real_t t26 = t12 / cf_divisor(single, j <= t6, j);
-    const real_t t27 = t7 * X + t15 * t26;
-    const real_t t28 = rho1 + (t25 - t27);
-    const real_t t29 = t28 + t19;
-    const real_t t30 = t7 * E_23 * h;
-    const real_t t31 = t13 / cf_divisor(single, j <= t6, j);
-    const real_t t32 = E_12 * X - t15 * t31;
-    const real_t A_12 = t30 + t32;
-    const real_t t33 = t15 * E_23;
-    const real_t t34 = (t7 * t31 + E_12 * t26) * h;
-    const real_t A_13 = t33 + t34;
-    const real_t t35 = A_13 + t19;
-    const real_t t36 = rho2 + t19;
-    const real_t t37 = A_12 + t19;
-    const real_t t38 = rho3 + t19;
-    const real_t t39 = rho1 - (t25 + t27);
-    const real_t t40 = t39 + t19;
-    const real_t t41 = t30 - t32;
-    const real_t A_13_inner = t33 - t34;
-    const real_t t42 = A_13_inner + t19;
-    const real_t t43 = -t41 + t19;
-    const int all_same = size_u + cf_sqrt(t4 + t5) <= t6;
-    const int t44 = (size_u <= t6) | all_same | (j <= t6) | (slack <= t6);
-    points[0] = t20;
-    points[1] = t20;
-    points[2] = t20;
-    points[3] = t21;
-    points[4] = t20;
-    points[5] = t20;
-    points[6] = t21;
-    points[7] = t23;
-    points[8] = t20;
-    points[9] = t21;
-    points[10] = t24;
-    points[11] = t20;
-    points[12] = t29;
-    points[13] = t22 + A_12 + t19;
-    points[14] = t35;
-    points[15] = t29;
-    points[16] = A_12 - t22 + t19;
-    points[17] = t35;
-    points[18] = t20;
-    points[19] = t20;
-    points[20] = t20;
-    points[21] = t20;
-    points[22] = t36;
-    points[23] = t20;
-    points[24] = t20;
-    points[25] = t36;
-    points[26] = t23;
-    points[27] = t20;
-    points[28] = t36;
-    points[29] = t24;
-    points[30] = t29;
-    points[31] = t37;
-    points[32] = t22 + A_13 + t19;
-    points[33] = t29;
-    points[34] = t37;
-    points[35] = A_13 - t22 + t19;
-    points[36] = t20;
-    points[37] = t20;
-    points[38] = t20;
-    points[39] = t20;
-    points[40] = t20;
-    points[41] = t38;
-    points[42] = t23;
-    points[43] = t20;
-    points[44] = t38;
-    points[45] = t24;
-    points[46] = t20;
-    points[47] = t38;
-    points[48] = t22 + t28 + t19;
-    points[49] = t37;
-    points[50] = t35;
-    points[51] = t28 - t22 + t19;
-    points[52] = t37;
-    points[53] = t35;
-    points[54] = t29;
-    points[55] = t37;
-    points[56] = t35;
-    points[57] = t20;
-    points[58] = t20;
-    points[59] = t20;
-    points[60] = t21;
-    points[61] = t20;
-    points[62] = t20;
-    points[63] = t21;
-    points[64] = t23;
-    points[65] = t20;
-    points[66] = t21;
-    points[67] = t24;
-    points[68] = t20;
-    points[69] = t40;
-    points[70] = t22 - t41 + t19;
-    points[71] = t42;
-    points[72] = t40;
-    points[73] = -(t22 + t41) + t19;
-    points[74] = t42;
-    points[75] = t20;
-    points[76] = t20;
-    points[77] = t20;
-    points[78] = t20;
-    points[79] = t36;
-    points[80] = t20;
-    points[81] = t20;
-    points[82] = t36;
-    points[83] = t23;
-    points[84] = t20;
-    points[85] = t36;
-    points[86] = t24;
-    points[87] = t40;
-    points[88] = t43;
-    points[89] = t22 + A_13_inner + t19;
-    points[90] = t40;
-    points[91] = t43;
-    points[92] = A_13_inner - t22 + t19;
-    points[93] = t20;
-    points[94] = t20;
-    points[95] = t20;
-    points[96] = t20;
-    points[97] = t20;
-    points[98] = t38;
-    points[99] = t23;
-    points[100] = t20;
-    points[101] = t38;
-    points[102] = t24;
-    points[103] = t20;
-    points[104] = t38;
-    points[105] = t22 + t39 + t19;
-    points[106] = t43;
-    points[107] = t42;
-    points[108] = t39 - t22 + t19;
-    points[109] = t43;
-    points[110] = t42;
-    points[111] = t40;
-    points[112] = t43;
-    points[113] = t42;
-    rare[0] = (t44) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t3 = size * size;
+    const int t4 = cf_abs(CLOSEDFORM_C(0.0)) <= t3 * CLOSEDFORM_FEASIBILITY;
+    const real_t t5 = L * size * CLOSEDFORM_C(2.0);
+    const real_t t6 = cf_rounded(single, one, rho1 * rho1);
+    const real_t u_u = t6 + cf_rounded(single, one, rho2 * rho2);
+    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t3;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t7, u_u);
+    const real_t m_z = rho1 * rho2;
+    const real_t t8 = over * (rho2 * m_z);
+    const real_t t9 = over * (rho1 * m_z);
+    const real_t t10 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, t9 * t9);
+    const real_t t11 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t12 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t11 + t12);
+    const real_t nu = t10 + cf_rounded(single, one, n_z * n_z);
+    const real_t t13 = cf_rounded(single, one, rho3 * rho3);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t7) | (nu <= t7), u_u * nu);
+    const real_t t14 = u_u * t13 * part * CLOSEDFORM_C(0.5);
+    const real_t t15 = cf_rounded(single, one, nu * (t14 * t14)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t16 = cf_rounded(single, one, L * L) - t15;
+    const int unreachable = !(t4 & (-(CLOSEDFORM_FEASIBILITY * t5) <= t16));
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | unreachable;
+    const real_t t17 = cf_poison(single, failed);
+    const real_t t18 = CLOSEDFORM_C(0.0) + t17;
+    const real_t t19 = rho1 + t17;
+    const real_t t20 = L * CLOSEDFORM_C(0.0625);
+    const real_t t21 = t20 + t17;
+    const real_t t22 = -t20 + t17;
+    const real_t slack = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t23 = rho2 * n_z * h;
+    const real_t t24 = rho1 * CLOSEDFORM_C(0.5) + t8 * t14;
+    const real_t t25 = rho1 + (t23 - t24);
+    const real_t t26 = t25 + t17;
+    const real_t t27 = rho1 * n_z * h;
+    const real_t t28 = t9 * t14 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t27 - t28;
+    const real_t t29 = n_z * t14;
+    const real_t t30 = (rho1 * t9 + rho2 * t8) * h;
+    const real_t A_13 = t29 + t30;
+    const real_t t31 = A_13 + t17;
+    const real_t t32 = rho2 + t17;
+    const real_t t33 = A_12 + t17;
+    const real_t t34 = rho3 + t17;
+    const real_t t35 = rho1 - (t23 + t24);
+    const real_t t36 = t35 + t17;
+    const real_t t37 = t27 + t28;
+    const real_t A_13_inner = t29 - t30;
+    const real_t t38 = A_13_inner + t17;
+    const real_t t39 = -t37 + t17;
+    const int t40 = (u_u <= t7) | (u_u + (t6 + t13) <= t7) | (nu <= t7);
+    points[0] = t18;
+    points[1] = t18;
+    points[2] = t18;
+    points[3] = t19;
+    points[4] = t18;
+    points[5] = t18;
+    points[6] = t19;
+    points[7] = t21;
+    points[8] = t18;
+    points[9] = t19;
+    points[10] = t22;
+    points[11] = t18;
+    points[12] = t26;
+    points[13] = t20 + A_12 + t17;
+    points[14] = t31;
+    points[15] = t26;
+    points[16] = A_12 - t20 + t17;
+    points[17] = t31;
+    points[18] = t18;
+    points[19] = t18;
+    points[20] = t18;
+    points[21] = t18;
+    points[22] = t32;
+    points[23] = t18;
+    points[24] = t18;
+    points[25] = t32;
+    points[26] = t21;
+    points[27] = t18;
+    points[28] = t32;
+    points[29] = t22;
+    points[30] = t26;
+    points[31] = t33;
+    points[32] = t20 + A_13 + t17;
+    points[33] = t26;
+    points[34] = t33;
+    points[35] = A_13 - t20 + t17;
+    points[36] = t18;
+    points[37] = t18;
+    points[38] = t18;
+    points[39] = t18;
+    points[40] = t18;
+    points[41] = t34;
+    points[42] = t21;
+    points[43] = t18;
+    points[44] = t34;
+    points[45] = t22;
+    points[46] = t18;
+    points[47] = t34;
+    points[48] = t20 + t25 + t17;
+    points[49] = t33;
+    points[50] = t31;
+    points[51] = t25 - t20 + t17;
+    points[52] = t33;
+    points[53] = t31;
+    points[54] = t26;
+    points[55] = t33;
+    points[56] = t31;
+    points[57] = t18;
+    points[58] = t18;
+    points[59] = t18;
+    points[60] = t19;
+    points[61] = t18;
+    points[62] = t18;
+    points[63] = t19;
+    points[64] = t21;
+    points[65] = t18;
+    points[66] = t19;
+    points[67] = t22;
+    points[68] = t18;
+    points[69] = t36;
+    points[70] = t20 - t37 + t17;
+    points[71] = t38;
+    points[72] = t36;
+    points[73] = -(t20 + t37) + t17;
+    points[74] = t38;
+    points[75] = t18;
+    points[76] = t18;
+    points[77] = t18;
+    points[78] = t18;
+    points[79] = t32;
+    points[80] = t18;
+    points[81] = t18;
+    points[82] = t32;
+    points[83] = t21;
+    points[84] = t18;
+    points[85] = t32;
+    points[86] = t22;
+    points[87] = t36;
+    points[88] = t39;
+    points[89] = t20 + A_13_inner + t17;
+    points[90] = t36;
+    points[91] = t39;
+    points[92] = A_13_inner - t20 + t17;
+    points[93] = t18;
+    points[94] = t18;
+    points[95] = t18;
+    points[96] = t18;
+    points[97] = t18;
+    points[98] = t34;
+    points[99] = t21;
+    points[100] = t18;
+    points[101] = t34;
+    points[102] = t22;
+    points[103] = t18;
+    points[104] = t34;
+    points[105] = t20 + t35 + t17;
+    points[106] = t39;
+    points[107] = t38;
+    points[108] = t35 - t20 + t17;
+    points[109] = t39;
+    points[110] = t38;
+    points[111] = t36;
+    points[112] = t39;
+    points[113] = t38;
+    rare[0] = (t40 | (slack <= CLOSEDFORM_VANISHING * t5)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_params *params,
@@ -862,49 +798,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
     real_t points[114])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[114] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_skeleton_common(params, q, points, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_skeleton_whole(params, q, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(114, points_degrees, exponent, points, points);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_skeleton_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_2);
-}
-
-CF_RARE void orthoglide_skeleton_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[114];
-        orthoglide_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -912,7 +808,6 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -926,11 +821,6 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_skeleton_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_skeleton_other_sizes(length, dimensions, params, q + start, q_stride, points + start, points_stride);
     }
 }
 
@@ -943,88 +833,86 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const real_t A_11 = t19 + t20;
-    const int t21 = cf_nought(L) == 0;
-    const int t22 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t23 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t24 = cf_abs(t23) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t25 = t24 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t21 & (CLOSEDFORM_C(0.0) <= L) & t22)) | (!t25);
-    const real_t t26 = cf_poison(single, failed);
-    const real_t t27 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t28 = E_12 * X - t13 * E_22;
-    const real_t t29 = t27 - t28;
-    const real_t t30 = -t29 + t26;
-    const real_t t31 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t32 = E_13 * X - E_23 * t13;
-    const real_t t33 = t31 - t32;
-    const real_t t34 = -t33 + t26;
-    const real_t t35 = rho1 + A_11 + t26;
-    const real_t t36 = t19 - t20;
-    const real_t A_12_inner = t27 + t28;
-    const real_t t37 = A_12_inner + t26;
-    const real_t A_13_inner = t31 + t32;
-    const real_t t38 = A_13_inner + t26;
-    const real_t t39 = rho1 - t36 + t26;
-    A[0] = A_11 + t26;
-    A[1] = t30;
-    A[2] = t34;
-    A[3] = t35;
-    A[4] = -(rho2 + t29) + t26;
-    A[5] = t34;
-    A[6] = t35;
-    A[7] = t30;
-    A[8] = -(rho3 + t33) + t26;
-    A[9] = -t36 + t26;
-    A[10] = t37;
-    A[11] = t38;
-    A[12] = t39;
-    A[13] = A_12_inner - rho2 + t26;
-    A[14] = t38;
-    A[15] = t39;
-    A[16] = t37;
-    A[17] = A_13_inner - rho3 + t26;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t13 = L * L - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t t14 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t15 = w_x * h;
+    const real_t t16 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t A_11 = t15 + t16;
+    const int t17 = cf_nought(L) == 0;
+    const int t18 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t19 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
+    const int t20 = cf_abs(t19) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t21 = t20 & (-(CLOSEDFORM_FEASIBILITY * t14) <= t13);
+    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L) & t18)) | (!t21);
+    const real_t t22 = cf_poison(single, failed);
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t23 = w_y * h;
+    const real_t t24 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t23 - t24;
+    const real_t t25 = A_12 + t22;
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t26 = w_z * h;
+    const real_t t27 = n_z * t11 - d_z * CLOSEDFORM_C(0.5);
+    const real_t A_13 = t26 - t27;
+    const real_t t28 = A_13 + t22;
+    const real_t t29 = rho1 + A_11 + t22;
+    const real_t t30 = t15 - t16;
+    const real_t t31 = t23 + t24;
+    const real_t t32 = -t31 + t22;
+    const real_t t33 = t26 + t27;
+    const real_t t34 = -t33 + t22;
+    const real_t t35 = rho1 - t30 + t22;
+    A[0] = A_11 + t22;
+    A[1] = t25;
+    A[2] = t28;
+    A[3] = t29;
+    A[4] = A_12 - rho2 + t22;
+    A[5] = t28;
+    A[6] = t29;
+    A[7] = t25;
+    A[8] = A_13 - rho3 + t22;
+    A[9] = -t30 + t22;
+    A[10] = t32;
+    A[11] = t34;
+    A[12] = t35;
+    A[13] = -(rho2 + t31) + t22;
+    A[14] = t34;
+    A[15] = t35;
+    A[16] = t32;
+    A[17] = -(rho3 + t33) + t22;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1044,75 +932,71 @@ CF_INLINE void orthoglide_jacobian_parallel_common_kernel(const int single, cons
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t3 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t3 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t2, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t12 = t3 / cf_divisor(single, j <= t2, CLOSEDFORM_C(2.0) * j);
-    const real_t t13 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t15 = E_12 * E_23 * h;
-    const real_t t16 = t9 / cf_divisor(single, j <= t2, j);
-    const real_t t17 = t4 * X + t16 * t12;
-    const real_t A_11 = t15 - t17;
-    const int t18 = cf_nought(L) == 0;
-    const int t19 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t20 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t21 = t20 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L) & t19)) | (!t21);
-    const real_t t22 = cf_poison(single, failed);
-    const real_t t23 = t4 * E_23 * h;
-    const real_t t24 = t10 / cf_divisor(single, j <= t2, j);
-    const real_t t25 = X * E_12 - t12 * t24;
-    const real_t A_12 = t23 + t25;
-    const real_t t26 = A_12 + t22;
-    const real_t t27 = t12 * E_23;
-    const real_t t28 = (t4 * t24 + E_12 * t16) * h;
-    const real_t A_13 = t27 + t28;
-    const real_t t29 = A_13 + t22;
-    const real_t t30 = rho1 + A_11 + t22;
-    const real_t t31 = t15 + t17;
-    const real_t t32 = t23 - t25;
-    const real_t t33 = -t32 + t22;
-    const real_t A_13_inner = t27 - t28;
-    const real_t t34 = A_13_inner + t22;
-    const real_t t35 = rho1 - t31 + t22;
-    const int all_same = size_u + cf_sqrt(t1 + t3) <= t2;
-    const int t36 = (size_u <= t2) | all_same | (j <= t2) | (slack <= t2);
-    A[0] = A_11 + t22;
-    A[1] = t26;
-    A[2] = t29;
-    A[3] = t30;
-    A[4] = A_12 - rho2 + t22;
-    A[5] = t29;
-    A[6] = t30;
-    A[7] = t26;
-    A[8] = A_13 - rho3 + t22;
-    A[9] = -t31 + t22;
-    A[10] = t33;
-    A[11] = t34;
-    A[12] = t35;
-    A[13] = -(rho2 + t32) + t22;
-    A[14] = t34;
-    A[15] = t35;
-    A[16] = t33;
-    A[17] = A_13_inner - rho3 + t22;
-    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t m_z = rho1 * rho2;
+    const real_t t6 = over * (rho2 * m_z);
+    const real_t t7 = over * (rho1 * m_z);
+    const real_t t8 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t7 * t7);
+    const real_t nu = t8 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), u_u * nu);
+    const real_t t9 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t10 = u_u * t9 * part * CLOSEDFORM_C(0.5);
+    const real_t t11 = cf_rounded(single, one, nu * (t10 * t10)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t12 = cf_rounded(single, one, L * L) - t11;
+    const real_t slack = cf_max(t12, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t13 = rho2 * n_z * h;
+    const real_t t14 = rho1 * CLOSEDFORM_C(0.5) + t6 * t10;
+    const real_t A_11 = t13 - t14;
+    const int t15 = cf_nought(L) == 0;
+    const int t16 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t17 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const real_t t18 = L * size * CLOSEDFORM_C(2.0);
+    const int t19 = t17 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t12);
+    const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L) & t16)) | (!t19);
+    const real_t t20 = cf_poison(single, failed);
+    const real_t t21 = rho1 * n_z * h;
+    const real_t t22 = t7 * t10 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t21 - t22;
+    const real_t t23 = A_12 + t20;
+    const real_t t24 = n_z * t10;
+    const real_t t25 = (rho1 * t7 + rho2 * t6) * h;
+    const real_t A_13 = t24 + t25;
+    const real_t t26 = A_13 + t20;
+    const real_t t27 = rho1 + A_11 + t20;
+    const real_t t28 = t13 + t14;
+    const real_t t29 = t21 + t22;
+    const real_t t30 = -t29 + t20;
+    const real_t A_13_inner = t24 - t25;
+    const real_t t31 = A_13_inner + t20;
+    const real_t t32 = rho1 - t28 + t20;
+    const int t33 = (u_u <= t3) | (u_u + (t1 + t9) <= t3) | (nu <= t3);
+    A[0] = A_11 + t20;
+    A[1] = t23;
+    A[2] = t26;
+    A[3] = t27;
+    A[4] = A_12 - rho2 + t20;
+    A[5] = t26;
+    A[6] = t27;
+    A[7] = t23;
+    A[8] = A_13 - rho3 + t20;
+    A[9] = -t28 + t20;
+    A[10] = t30;
+    A[11] = t31;
+    A[12] = t32;
+    A[13] = -(rho2 + t29) + t20;
+    A[14] = t31;
+    A[15] = t32;
+    A[16] = t30;
+    A[17] = A_13_inner - rho3 + t20;
+    rare[0] = (t33 | (slack <= CLOSEDFORM_VANISHING * t18)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_jacobian_parallel_common_batch(size_t n, const orthoglide_params *params,
@@ -1172,49 +1056,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian_parallel(const orthoglide_params *params, const real_t q[3],
     real_t A[18])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_jacobian_parallel_common(params, q, A, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_parallel_whole(params, q, A);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(18, A_degrees, exponent, A, A);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_jacobian_parallel_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_2);
-}
-
-CF_RARE void orthoglide_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *A, size_t A_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_jacobian_parallel_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t A_i[18];
-        orthoglide_jacobian_parallel(params, q_i, A_i);
-        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1222,7 +1066,6 @@ void orthoglide_jacobian_parallel_batch(size_t n, const orthoglide_params *param
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1236,11 +1079,6 @@ void orthoglide_jacobian_parallel_batch(size_t n, const orthoglide_params *param
             for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_jacobian_parallel_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_jacobian_parallel_other_sizes(length, dimensions, params, q + start, q_stride, A + start, A_stride);
     }
 }
 
@@ -1253,64 +1091,62 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const int t21 = cf_nought(L) == 0;
-    const int t22 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t23 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t24 = cf_abs(t23) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t25 = t24 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t21 & (CLOSEDFORM_C(0.0) <= L) & t22)) | (!t25);
-    const real_t t26 = cf_poison(single, failed);
-    const real_t t27 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t28 = E_12 * X - t13 * E_22;
-    const real_t t29 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t30 = E_13 * X - E_23 * t13;
-    B[0] = t19 + t20 + t26;
-    B[1] = -(rho2 + (t27 - t28)) + t26;
-    B[2] = -(rho3 + (t29 - t30)) + t26;
-    B[3] = t20 - t19 + t26;
-    B[4] = t27 + t28 - rho2 + t26;
-    B[5] = t29 + t30 - rho3 + t26;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t13 = L * L - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t t14 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t15 = w_x * h;
+    const real_t t16 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
+    const int t17 = cf_nought(L) == 0;
+    const int t18 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t19 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
+    const int t20 = cf_abs(t19) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t21 = t20 & (-(CLOSEDFORM_FEASIBILITY * t14) <= t13);
+    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L) & t18)) | (!t21);
+    const real_t t22 = cf_poison(single, failed);
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t23 = w_y * h;
+    const real_t t24 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t25 = w_z * h;
+    const real_t t26 = n_z * t11 - d_z * CLOSEDFORM_C(0.5);
+    B[0] = t15 + t16 + t22;
+    B[1] = t23 - t24 - rho2 + t22;
+    B[2] = t25 - t26 - rho3 + t22;
+    B[3] = t16 - t15 + t22;
+    B[4] = -(rho2 + (t23 + t24)) + t22;
+    B[5] = -(rho3 + (t25 + t26)) + t22;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1330,51 +1166,47 @@ CF_INLINE void orthoglide_jacobian_serial_common_kernel(const int single, const 
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t3 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t3 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t2, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t12 = t3 / cf_divisor(single, j <= t2, CLOSEDFORM_C(2.0) * j);
-    const real_t t13 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t15 = E_12 * E_23 * h;
-    const real_t t16 = t9 / cf_divisor(single, j <= t2, j);
-    const real_t t17 = t4 * X + t16 * t12;
-    const int t18 = cf_nought(L) == 0;
-    const int t19 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t20 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t21 = t20 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L) & t19)) | (!t21);
-    const real_t t22 = cf_poison(single, failed);
-    const real_t t23 = t4 * E_23 * h;
-    const real_t t24 = t10 / cf_divisor(single, j <= t2, j);
-    const real_t t25 = X * E_12 - t12 * t24;
-    const real_t t26 = t12 * E_23;
-    const real_t t27 = (t4 * t24 + E_12 * t16) * h;
-    const int all_same = size_u + cf_sqrt(t1 + t3) <= t2;
-    const int t28 = (size_u <= t2) | all_same | (j <= t2) | (slack <= t2);
-    B[0] = t15 - t17 + t22;
-    B[1] = t23 + t25 - rho2 + t22;
-    B[2] = t26 + t27 - rho3 + t22;
-    B[3] = -(t15 + t17) + t22;
-    B[4] = -(rho2 + (t23 - t25)) + t22;
-    B[5] = t26 - t27 - rho3 + t22;
-    rare[0] = (t28) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t m_z = rho1 * rho2;
+    const real_t t6 = over * (rho2 * m_z);
+    const real_t t7 = over * (rho1 * m_z);
+    const real_t t8 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t7 * t7);
+    const real_t nu = t8 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), u_u * nu);
+    const real_t t9 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t10 = u_u * t9 * part * CLOSEDFORM_C(0.5);
+    const real_t t11 = cf_rounded(single, one, nu * (t10 * t10)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t12 = cf_rounded(single, one, L * L) - t11;
+    const real_t slack = cf_max(t12, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t13 = rho2 * n_z * h;
+    const real_t t14 = rho1 * CLOSEDFORM_C(0.5) + t6 * t10;
+    const int t15 = cf_nought(L) == 0;
+    const int t16 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t17 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const real_t t18 = L * size * CLOSEDFORM_C(2.0);
+    const int t19 = t17 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t12);
+    const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L) & t16)) | (!t19);
+    const real_t t20 = cf_poison(single, failed);
+    const real_t t21 = rho1 * n_z * h;
+    const real_t t22 = t7 * t10 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t23 = n_z * t10;
+    const real_t t24 = (rho1 * t7 + rho2 * t6) * h;
+    const int t25 = (u_u <= t3) | (u_u + (t1 + t9) <= t3) | (nu <= t3);
+    B[0] = t13 - t14 + t20;
+    B[1] = t21 - t22 - rho2 + t20;
+    B[2] = t23 + t24 - rho3 + t20;
+    B[3] = -(t13 + t14) + t20;
+    B[4] = -(rho2 + (t21 + t22)) + t20;
+    B[5] = t23 - t24 - rho3 + t20;
+    rare[0] = (t25 | (slack <= CLOSEDFORM_VANISHING * t18)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_jacobian_serial_common_batch(size_t n, const orthoglide_params *params,
@@ -1422,49 +1254,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian_serial(const orthoglide_params *params, const real_t q[3],
     real_t B[6])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char B_degrees[6] = { 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_jacobian_serial_common(params, q, B, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_serial_whole(params, q, B);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(6, B_degrees, exponent, B, B);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_jacobian_serial_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_2);
-}
-
-CF_RARE void orthoglide_jacobian_serial_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *B, size_t B_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_jacobian_serial_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t B_i[6];
-        orthoglide_jacobian_serial(params, q_i, B_i);
-        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1472,7 +1264,6 @@ void orthoglide_jacobian_serial_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1486,11 +1277,6 @@ void orthoglide_jacobian_serial_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_jacobian_serial_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_jacobian_serial_other_sizes(length, dimensions, params, q + start, q_stride, B + start, B_stride);
     }
 }
 
@@ -1503,96 +1289,97 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = mu * nu;
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const real_t A_11 = t19 + t20;
-    const real_t t21 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t22 = E_12 * X - t13 * E_22;
+    const real_t t15 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t16 = w_x * h;
+    const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t A_11 = t16 + t17;
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t18 = w_y * h;
+    const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
+    const real_t t20 = t18 - t19;
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t21 = w_z * h;
+    const real_t t22 = n_z * t12 - d_z * CLOSEDFORM_C(0.5);
     const real_t t23 = t21 - t22;
-    const real_t t24 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t25 = E_13 * X - E_23 * t13;
-    const real_t t26 = t24 - t25;
-    const real_t t27 = t23 * t26;
-    const real_t t28 = rho2 + t23;
-    const real_t t29 = rho3 + t26;
-    const real_t Delta = D * j * h;
-    const real_t t30 = cf_nonzero(single, Delta);
-    const int t31 = cf_nought(L) == 0;
-    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t33 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t34 = cf_abs(t33) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t35 = t34 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= L) & t32)) | (!t35);
-    const real_t t36 = cf_poison(single, failed);
+    const real_t t24 = t20 * t23;
+    const real_t t25 = rho2 - t20;
+    const real_t t26 = rho3 - t23;
+    const real_t Delta = t9 * h;
+    const real_t t27 = cf_nonzero(single, Delta);
+    const int t28 = cf_nought(L) == 0;
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t30 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t15) <= t14);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= L) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
     const real_t A_21 = rho1 + A_11;
-    const real_t t37 = t26 * A_21;
-    const real_t t38 = t23 * A_21;
-    const real_t t39 = t19 - t20;
-    const real_t A_12_inner = t21 + t22;
-    const real_t A_13_inner = t24 + t25;
-    const real_t t40 = A_12_inner * A_13_inner;
-    const real_t t41 = rho2 - A_12_inner;
-    const real_t t42 = rho3 - A_13_inner;
-    const real_t A_21_inner = rho1 - t39;
-    const real_t t43 = A_13_inner * A_21_inner;
-    const real_t t44 = A_12_inner * A_21_inner;
-    J[0] = -(A_11 * (t27 - t28 * t29) / t30) + t36;
-    J[1] = -(t28 * (t27 - t23 * t29) / t30) + t36;
-    J[2] = -(t29 * (t27 - t26 * t28) / t30) + t36;
-    J[3] = -(A_11 * (t37 - t29 * A_21) / t30) + t36;
-    J[4] = -(t28 * (t37 - A_11 * t29) / t30) + t36;
-    J[5] = t29 * (t37 - A_11 * t26) / t30 + t36;
-    J[6] = -(A_11 * (t38 - t28 * A_21) / t30) + t36;
-    J[7] = t28 * (t38 - A_11 * t23) / t30 + t36;
-    J[8] = -(t29 * (t38 - A_11 * t28) / t30) + t36;
-    J[9] = -(t39 * (t40 - t41 * t42) / t30) + t36;
-    J[10] = t41 * (t40 + A_12_inner * t42) / t30 + t36;
-    J[11] = t42 * (t40 + A_13_inner * t41) / t30 + t36;
-    J[12] = t39 * (t43 + t42 * A_21_inner) / t30 + t36;
-    J[13] = -(t41 * (t43 - t39 * t42) / t30) + t36;
-    J[14] = t42 * (t43 + t39 * A_13_inner) / t30 + t36;
-    J[15] = t39 * (t44 + t41 * A_21_inner) / t30 + t36;
-    J[16] = t41 * (t44 + t39 * A_12_inner) / t30 + t36;
-    J[17] = -(t42 * (t44 - t39 * t41) / t30) + t36;
+    const real_t t34 = t23 * A_21;
+    const real_t t35 = t20 * A_21;
+    const real_t t36 = t16 - t17;
+    const real_t t37 = t18 + t19;
+    const real_t t38 = t21 + t22;
+    const real_t t39 = t37 * t38;
+    const real_t t40 = rho2 + t37;
+    const real_t t41 = rho3 + t38;
+    const real_t A_21_inner = rho1 - t36;
+    const real_t t42 = t38 * A_21_inner;
+    const real_t t43 = -(t36 * (t42 - t41 * A_21_inner) / t27) + t33;
+    const real_t t44 = t37 * A_21_inner;
+    const real_t t45 = -(t36 * (t44 - t40 * A_21_inner) / t27) + t33;
+    J[0] = -(A_11 * (t24 - t25 * t26) / t27) + t33;
+    J[1] = -(t25 * (t24 + t20 * t26) / t27) + t33;
+    J[2] = -(t26 * (t24 + t23 * t25) / t27) + t33;
+    J[3] = A_11 * (t34 + t26 * A_21) / t27 + t33;
+    J[4] = t25 * (t34 + A_11 * t26) / t27 + t33;
+    J[5] = -(t26 * (t34 - A_11 * t23) / t27) + t33;
+    J[6] = A_11 * (t35 + t25 * A_21) / t27 + t33;
+    J[7] = -(t25 * (t35 - A_11 * t20) / t27) + t33;
+    J[8] = t26 * (t35 + A_11 * t25) / t27 + t33;
+    J[9] = -(t36 * (t39 - t40 * t41) / t27) + t33;
+    J[10] = t40 * (t39 - t37 * t41) / t27 + t33;
+    J[11] = t41 * (t39 - t38 * t40) / t27 + t33;
+    J[12] = t43;
+    J[13] = t40 * (t42 + t36 * t41) / t27 + t33;
+    J[14] = -(t41 * (t42 + t36 * t38) / t27) + t33;
+    J[15] = t45;
+    J[16] = -(t40 * (t44 + t36 * t37) / t27) + t33;
+    J[17] = t41 * (t44 + t36 * t40) / t27 + t33;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1612,81 +1399,78 @@ CF_INLINE void orthoglide_jacobian_common_kernel(const int single, const real_t 
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t3 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t3 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t2, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t12 = t3 / cf_divisor(single, j <= t2, CLOSEDFORM_C(2.0) * j);
-    const real_t t13 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t15 = E_12 * E_23 * h;
-    const real_t t16 = t9 / cf_divisor(single, j <= t2, j);
-    const real_t t17 = t4 * X + t16 * t12;
-    const real_t A_11 = t15 - t17;
-    const real_t t18 = t12 * E_23;
-    const real_t t19 = t10 / cf_divisor(single, j <= t2, j);
-    const real_t t20 = (t4 * t19 + E_12 * t16) * h;
-    const real_t A_13 = t18 + t20;
-    const real_t t21 = t4 * E_23 * h;
-    const real_t t22 = X * E_12 - t12 * t19;
-    const real_t A_12 = t21 + t22;
-    const real_t t23 = A_13 * A_12;
-    const real_t t24 = rho3 - A_13;
-    const real_t t25 = rho2 - A_12;
-    const real_t Delta = size_u * j * h;
-    const real_t t26 = A_11 * (t23 - t24 * t25) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t m_z = rho1 * rho2;
+    const real_t t6 = over * (rho2 * m_z);
+    const real_t t7 = over * (rho1 * m_z);
+    const real_t t8 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t7 * t7);
+    const real_t nu = t8 + cf_rounded(single, one, n_z * n_z);
+    const real_t t9 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), t9);
+    const real_t t10 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t11 = u_u * t10 * part * CLOSEDFORM_C(0.5);
+    const real_t t12 = cf_rounded(single, one, nu * (t11 * t11)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t13 = cf_rounded(single, one, L * L) - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t14 = rho2 * n_z * h;
+    const real_t t15 = rho1 * CLOSEDFORM_C(0.5) + t6 * t11;
+    const real_t A_11 = t14 - t15;
+    const real_t t16 = n_z * t11;
+    const real_t t17 = (rho1 * t7 + rho2 * t6) * h;
+    const real_t t18 = t16 + t17;
+    const real_t t19 = rho1 * n_z * h;
+    const real_t t20 = t7 * t11 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t21 = t19 - t20;
+    const real_t t22 = t18 * t21;
+    const real_t t23 = rho3 - t18;
+    const real_t t24 = rho2 - t21;
+    const real_t Delta = t9 * h;
+    const real_t t25 = L * size * CLOSEDFORM_C(2.0);
+    const real_t t26 = A_11 * (t22 - t23 * t24) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
     const int t27 = cf_nought(L) == 0;
     const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t30 = t29 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
+    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t13);
     const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= L) & t28)) | (!t30);
     const real_t t31 = cf_poison(single, failed);
-    const real_t t32 = t25 * (t23 + t24 * A_12) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t33 = t24 * (t23 + A_13 * t25) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
+    const real_t t32 = t24 * (t22 + t23 * t21) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t33 = t23 * (t22 + t18 * t24) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
     const real_t A_21 = rho1 + A_11;
-    const real_t t34 = A_13 * A_21;
-    const real_t t35 = A_11 * (t34 + t24 * A_21) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t36 = t25 * (t34 + t24 * A_11) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t37 = t24 * (t34 - A_13 * A_11) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t38 = A_12 * A_21;
-    const real_t t39 = A_11 * (t38 + t25 * A_21) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t40 = t25 * (t38 - A_11 * A_12) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t41 = t24 * (t38 + A_11 * t25) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t42 = t15 + t17;
-    const real_t A_13_inner = t18 - t20;
-    const real_t t43 = t21 - t22;
-    const real_t t44 = A_13_inner * t43;
-    const real_t t45 = rho3 - A_13_inner;
-    const real_t t46 = rho2 + t43;
-    const real_t t47 = t42 * (t44 + t45 * t46) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t48 = t46 * (t44 + t45 * t43) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t49 = t45 * (t44 - A_13_inner * t46) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
+    const real_t t34 = t18 * A_21;
+    const real_t t35 = A_11 * (t34 + t23 * A_21) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t36 = t24 * (t34 + t23 * A_11) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t37 = t23 * (t34 - t18 * A_11) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t38 = t21 * A_21;
+    const real_t t39 = A_11 * (t38 + t24 * A_21) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t40 = t24 * (t38 - A_11 * t21) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t41 = t23 * (t38 + A_11 * t24) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t42 = t14 + t15;
+    const real_t t43 = t16 - t17;
+    const real_t t44 = t19 + t20;
+    const real_t t45 = t43 * t44;
+    const real_t t46 = rho3 - t43;
+    const real_t t47 = rho2 + t44;
+    const real_t t48 = t42 * (t45 + t46 * t47) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t49 = t47 * (t45 + t46 * t44) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t50 = t46 * (t45 - t43 * t47) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
     const real_t A_21_inner = rho1 - t42;
-    const real_t t50 = A_13_inner * A_21_inner;
-    const real_t t51 = t42 * (t50 + t45 * A_21_inner) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t52 = t46 * (t50 - t45 * t42) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t53 = t45 * (t50 + A_13_inner * t42) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t54 = t43 * A_21_inner;
-    const real_t t55 = t42 * (t54 - t46 * A_21_inner) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t56 = t46 * (t54 + t42 * t43) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const real_t t57 = t45 * (t54 + t42 * t46) / cf_divisor(single, (size_u <= t2) | (j <= t2) | (slack <= t2), Delta);
-    const int all_same = size_u + cf_sqrt(t1 + t3) <= t2;
-    const int t58 = (size_u <= t2) | all_same | (j <= t2) | (slack <= t2);
+    const real_t t51 = t43 * A_21_inner;
+    const real_t t52 = t42 * (t51 + t46 * A_21_inner) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t53 = t47 * (t51 - t46 * t42) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t54 = t46 * (t51 + t43 * t42) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t55 = t44 * A_21_inner;
+    const real_t t56 = t42 * (t55 - t47 * A_21_inner) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t57 = t47 * (t55 + t42 * t44) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const real_t t58 = t46 * (t55 + t42 * t47) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
+    const int t59 = (u_u <= t3) | (u_u + (t1 + t10) <= t3) | (nu <= t3);
     J[0] = -t26 + t31;
     J[1] = -t32 + t31;
     J[2] = -t33 + t31;
@@ -1696,16 +1480,16 @@ CF_INLINE void orthoglide_jacobian_common_kernel(const int single, const real_t 
     J[6] = t39 + t31;
     J[7] = -t40 + t31;
     J[8] = t41 + t31;
-    J[9] = t47 + t31;
-    J[10] = -t48 + t31;
-    J[11] = -t49 + t31;
-    J[12] = t51 + t31;
-    J[13] = -t52 + t31;
-    J[14] = t53 + t31;
-    J[15] = -t55 + t31;
-    J[16] = -t56 + t31;
-    J[17] = t57 + t31;
-    rare[0] = (t58) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    J[9] = t48 + t31;
+    J[10] = -t49 + t31;
+    J[11] = -t50 + t31;
+    J[12] = t52 + t31;
+    J[13] = -t53 + t31;
+    J[14] = t54 + t31;
+    J[15] = -t56 + t31;
+    J[16] = -t57 + t31;
+    J[17] = t58 + t31;
+    rare[0] = (t59 | (slack <= CLOSEDFORM_VANISHING * t25)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_jacobian_common_batch(size_t n, const orthoglide_params *params,
@@ -1765,45 +1549,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian(const orthoglide_params *params, const real_t q[3],
     real_t J[18])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_jacobian_common(params, q, J, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_whole(params, q, J);
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_jacobian_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
-}
-
-CF_RARE void orthoglide_jacobian_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_jacobian_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t J_i[18];
-        orthoglide_jacobian(params, q_i, J_i);
-        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1811,7 +1559,6 @@ void orthoglide_jacobian_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1825,11 +1572,6 @@ void orthoglide_jacobian_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_jacobian_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_jacobian_other_sizes(length, dimensions, params, q + start, q_stride, J + start, J_stride);
     }
 }
 
@@ -1842,63 +1584,62 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = mu * nu;
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const real_t t21 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t22 = E_12 * X - t13 * E_22;
-    const real_t t23 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t24 = E_13 * X - E_23 * t13;
-    const real_t t25 = (t19 + t20) * (rho2 + (t21 - t22)) * (rho3 + (t23 - t24));
-    const real_t Delta = D * j * h;
-    const int t26 = cf_nought(L) == 0;
-    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t28 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t30 = t29 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= L) & t27)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t t32 = (t19 - t20) * (rho2 - (t21 + t22)) * (rho3 - (t23 + t24));
-    det[0] = cf_quotient(single, t25, Delta) + t31;
-    det[1] = cf_quotient(single, t32, Delta) + t31;
+    const real_t t15 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t16 = w_x * h;
+    const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t18 = w_y * h;
+    const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t20 = w_z * h;
+    const real_t t21 = n_z * t12 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t22 = (t16 + t17) * (rho2 - (t18 - t19)) * (rho3 - (t20 - t21));
+    const real_t Delta = t9 * h;
+    const int t23 = cf_nought(L) == 0;
+    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t25 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
+    const int t26 = cf_abs(t25) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t27 = t26 & (-(CLOSEDFORM_FEASIBILITY * t15) <= t14);
+    const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= L) & t24)) | (!t27);
+    const real_t t28 = cf_poison(single, failed);
+    const real_t t29 = (t16 - t17) * (rho2 + (t18 + t19)) * (rho3 + (t20 + t21));
+    det[0] = cf_quotient(single, t22, Delta) + t28;
+    det[1] = cf_quotient(single, t29, Delta) + t28;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1917,53 +1658,50 @@ CF_INLINE void orthoglide_determinant_common_kernel(const int single, const real
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t2 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t2 + cf_rounded(single, one, rho2 * rho2));
+    const real_t t1 = cf_rounded(single, one, rho1 * rho1);
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t3 = size * CLOSEDFORM_VANISHING;
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t1 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t t12 = t1 / cf_divisor(single, j <= t3, CLOSEDFORM_C(2.0) * j);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t3, j);
-    const real_t t13 = t12 * E_23;
-    const real_t t14 = t10 / cf_divisor(single, j <= t3, j);
-    const real_t t15 = t9 / cf_divisor(single, j <= t3, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t16 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t16);
-    const real_t t17 = L - rho;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t18 = (t4 * t14 + E_12 * t15) * h;
-    const real_t t19 = E_12 * E_23 * h;
-    const real_t t20 = t4 * X + t15 * t12;
-    const real_t t21 = t4 * E_23 * h;
-    const real_t t22 = X * E_12 - t12 * t14;
-    const real_t t23 = (rho3 - (t13 + t18)) * (t19 - t20) * (rho2 - (t21 + t22));
-    const real_t Delta = size_u * j * h;
-    const real_t t24 = t23 / cf_divisor(single, (size_u <= t3) | (j <= t3) | (slack <= t3), Delta);
-    const int t25 = cf_nought(L) == 0;
-    const int t26 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t27 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t28 = t27 & (-(size * CLOSEDFORM_FEASIBILITY) <= t17);
-    const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= L) & t26)) | (!t28);
-    const real_t t29 = cf_poison(single, failed);
-    const real_t t30 = (rho3 - (t13 - t18)) * (t19 + t20) * (rho2 + (t21 - t22));
-    const real_t t31 = t30 / cf_divisor(single, (size_u <= t3) | (j <= t3) | (slack <= t3), Delta);
-    const int all_same = size_u + cf_sqrt(t2 + t1) <= t3;
-    const int t32 = (size_u <= t3) | all_same | (j <= t3) | (slack <= t3);
-    det[0] = t24 + t29;
-    det[1] = t31 + t29;
-    rare[0] = (t32) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t t6 = cf_rounded(single, one, rho3 * rho3);
+    const real_t m_z = rho1 * rho2;
+    const real_t t7 = over * (rho2 * m_z);
+    const real_t t8 = over * (rho1 * m_z);
+    const real_t t9 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t8 * t8);
+    const real_t nu = t9 + cf_rounded(single, one, n_z * n_z);
+    const real_t t10 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), t10);
+    const real_t t11 = u_u * t6 * part * CLOSEDFORM_C(0.5);
+    const real_t t12 = n_z * t11;
+    const real_t t13 = cf_rounded(single, one, nu * (t11 * t11)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t14 = cf_rounded(single, one, L * L) - t13;
+    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t15 = (rho1 * t8 + rho2 * t7) * h;
+    const real_t t16 = rho2 * n_z * h;
+    const real_t t17 = rho1 * CLOSEDFORM_C(0.5) + t7 * t11;
+    const real_t t18 = rho1 * n_z * h;
+    const real_t t19 = t8 * t11 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t20 = (rho3 - (t12 + t15)) * (t16 - t17) * (rho2 - (t18 - t19));
+    const real_t Delta = t10 * h;
+    const real_t t21 = L * size * CLOSEDFORM_C(2.0);
+    const real_t t22 = t20 / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t21), Delta);
+    const int t23 = cf_nought(L) == 0;
+    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t25 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t26 = t25 & (-(CLOSEDFORM_FEASIBILITY * t21) <= t14);
+    const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= L) & t24)) | (!t26);
+    const real_t t27 = cf_poison(single, failed);
+    const real_t t28 = (rho3 - (t12 - t15)) * (t16 + t17) * (rho2 + (t18 + t19));
+    const real_t t29 = t28 / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t21), Delta);
+    const int t30 = (u_u <= t3) | (u_u + (t1 + t6) <= t3) | (nu <= t3);
+    det[0] = t22 + t27;
+    det[1] = t29 + t27;
+    rare[0] = (t30 | (slack <= CLOSEDFORM_VANISHING * t21)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_determinant_common_batch(size_t n, const orthoglide_params *params,
@@ -2007,45 +1745,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_determinant(const orthoglide_params *params, const real_t q[3],
     real_t det[2])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_determinant_common(params, q, det, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_determinant_whole(params, q, det);
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_determinant_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
-}
-
-CF_RARE void orthoglide_determinant_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t det_i[2];
-        orthoglide_determinant(params, q_i, det_i);
-        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2053,7 +1755,6 @@ void orthoglide_determinant_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *det, size_t det_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2067,11 +1768,6 @@ void orthoglide_determinant_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_determinant_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -2084,67 +1780,66 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = mu * nu;
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const int t21 = cf_nought(L) == 0;
-    const int t22 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t23 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t24 = cf_abs(t23) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t25 = t24 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t21 & (CLOSEDFORM_C(0.0) <= L) & t22)) | (!t25);
-    const real_t t26 = cf_poison(single, failed);
-    const real_t t27 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t28 = E_12 * X - t13 * E_22;
-    const real_t t29 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t30 = E_13 * X - E_23 * t13;
-    const real_t Delta = D * j * h;
-    factors[0] = t19 + t20 + t26;
-    factors[1] = -(rho2 + (t27 - t28)) + t26;
-    factors[2] = -(rho3 + (t29 - t30)) + t26;
-    factors[3] = Delta + t26;
-    factors[4] = t20 - t19 + t26;
-    factors[5] = t27 + t28 - rho2 + t26;
-    factors[6] = t29 + t30 - rho3 + t26;
-    factors[7] = -Delta + t26;
+    const real_t t15 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t16 = w_x * h;
+    const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
+    const int t18 = cf_nought(L) == 0;
+    const int t19 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t20 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
+    const int t21 = cf_abs(t20) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t22 = t21 & (-(CLOSEDFORM_FEASIBILITY * t15) <= t14);
+    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L) & t19)) | (!t22);
+    const real_t t23 = cf_poison(single, failed);
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t24 = w_y * h;
+    const real_t t25 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t26 = w_z * h;
+    const real_t t27 = n_z * t12 - d_z * CLOSEDFORM_C(0.5);
+    const real_t Delta = t9 * h;
+    factors[0] = t16 + t17 + t23;
+    factors[1] = t24 - t25 - rho2 + t23;
+    factors[2] = t26 - t27 - rho3 + t23;
+    factors[3] = Delta + t23;
+    factors[4] = t17 - t16 + t23;
+    factors[5] = -(rho2 + (t24 + t25)) + t23;
+    factors[6] = -(rho3 + (t26 + t27)) + t23;
+    factors[7] = -Delta + t23;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2164,54 +1859,51 @@ CF_INLINE void orthoglide_singularities_common_kernel(const int single, const re
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t1 + cf_rounded(single, one, rho2 * rho2));
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t3 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t2, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t3 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t2, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t12 = t3 / cf_divisor(single, j <= t2, CLOSEDFORM_C(2.0) * j);
-    const real_t t13 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t13);
-    const real_t t14 = L - rho;
-    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t15 = E_12 * E_23 * h;
-    const real_t t16 = t9 / cf_divisor(single, j <= t2, j);
-    const real_t t17 = t4 * X + t16 * t12;
-    const int t18 = cf_nought(L) == 0;
-    const int t19 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t20 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t21 = t20 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L) & t19)) | (!t21);
-    const real_t t22 = cf_poison(single, failed);
-    const real_t t23 = t4 * E_23 * h;
-    const real_t t24 = t10 / cf_divisor(single, j <= t2, j);
-    const real_t t25 = X * E_12 - t12 * t24;
-    const real_t t26 = t12 * E_23;
-    const real_t t27 = (t4 * t24 + E_12 * t16) * h;
-    const real_t Delta = size_u * j * h;
-    const int all_same = size_u + cf_sqrt(t1 + t3) <= t2;
-    const int t28 = (size_u <= t2) | all_same | (j <= t2) | (slack <= t2);
-    factors[0] = t15 - t17 + t22;
-    factors[1] = t23 + t25 - rho2 + t22;
-    factors[2] = t26 + t27 - rho3 + t22;
-    factors[3] = Delta + t22;
-    factors[4] = -(t15 + t17) + t22;
-    factors[5] = -(rho2 + (t23 - t25)) + t22;
-    factors[6] = t26 - t27 - rho3 + t22;
-    factors[7] = -Delta + t22;
-    rare[0] = (t28) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t m_z = rho1 * rho2;
+    const real_t t6 = over * (rho2 * m_z);
+    const real_t t7 = over * (rho1 * m_z);
+    const real_t t8 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t7 * t7);
+    const real_t nu = t8 + cf_rounded(single, one, n_z * n_z);
+    const real_t t9 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), t9);
+    const real_t t10 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t11 = u_u * t10 * part * CLOSEDFORM_C(0.5);
+    const real_t t12 = cf_rounded(single, one, nu * (t11 * t11)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t13 = cf_rounded(single, one, L * L) - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t14 = rho2 * n_z * h;
+    const real_t t15 = rho1 * CLOSEDFORM_C(0.5) + t6 * t11;
+    const int t16 = cf_nought(L) == 0;
+    const int t17 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t18 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const real_t t19 = L * size * CLOSEDFORM_C(2.0);
+    const int t20 = t18 & (-(CLOSEDFORM_FEASIBILITY * t19) <= t13);
+    const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= L) & t17)) | (!t20);
+    const real_t t21 = cf_poison(single, failed);
+    const real_t t22 = rho1 * n_z * h;
+    const real_t t23 = t7 * t11 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t24 = n_z * t11;
+    const real_t t25 = (rho1 * t7 + rho2 * t6) * h;
+    const real_t Delta = t9 * h;
+    const int t26 = (u_u <= t3) | (u_u + (t1 + t10) <= t3) | (nu <= t3);
+    factors[0] = t14 - t15 + t21;
+    factors[1] = t22 - t23 - rho2 + t21;
+    factors[2] = t24 + t25 - rho3 + t21;
+    factors[3] = Delta + t21;
+    factors[4] = -(t14 + t15) + t21;
+    factors[5] = -(rho2 + (t22 + t23)) + t21;
+    factors[6] = t24 - t25 - rho3 + t21;
+    factors[7] = -Delta + t21;
+    rare[0] = (t26 | (slack <= CLOSEDFORM_VANISHING * t19)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_singularities_common_batch(size_t n, const orthoglide_params *params,
@@ -2261,49 +1953,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_singularities(const orthoglide_params *params, const real_t q[3],
     real_t factors[8])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char factors_degrees[8] = { 1, 1, 1, 3, 1, 1, 1, 3 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_singularities_common(params, q, factors, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_singularities_whole(params, q, factors);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(8, factors_degrees, exponent, factors, factors);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_singularities_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
-}
-
-CF_RARE void orthoglide_singularities_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_singularities_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t factors_i[8];
-        orthoglide_singularities(params, q_i, factors_i);
-        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2311,7 +1963,6 @@ void orthoglide_singularities_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2325,11 +1976,6 @@ void orthoglide_singularities_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_singularities_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_singularities_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 
@@ -2342,111 +1988,110 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t12 = t11 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t13 = cf_select(in_line, CLOSEDFORM_C(0.0), t12);
-    const real_t rho = cf_sqrt(X * X + t13 * t13);
-    const real_t t14 = L - rho;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = mu * nu;
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t15 = cf_sign(E_13);
-    const real_t t16 = E_11 * t15;
-    const real_t E_23 = cf_rarely(single, in_line, -t16, n_z / cf_divisor(single, in_line, j));
-    const real_t t17 = E_13 + t15;
-    const real_t t18 = cf_nonzero(single, t17);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t16 / t18), n_y / cf_divisor(single, in_line, j));
-    const real_t t19 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t15 / t18, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t t20 = E_11 * X - E_21 * t13;
-    const real_t A_11 = t19 + t20;
-    const real_t t21 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t22 = E_12 * X - t13 * E_22;
-    const real_t t23 = t21 - t22;
-    const real_t t24 = t23 * t23;
-    const real_t t25 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t26 = E_13 * X - E_23 * t13;
-    const real_t t27 = t25 - t26;
-    const real_t t28 = t27 * t27;
+    const real_t t15 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t16 = w_x * h;
+    const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t A_11 = t16 + t17;
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t t18 = w_y * h;
+    const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
+    const real_t t20 = t18 - t19;
+    const real_t t21 = t20 * t20;
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t22 = w_z * h;
+    const real_t t23 = n_z * t12 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t24 = t22 - t23;
+    const real_t t25 = t24 * t24;
     const real_t A_21 = rho1 + A_11;
-    const real_t t29 = A_21 * A_21;
-    const real_t t30 = rho2 + t23;
-    const real_t t31 = A_11 * A_11 + t24 + t28 + (t28 + t29 + t30 * t30);
-    const real_t t32 = rho3 + t27;
-    const real_t t33 = t23 * A_21;
-    const real_t t34 = A_11 * t23 - t33;
-    const real_t t35 = t27 * A_21;
-    const real_t t36 = A_11 * t27 - t35;
-    const real_t t37 = t33 - A_11 * t30;
-    const real_t t38 = t35 - A_11 * t32;
-    const real_t t39 = t34 * t34 + t36 * t36 + t37 * t37 + t38 * t38;
-    const real_t t40 = t23 * t27;
-    const real_t t41 = t40 - t30 * t32;
-    const real_t t42 = t40 - t23 * t32;
-    const real_t t43 = t40 - t27 * t30;
-    const real_t t44 = t33 - A_21 * t30;
-    const real_t t45 = t39 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44;
-    const real_t t46 = t35 - A_21 * t32;
-    const real_t t47 = (t31 + (t24 + t29 + t32 * t32)) * (t45 + t46 * t46);
-    const real_t t48 = CLOSEDFORM_C(3.0) * (D * j * h);
-    const int t49 = cf_nought(L) == 0;
-    const int t50 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t51 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
-    const int t52 = cf_abs(t51) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t53 = t52 & (-(size * CLOSEDFORM_FEASIBILITY) <= t14);
-    const int failed = (!(t49 & (CLOSEDFORM_C(0.0) <= L) & t50)) | (!t53);
-    const real_t t54 = cf_poison(single, failed);
-    const real_t t55 = t19 - t20;
-    const real_t A_12_inner = t21 + t22;
-    const real_t t56 = A_12_inner * A_12_inner;
-    const real_t A_13_inner = t25 + t26;
-    const real_t t57 = A_13_inner * A_13_inner;
-    const real_t A_21_inner = rho1 - t55;
-    const real_t t58 = A_21_inner * A_21_inner;
-    const real_t t59 = rho2 - A_12_inner;
-    const real_t t60 = t55 * t55 + t56 + t57 + (t57 + t58 + t59 * t59);
-    const real_t t61 = rho3 - A_13_inner;
-    const real_t t62 = A_12_inner * A_21_inner;
-    const real_t t63 = t55 * A_12_inner + t62;
-    const real_t t64 = A_13_inner * A_21_inner;
-    const real_t t65 = t55 * A_13_inner + t64;
-    const real_t t66 = t62 - t55 * t59;
-    const real_t t67 = t64 - t55 * t61;
-    const real_t t68 = t63 * t63 + t65 * t65 + t66 * t66 + t67 * t67;
-    const real_t t69 = A_12_inner * A_13_inner;
-    const real_t t70 = t69 - t59 * t61;
-    const real_t t71 = t69 + A_12_inner * t61;
-    const real_t t72 = t69 + A_13_inner * t59;
-    const real_t t73 = t62 + A_21_inner * t59;
-    const real_t t74 = t68 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73;
-    const real_t t75 = t64 + A_21_inner * t61;
-    const real_t t76 = (t60 + (t56 + t58 + t61 * t61)) * (t74 + t75 * t75);
-    kappa[0] = cf_quotient(single, cf_sqrt(t47), t48) + t54;
-    kappa[1] = cf_quotient(single, cf_sqrt(t76), t48) + t54;
+    const real_t t26 = A_21 * A_21;
+    const real_t t27 = rho2 - t20;
+    const real_t t28 = A_11 * A_11 + t21 + t25 + (t25 + t26 + t27 * t27);
+    const real_t t29 = rho3 - t24;
+    const real_t t30 = t20 * A_21;
+    const real_t t31 = A_11 * t20 - t30;
+    const real_t t32 = t24 * A_21;
+    const real_t t33 = A_11 * t24 - t32;
+    const real_t t34 = t30 + A_11 * t27;
+    const real_t t35 = t32 + A_11 * t29;
+    const real_t t36 = t31 * t31 + t33 * t33 + t34 * t34 + t35 * t35;
+    const real_t t37 = t20 * t24;
+    const real_t t38 = t37 - t27 * t29;
+    const real_t t39 = t37 + t20 * t29;
+    const real_t t40 = t37 + t24 * t27;
+    const real_t t41 = t30 + A_21 * t27;
+    const real_t t42 = t36 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41;
+    const real_t t43 = t32 + A_21 * t29;
+    const real_t t44 = (t28 + (t21 + t26 + t29 * t29)) * (t42 + t43 * t43);
+    const real_t t45 = CLOSEDFORM_C(3.0) * (t9 * h);
+    const int t46 = cf_nought(L) == 0;
+    const int t47 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t48 = cf_rarely(single, in_line, -t11, CLOSEDFORM_C(0.0));
+    const int t49 = cf_abs(t48) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t50 = t49 & (-(CLOSEDFORM_FEASIBILITY * t15) <= t14);
+    const int failed = (!(t46 & (CLOSEDFORM_C(0.0) <= L) & t47)) | (!t50);
+    const real_t t51 = cf_poison(single, failed);
+    const real_t t52 = t16 - t17;
+    const real_t t53 = t18 + t19;
+    const real_t t54 = t53 * t53;
+    const real_t t55 = t22 + t23;
+    const real_t t56 = t55 * t55;
+    const real_t A_21_inner = rho1 - t52;
+    const real_t t57 = A_21_inner * A_21_inner;
+    const real_t t58 = rho2 + t53;
+    const real_t t59 = t52 * t52 + t54 + t56 + (t56 + t57 + t58 * t58);
+    const real_t t60 = rho3 + t55;
+    const real_t t61 = t53 * A_21_inner;
+    const real_t t62 = t52 * t53 + t61;
+    const real_t t63 = t55 * A_21_inner;
+    const real_t t64 = t52 * t55 + t63;
+    const real_t t65 = t61 + t52 * t58;
+    const real_t t66 = t63 + t52 * t60;
+    const real_t t67 = t62 * t62 + t64 * t64 + t65 * t65 + t66 * t66;
+    const real_t t68 = t53 * t55;
+    const real_t t69 = t68 - t58 * t60;
+    const real_t t70 = t68 - t53 * t60;
+    const real_t t71 = t68 - t55 * t58;
+    const real_t t72 = t61 - A_21_inner * t58;
+    const real_t t73 = t67 + t69 * t69 + t70 * t70 + t71 * t71 + t72 * t72;
+    const real_t t74 = t63 - A_21_inner * t60;
+    const real_t t75 = (t59 + (t54 + t57 + t60 * t60)) * (t73 + t74 * t74);
+    kappa[0] = cf_quotient(single, cf_sqrt(t44), t45) + t51;
+    kappa[1] = cf_quotient(single, cf_sqrt(t75), t45) + t51;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2465,101 +2110,98 @@ CF_INLINE void orthoglide_condition_number_common_kernel(const int single, const
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t2 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t2 + cf_rounded(single, one, rho2 * rho2));
+    const real_t t1 = cf_rounded(single, one, rho1 * rho1);
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t3 = size * CLOSEDFORM_VANISHING;
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t1 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t t12 = t1 / cf_divisor(single, j <= t3, CLOSEDFORM_C(2.0) * j);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t3, j);
-    const real_t t13 = t12 * E_23;
-    const real_t t14 = t10 / cf_divisor(single, j <= t3, j);
-    const real_t t15 = t9 / cf_divisor(single, j <= t3, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t16 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t16);
-    const real_t t17 = L - rho;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t18 = (t4 * t14 + E_12 * t15) * h;
-    const real_t A_13 = t13 + t18;
-    const real_t t19 = A_13 * A_13;
-    const real_t t20 = E_12 * E_23 * h;
-    const real_t t21 = t4 * X + t15 * t12;
-    const real_t A_11 = t20 - t21;
-    const real_t t22 = t4 * E_23 * h;
-    const real_t t23 = X * E_12 - t12 * t14;
-    const real_t A_12 = t22 + t23;
-    const real_t t24 = A_12 * A_12;
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t t6 = cf_rounded(single, one, rho3 * rho3);
+    const real_t m_z = rho1 * rho2;
+    const real_t t7 = over * (rho2 * m_z);
+    const real_t t8 = over * (rho1 * m_z);
+    const real_t t9 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t8 * t8);
+    const real_t nu = t9 + cf_rounded(single, one, n_z * n_z);
+    const real_t t10 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), t10);
+    const real_t t11 = u_u * t6 * part * CLOSEDFORM_C(0.5);
+    const real_t t12 = n_z * t11;
+    const real_t t13 = cf_rounded(single, one, nu * (t11 * t11)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t14 = cf_rounded(single, one, L * L) - t13;
+    const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t15 = (rho1 * t8 + rho2 * t7) * h;
+    const real_t t16 = t12 + t15;
+    const real_t t17 = t16 * t16;
+    const real_t t18 = rho2 * n_z * h;
+    const real_t t19 = rho1 * CLOSEDFORM_C(0.5) + t7 * t11;
+    const real_t A_11 = t18 - t19;
+    const real_t t20 = rho1 * n_z * h;
+    const real_t t21 = t8 * t11 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t22 = t20 - t21;
+    const real_t t23 = t22 * t22;
     const real_t A_21 = rho1 + A_11;
-    const real_t t25 = A_21 * A_21;
-    const real_t t26 = rho2 - A_12;
-    const real_t t27 = t19 + A_11 * A_11 + t24 + (t19 + t25 + t26 * t26);
-    const real_t t28 = rho3 - A_13;
-    const real_t t29 = A_12 * A_21;
-    const real_t t30 = A_11 * A_12 - t29;
-    const real_t t31 = A_13 * A_21;
-    const real_t t32 = A_13 * A_11 - t31;
-    const real_t t33 = t29 + A_11 * t26;
-    const real_t t34 = t31 + t28 * A_11;
-    const real_t t35 = t30 * t30 + t32 * t32 + t33 * t33 + t34 * t34;
-    const real_t t36 = A_13 * A_12;
-    const real_t t37 = t36 - t28 * t26;
-    const real_t t38 = t36 + t28 * A_12;
-    const real_t t39 = t36 + A_13 * t26;
-    const real_t t40 = t29 + A_21 * t26;
-    const real_t t41 = t35 + t37 * t37 + t38 * t38 + t39 * t39 + t40 * t40;
-    const real_t t42 = t31 + t28 * A_21;
-    const real_t t43 = (t27 + (t28 * t28 + t24 + t25)) * (t41 + t42 * t42);
-    const real_t t44 = CLOSEDFORM_C(3.0) * (size_u * j * h);
-    const real_t t45 = cf_sqrt(t43) / cf_divisor(single, (size_u <= t3) | (j <= t3) | (slack <= t3), t44);
+    const real_t t24 = A_21 * A_21;
+    const real_t t25 = rho2 - t22;
+    const real_t t26 = t17 + A_11 * A_11 + t23 + (t17 + t24 + t25 * t25);
+    const real_t t27 = rho3 - t16;
+    const real_t t28 = t22 * A_21;
+    const real_t t29 = A_11 * t22 - t28;
+    const real_t t30 = t16 * A_21;
+    const real_t t31 = t16 * A_11 - t30;
+    const real_t t32 = t28 + A_11 * t25;
+    const real_t t33 = t30 + t27 * A_11;
+    const real_t t34 = t29 * t29 + t31 * t31 + t32 * t32 + t33 * t33;
+    const real_t t35 = t16 * t22;
+    const real_t t36 = t35 - t27 * t25;
+    const real_t t37 = t35 + t27 * t22;
+    const real_t t38 = t35 + t16 * t25;
+    const real_t t39 = t28 + A_21 * t25;
+    const real_t t40 = t34 + t36 * t36 + t37 * t37 + t38 * t38 + t39 * t39;
+    const real_t t41 = t30 + t27 * A_21;
+    const real_t t42 = (t26 + (t27 * t27 + t23 + t24)) * (t40 + t41 * t41);
+    const real_t t43 = CLOSEDFORM_C(3.0) * (t10 * h);
+    const real_t t44 = L * size * CLOSEDFORM_C(2.0);
+    const real_t t45 = cf_sqrt(t42) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t44), t43);
     const int t46 = cf_nought(L) == 0;
     const int t47 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t48 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t49 = t48 & (-(size * CLOSEDFORM_FEASIBILITY) <= t17);
+    const int t48 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t49 = t48 & (-(CLOSEDFORM_FEASIBILITY * t44) <= t14);
     const int failed = (!(t46 & (CLOSEDFORM_C(0.0) <= L) & t47)) | (!t49);
     const real_t t50 = cf_poison(single, failed);
-    const real_t A_13_inner = t13 - t18;
-    const real_t t51 = A_13_inner * A_13_inner;
-    const real_t t52 = t20 + t21;
-    const real_t t53 = t22 - t23;
-    const real_t t54 = t53 * t53;
-    const real_t A_21_inner = rho1 - t52;
-    const real_t t55 = A_21_inner * A_21_inner;
-    const real_t t56 = rho2 + t53;
-    const real_t t57 = t51 + t52 * t52 + t54 + (t51 + t55 + t56 * t56);
-    const real_t t58 = rho3 - A_13_inner;
-    const real_t t59 = t53 * A_21_inner;
-    const real_t t60 = t52 * t53 + t59;
-    const real_t t61 = A_13_inner * A_21_inner;
-    const real_t t62 = A_13_inner * t52 + t61;
-    const real_t t63 = t59 + t52 * t56;
-    const real_t t64 = t61 - t58 * t52;
-    const real_t t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64;
-    const real_t t66 = A_13_inner * t53;
-    const real_t t67 = t66 + t58 * t56;
-    const real_t t68 = t66 + t58 * t53;
-    const real_t t69 = t66 - A_13_inner * t56;
-    const real_t t70 = t59 - A_21_inner * t56;
-    const real_t t71 = t65 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70;
-    const real_t t72 = t61 + t58 * A_21_inner;
-    const real_t t73 = (t57 + (t58 * t58 + t54 + t55)) * (t71 + t72 * t72);
-    const real_t t74 = cf_sqrt(t73) / cf_divisor(single, (size_u <= t3) | (j <= t3) | (slack <= t3), t44);
-    const int all_same = size_u + cf_sqrt(t2 + t1) <= t3;
-    const int t75 = (size_u <= t3) | all_same | (j <= t3) | (slack <= t3);
+    const real_t t51 = t12 - t15;
+    const real_t t52 = t51 * t51;
+    const real_t t53 = t18 + t19;
+    const real_t t54 = t20 + t21;
+    const real_t t55 = t54 * t54;
+    const real_t A_21_inner = rho1 - t53;
+    const real_t t56 = A_21_inner * A_21_inner;
+    const real_t t57 = rho2 + t54;
+    const real_t t58 = t52 + t53 * t53 + t55 + (t52 + t56 + t57 * t57);
+    const real_t t59 = rho3 - t51;
+    const real_t t60 = t54 * A_21_inner;
+    const real_t t61 = t53 * t54 + t60;
+    const real_t t62 = t51 * A_21_inner;
+    const real_t t63 = t51 * t53 + t62;
+    const real_t t64 = t60 + t53 * t57;
+    const real_t t65 = t62 - t59 * t53;
+    const real_t t66 = t61 * t61 + t63 * t63 + t64 * t64 + t65 * t65;
+    const real_t t67 = t51 * t54;
+    const real_t t68 = t67 + t59 * t57;
+    const real_t t69 = t67 + t59 * t54;
+    const real_t t70 = t67 - t51 * t57;
+    const real_t t71 = t60 - A_21_inner * t57;
+    const real_t t72 = t66 + t68 * t68 + t69 * t69 + t70 * t70 + t71 * t71;
+    const real_t t73 = t62 + t59 * A_21_inner;
+    const real_t t74 = (t58 + (t59 * t59 + t55 + t56)) * (t72 + t73 * t73);
+    const real_t t75 = cf_sqrt(t74) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t44), t43);
+    const int t76 = (u_u <= t3) | (u_u + (t1 + t6) <= t3) | (nu <= t3);
     kappa[0] = t45 + t50;
-    kappa[1] = t74 + t50;
-    rare[0] = (t75) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    kappa[1] = t75 + t50;
+    rare[0] = (t76 | (slack <= CLOSEDFORM_VANISHING * t44)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_condition_number_common_batch(size_t n, const orthoglide_params *params,
@@ -2603,45 +2245,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_condition_number(const orthoglide_params *params, const real_t q[3],
     real_t kappa[2])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_condition_number_common(params, q, kappa, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_condition_number_whole(params, q, kappa);
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_condition_number_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
-}
-
-CF_RARE void orthoglide_condition_number_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *kappa, size_t kappa_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_condition_number_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t kappa_i[2];
-        orthoglide_condition_number(params, q_i, kappa_i);
-        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2649,7 +2255,6 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2663,11 +2268,6 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
             for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_condition_number_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
     }
 }
 
@@ -2680,69 +2280,66 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 * rho1;
-    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
-    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t u_u = t1 + rho2 * rho2;
+    const real_t v_v = t1 + rho3 * rho3;
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t2 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t2;
-    const int same = size_u <= t2;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
-    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const int all_same = u_u + v_v <= t3;
+    const int same = u_u <= t3;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
     const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
-    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
-    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
-    const real_t t8 = rho1 - E_11 * t7;
-    const real_t m_y = t4 + E_12 * t7;
-    const real_t m_z = t6 + E_13 * t7;
-    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
-    const real_t t10 = t8 - E_11 * t9;
-    const real_t n_y = m_y + E_12 * t9;
-    const real_t n_z = m_z + E_13 * t9;
-    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
-    const int in_line = j <= t2;
-    const real_t t11 = cf_sign(E_13);
-    const real_t t12 = E_11 * t11;
-    const real_t E_23 = cf_rarely(single, in_line, -t12, n_z / cf_divisor(single, in_line, j));
-    const real_t t13 = E_13 + t11;
-    const real_t t14 = cf_nonzero(single, t13);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t11 / t14, -(t10 / cf_divisor(single, in_line, j)));
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t15 = t4 * (t3 - t4) + t6 * (t5 - t6);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = L - rho;
-    const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t19 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t12 / t14), n_y / cf_divisor(single, in_line, j));
-    const real_t t20 = E_12 * X - t17 * E_22;
-    const real_t t21 = t19 - t20;
-    const real_t t22 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t23 = E_13 * X - E_23 * t17;
-    const real_t t24 = t22 - t23;
-    const real_t t25 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t t26 = E_11 * X - E_21 * t17;
-    const real_t A_11 = t25 + t26;
-    const real_t t27 = t21 * t24 * (rho1 + A_11) - A_11 * (rho2 + t21) * (rho3 + t24);
-    const int t28 = cf_nought(L) == 0;
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t32 = t31 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= L) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = t25 - t26;
-    const real_t A_12_inner = t19 + t20;
-    const real_t A_13_inner = t22 + t23;
-    const real_t t35 = t34 * (rho2 - A_12_inner) * (rho3 - A_13_inner);
-    const real_t t36 = t35 + A_12_inner * A_13_inner * (rho1 - t34) + t33;
-    factors[0] = t27 + t33;
-    factors[1] = t36;
+    const real_t m_z = a_x * t4 + rho1 * d_y;
+    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t6 = a_x * t5 + rho1 * d_z;
+    const real_t t7 = over * (d_y * m_z + d_z * t6);
+    const real_t m_x = d_y * t5 - d_z * t4;
+    const real_t n_y = over * (a_x * m_z - d_z * m_x);
+    const real_t n_z = over * (a_x * t6 + d_y * m_x);
+    const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
+    const int in_line = nu <= t3;
+    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t side = cf_sign(d_y * a_x);
+    const real_t last = d_y + a_x * side;
+    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
+    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t13 = L * L - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t t14 = L * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t15 = w_y * h;
+    const real_t t16 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
+    const real_t t17 = t15 - t16;
+    const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
+    const real_t t18 = w_z * h;
+    const real_t t19 = n_z * t11 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t20 = t18 - t19;
+    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t t21 = w_x * h;
+    const real_t t22 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
+    const real_t A_11 = t21 + t22;
+    const real_t t23 = t17 * t20 * (rho1 + A_11) - A_11 * (rho2 - t17) * (rho3 - t20);
+    const int t24 = cf_nought(L) == 0;
+    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t26 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
+    const int t27 = cf_abs(t26) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t28 = t27 & (-(CLOSEDFORM_FEASIBILITY * t14) <= t13);
+    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= L) & t25)) | (!t28);
+    const real_t t29 = cf_poison(single, failed);
+    const real_t t30 = t21 - t22;
+    const real_t t31 = t15 + t16;
+    const real_t t32 = t18 + t19;
+    const real_t t33 = t30 * (rho2 + t31) * (rho3 + t32) + t31 * t32 * (rho1 - t30);
+    factors[0] = t23 + t29;
+    factors[1] = t33 + t29;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2761,56 +2358,52 @@ CF_INLINE void orthoglide_constraint_common_kernel(const int single, const real_
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = cf_rounded(single, one, rho3 * rho3);
-    const real_t t2 = cf_rounded(single, one, rho1 * rho1);
-    const real_t size_u = cf_sqrt(t2 + cf_rounded(single, one, rho2 * rho2));
+    const real_t t1 = cf_rounded(single, one, rho1 * rho1);
+    const real_t u_u = t1 + cf_rounded(single, one, rho2 * rho2);
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t3 = size * CLOSEDFORM_VANISHING;
-    const real_t t4 = rho1 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t5 = rho1 * t4;
-    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
-    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t3, size_u);
-    const real_t t7 = cf_rounded(single, one, t5 * E_12);
-    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
-    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
-    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
-    const real_t t11 = t1 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
-    const real_t j = cf_sqrt(t11);
-    const real_t t12 = t1 / cf_divisor(single, j <= t3, CLOSEDFORM_C(2.0) * j);
-    const real_t E_23 = rho3 / cf_divisor(single, j <= t3, j);
-    const real_t t13 = t12 * E_23;
-    const real_t t14 = t10 / cf_divisor(single, j <= t3, j);
-    const real_t t15 = t9 / cf_divisor(single, j <= t3, j);
-    const real_t X = size_u * CLOSEDFORM_C(0.5);
-    const real_t t16 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
-    const real_t rho = cf_sqrt(t16);
-    const real_t t17 = L - rho;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t18 = (t4 * t14 + E_12 * t15) * h;
-    const real_t A_13 = t13 + t18;
-    const real_t t19 = t4 * E_23 * h;
-    const real_t t20 = X * E_12 - t12 * t14;
-    const real_t A_12 = t19 + t20;
-    const real_t t21 = E_12 * E_23 * h;
-    const real_t t22 = t4 * X + t15 * t12;
-    const real_t A_11 = t21 - t22;
-    const real_t t23 = A_13 * A_12 * (rho1 + A_11) - (rho3 - A_13) * A_11 * (rho2 - A_12);
-    const int t24 = cf_nought(L) == 0;
-    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t26 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t27 = t26 & (-(size * CLOSEDFORM_FEASIBILITY) <= t17);
-    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= L) & t25)) | (!t27);
-    const real_t t28 = cf_poison(single, failed);
-    const real_t A_13_inner = t13 - t18;
-    const real_t t29 = t21 + t22;
-    const real_t t30 = t19 - t20;
-    const real_t t31 = (rho3 - A_13_inner) * t29 * (rho2 + t30) - A_13_inner * t30 * (rho1 - t29);
-    const int all_same = size_u + cf_sqrt(t2 + t1) <= t3;
-    const int t32 = (size_u <= t3) | all_same | (j <= t3) | (slack <= t3);
-    factors[0] = t23 + t28;
-    factors[1] = t31 + t28;
-    rare[0] = (t32) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t2 = size * size;
+    const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t3, u_u);
+    const real_t t4 = cf_rounded(single, one, rho1 * (rho1 * rho3));
+    const real_t t5 = cf_rounded(single, one, rho2 * (rho2 * rho3));
+    const real_t n_z = over * (t4 + t5);
+    const real_t t6 = cf_rounded(single, one, rho3 * rho3);
+    const real_t m_z = rho1 * rho2;
+    const real_t t7 = over * (rho2 * m_z);
+    const real_t t8 = over * (rho1 * m_z);
+    const real_t t9 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t8 * t8);
+    const real_t nu = t9 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t3) | (nu <= t3), u_u * nu);
+    const real_t t10 = u_u * t6 * part * CLOSEDFORM_C(0.5);
+    const real_t t11 = n_z * t10;
+    const real_t t12 = cf_rounded(single, one, nu * (t10 * t10)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t13 = cf_rounded(single, one, L * L) - t12;
+    const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t14 = (rho1 * t8 + rho2 * t7) * h;
+    const real_t t15 = t11 + t14;
+    const real_t t16 = rho1 * n_z * h;
+    const real_t t17 = t8 * t10 - rho2 * CLOSEDFORM_C(0.5);
+    const real_t t18 = t16 - t17;
+    const real_t t19 = rho2 * n_z * h;
+    const real_t t20 = rho1 * CLOSEDFORM_C(0.5) + t7 * t10;
+    const real_t A_11 = t19 - t20;
+    const real_t t21 = t15 * t18 * (rho1 + A_11) - (rho3 - t15) * A_11 * (rho2 - t18);
+    const int t22 = cf_nought(L) == 0;
+    const int t23 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t24 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const real_t t25 = L * size * CLOSEDFORM_C(2.0);
+    const int t26 = t24 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t13);
+    const int failed = (!(t22 & (CLOSEDFORM_C(0.0) <= L) & t23)) | (!t26);
+    const real_t t27 = cf_poison(single, failed);
+    const real_t t28 = t11 - t14;
+    const real_t t29 = t19 + t20;
+    const real_t t30 = t16 + t17;
+    const real_t t31 = (rho3 - t28) * t29 * (rho2 + t30) - t28 * t30 * (rho1 - t29);
+    const int t32 = (u_u <= t3) | (u_u + (t1 + t6) <= t3) | (nu <= t3);
+    factors[0] = t21 + t27;
+    factors[1] = t31 + t27;
+    rare[0] = (t32 | (slack <= CLOSEDFORM_VANISHING * t25)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_constraint_common_batch(size_t n, const orthoglide_params *params,
@@ -2854,49 +2447,9 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_constraint(const orthoglide_params *params, const real_t q[3],
     real_t factors[2])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char factors_degrees[2] = { 3, 3 };
-    real_t q_scaled[3];
-    orthoglide_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
     uint8_t rare[1];
     orthoglide_constraint_common(params, q, factors, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_constraint_whole(params, q, factors);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(2, factors_degrees, exponent, factors, factors);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word orthoglide_constraint_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
-}
-
-CF_RARE void orthoglide_constraint_other_sizes(size_t n, const real_t dimensions,
-    const orthoglide_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(orthoglide_constraint_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t factors_i[2];
-        orthoglide_constraint(params, q_i, factors_i);
-        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2904,7 +2457,6 @@ void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2918,11 +2470,6 @@ void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
 
         }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= orthoglide_constraint_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            orthoglide_constraint_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 

@@ -3,29 +3,29 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
- *   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
- *   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
- *   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
- *   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
- *     multiply, 5 sqrt
- *   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
- *     5 sqrt
- *   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
- *   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
- *   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
- *   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
+ *   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+ *   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
+ *   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
+ *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
+ *     multiply, 1 sqrt
+ *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
+ *     1 sqrt
+ *   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+ *   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
+ *   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
  *     sqrt
- *   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
- *   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
+ *   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
  *     sqrt
- *   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
- *   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
- *     7 sqrt
- *   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
- *   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+ *   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+ *   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
+ *     3 sqrt
+ *   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+ *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt

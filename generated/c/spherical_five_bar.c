@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 63 compare and select, 65 add, 12 divide, 87 multiply, 7 sincos, 5 sqrt
- *   skeleton: 62 compare and select, 77 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
- *   jacobian_parallel: 62 compare and select, 86 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
- *   jacobian_serial: 62 compare and select, 72 add, 18 divide, 89 multiply, 7 sincos, 5 sqrt
- *   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
- *   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
- *   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
+ *   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
+ *   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  */
@@ -38,8 +38,8 @@ CF_INLINE void spherical_five_bar_fk_kernel(const int single, const real_t one,
     const real_t c_alpha2 = cosines[3];
     const real_t s1 = sines[4];
     const real_t c1 = cosines[4];
-    const real_t s_beta1_half = sines[5];
-    const real_t s_beta2_half = sines[6];
+    const real_t s_beta2_half = sines[5];
+    const real_t s_beta1_half = sines[6];
     const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
     const real_t t1 = r * cf_abs(s_alpha2);
     const real_t t2 = c2 * t1;
@@ -53,143 +53,122 @@ CF_INLINE void spherical_five_bar_fk_kernel(const int single, const real_t one,
     const real_t t8 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t7 * t7);
     const real_t c1_z = cf_rounded(single, one, s1 * t6);
     const real_t t9 = c1_z - cf_rounded(single, one, s2 * t1);
-    const real_t size_u = cf_sqrt(t8 + cf_rounded(single, one, t9 * t9));
-    const real_t t10 = r * CLOSEDFORM_VANISHING;
-    const int same = size_u <= t10;
-    const real_t t11 = cf_rarely(single, same, t5, c1_x);
-    const real_t t12 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t size_v = cf_sqrt(t12 + cf_rounded(single, one, c1_z * c1_z));
-    const int all_same = size_u + size_v <= t10;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(cf_rarely(single, same, c1_x, t5) * t13));
-    const real_t t14 = cf_rarely(single, same, t7, c1_y);
-    const real_t t15 = cf_select(all_same, CLOSEDFORM_C(0.0), t13 * cf_rarely(single, same, c1_y, t7));
-    const real_t t16 = cf_rounded(single, one, E_11 * t11) - cf_rounded(single, one, t14 * t15);
-    const real_t t17 = cf_rarely(single, same, t9, c1_z);
-    const real_t t18 = cf_select(all_same, CLOSEDFORM_C(0.0), t13 * cf_rarely(single, same, c1_z, t9));
-    const real_t t19 = t16 - cf_rounded(single, one, t17 * t18);
-    const real_t t20 = t11 - cf_rounded(single, one, E_11 * t19);
-    const real_t t21 = t14 + cf_rounded(single, one, t15 * t19);
-    const real_t t22 = cf_rounded(single, one, E_11 * t20) - cf_rounded(single, one, t15 * t21);
-    const real_t t23 = t17 + cf_rounded(single, one, t18 * t19);
-    const real_t t24 = t22 - cf_rounded(single, one, t18 * t23);
-    const real_t t25 = t20 - cf_rounded(single, one, E_11 * t24);
-    const real_t t26 = t21 + cf_rounded(single, one, t15 * t24);
-    const real_t t27 = cf_rounded(single, one, t25 * t25) + cf_rounded(single, one, t26 * t26);
-    const real_t t28 = t23 + cf_rounded(single, one, t18 * t24);
-    const real_t j = cf_sqrt(t27 + cf_rounded(single, one, t28 * t28));
-    const int in_line = j <= t10;
-    const real_t t29 = cf_sign(-t18);
-    const real_t t30 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t18 - t29);
-    const real_t t31 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, j);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t29 * t30, -(t25 * t31));
-    const real_t t32 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t32);
-    const real_t t33 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t32;
-    const real_t t34 = cf_select(same, r, r_2);
-    const real_t t35 = t33 - t34;
-    const real_t outer = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = D - r_1;
-    const real_t t37 = t34 + t36;
-    const real_t inner = cf_max(t37, CLOSEDFORM_C(0.0));
+    const real_t u_u = t8 + cf_rounded(single, one, t9 * t9);
+    const real_t t10 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t10 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t11 = r * r;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const int all_same = u_u + v_v <= t12;
+    const int same = u_u <= t12;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t13 = cf_rarely(single, same, c1_y, t7);
+    const real_t t14 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t14);
+    const real_t t15 = cf_rarely(single, same, t7, c1_y);
+    const real_t t16 = cf_rarely(single, same, t5, c1_x);
+    const real_t t17 = cf_rounded(single, one, a_x * t15) + cf_rounded(single, one, t13 * t16);
+    const real_t t18 = cf_rarely(single, same, c1_z, t9);
+    const real_t t19 = cf_rarely(single, same, t9, c1_z);
+    const real_t m_y = cf_rounded(single, one, a_x * t19) + cf_rounded(single, one, t16 * t18);
+    const real_t t20 = cf_rounded(single, one, t13 * t17) + cf_rounded(single, one, t18 * m_y);
+    const real_t t21 = over * t20;
+    const real_t m_x = cf_rounded(single, one, t13 * t19) - cf_rounded(single, one, t15 * t18);
+    const real_t t22 = cf_rounded(single, one, a_x * t17) - cf_rounded(single, one, t18 * m_x);
+    const real_t t23 = over * t22;
+    const real_t t24 = cf_rounded(single, one, t21 * t21) + cf_rounded(single, one, t23 * t23);
+    const real_t t25 = cf_rounded(single, one, a_x * m_y) + cf_rounded(single, one, t13 * m_x);
+    const real_t t26 = over * t25;
+    const real_t nu = t24 + cf_rounded(single, one, t26 * t26);
+    const int in_line = nu <= t12;
+    const real_t side = cf_sign(-(t13 * a_x));
+    const real_t w_x = cf_rarely(single, in_line, -(t18 * side), t13 * t26 - t18 * t23);
+    const real_t length_a = cf_sqrt(mu);
+    const real_t t27 = t13 - a_x * side;
+    const real_t t28 = CLOSEDFORM_C(2.0) * (t18 * t18) + cf_rounded(single, one, t27 * t27);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, over * t28, nu));
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t t29 = r * CLOSEDFORM_C(2.0);
+    const real_t r_2 = cf_abs(s_beta2_half) * t29;
+    const real_t over_a = length_n * part;
+    const real_t t30 = cf_rounded(single, one, a_x * t16) - cf_rounded(single, one, t13 * t15);
+    const real_t t31 = cf_rounded(single, one, over_a * (t30 - cf_rounded(single, one, t18 * t19)));
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t29);
+    const real_t t32 = D + r_1;
+    const real_t t33 = cf_select(same, r, r_2);
+    const real_t t34 = t32 - t33;
+    const real_t outer = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = D - r_1;
+    const real_t t36 = t33 + t35;
+    const real_t inner = cf_max(t36, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t38 = t34 - t36;
-    const real_t slack = cf_max(t38, CLOSEDFORM_C(0.0));
-    const real_t t39 = cf_root(single, outer * inner * slack * (t34 + t33));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t39);
-    const real_t t40 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t41 = cf_rounded(single, one, j * t40);
-    const real_t t42 = cf_rarely(single, same, r_2 * r_2, r * r) - cf_rounded(single, one, j * j);
-    const real_t t43 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t43);
-    const real_t t44 = t19 + t24 + X;
-    const real_t t45 = t42 - cf_rounded(single, one, rho * rho) - cf_rounded(single, one, t44 * t44);
-    const real_t t46 = t41 - t45;
-    const real_t upper = cf_max(t46, CLOSEDFORM_C(0.0));
-    const real_t t47 = t45 + t41;
-    const real_t lower = cf_max(t47, CLOSEDFORM_C(0.0));
+    const real_t t37 = t33 - t35;
+    const real_t slack = cf_max(t37, CLOSEDFORM_C(0.0));
+    const real_t t38 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t38);
+    const real_t t39 = t31 + along;
+    const real_t t40 = nu - cf_rarely(single, same, r_2 * r_2, t11) + cf_rounded(single, one, t39 * t39);
+    const real_t t41 = cf_root(single, outer * inner * slack * (t33 + t32));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t41);
+    const real_t left = t40 + cf_rounded(single, one, rho * rho);
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t42 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * j * rho);
+    const real_t t43 = left + t42;
+    const real_t upper = cf_max(t43, CLOSEDFORM_C(0.0));
+    const real_t t44 = t42 - left;
+    const real_t lower = cf_max(t44, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t48 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t48);
-    const real_t t49 = CLOSEDFORM_C(1.0) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), rho * (upper - lower) * t49);
-    const real_t t50 = E_21 * Y + (c1_x + E_11 * X);
-    const real_t t51 = E_11 * t29;
-    const real_t t52 = cf_rarely(single, in_line, t51, t28 * t31);
-    const real_t t53 = cf_rarely(single, in_line, t30 * (t15 * t51), t26 * t31);
-    const real_t h = cf_rarely(single, flat, rho, t49 * (t40 * cf_sqrt(upper * lower)));
-    const real_t t54 = (t15 * t52 - t18 * t53) * h;
-    const int t55 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t56 = t55 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t57 = t56 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t58 = t57 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t59 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const int invalid = !(t58 & t59);
-    const real_t t60 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t61 = (-t60 <= t38) & (-t60 <= t35) & (-t60 <= t37);
-    const real_t t62 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t48;
-    const real_t t63 = CLOSEDFORM_FEASIBILITY * (r * t62 * CLOSEDFORM_C(0.5));
-    const int unreachable = !(t61 & (-t63 <= t46) & (-t63 <= t47));
-    const real_t t64 = cf_poison(single, invalid | unreachable);
-    const real_t t65 = (E_11 * t52 - t18 * E_21) * h;
-    const real_t t66 = t53 * Y - (c1_y - t15 * X);
-    const real_t t67 = t52 * Y - (c1_z - t18 * X);
-    const real_t t68 = (E_11 * t53 - t15 * E_21) * h;
-    const real_t t69 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t50 + t54 + t64;
-    p[1] = t65 - t66 + t64;
-    p[2] = -(t67 + t68) + t64;
-    p[3] = t50 - t54 + t64;
-    p[4] = -(t66 + t65) + t64;
-    p[5] = t68 - t67 + t64;
-    status[0] = t69;
-    status[1] = t69;
+    const real_t t45 = cf_rarely(single, same, r_2, r);
+    const int t46 = (both <= CLOSEDFORM_VANISHING * (r * t45)) | in_line;
+    const real_t half = rho / cf_divisor(single, t46, both);
+    const real_t t47 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t46, rho, t47);
+    const real_t t48 = w_x * h;
+    const real_t Y = cf_select(t46, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t X = over_a * along;
+    const real_t t49 = t21 * Y - (c1_x - t14 * X);
+    const int t50 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t54 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const int invalid = !(t53 & t54);
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t56 = (-t55 <= t37) & (-t55 <= t34) & (-t55 <= t36);
+    const real_t t57 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t45;
+    const real_t t58 = CLOSEDFORM_FEASIBILITY * (r * t57 * CLOSEDFORM_C(0.5));
+    const int unreachable = !(t56 & (-t58 <= t43) & (-t58 <= t44));
+    const real_t t59 = cf_poison(single, invalid | unreachable);
+    const real_t w_y = cf_rarely(single, in_line, -t18, a_x * t26 + t18 * t21);
+    const real_t t60 = w_y * h;
+    const real_t t61 = t23 * Y - (c1_y - t13 * X);
+    const real_t w_z = cf_rarely(single, in_line, t27, -(a_x * t23 + t13 * t21));
+    const real_t t62 = w_z * h;
+    const real_t t63 = t26 * Y - (c1_z - t18 * X);
+    const real_t t64 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t48 - t49 + t59;
+    p[1] = t60 - t61 + t59;
+    p[2] = t62 - t63 + t59;
+    p[3] = -(t49 + t48) + t59;
+    p[4] = -(t61 + t60) + t59;
+    p[5] = -(t63 + t62) + t59;
+    status[0] = t64;
+    status[1] = t64;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_fk(const spherical_five_bar_params *params,
     const real_t q[2], real_t p[6], uint8_t status[2])
 {
-    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[2];
     spherical_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(6, p_degrees, exponent, p, p);
-    }
-}
-
-CF_RARE void spherical_five_bar_fk_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *p, size_t p_stride,
-    uint8_t *status, size_t status_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t p_i[6];
-        uint8_t status_i[2];
-        spherical_five_bar_fk(params, q_i, p_i, status_i);
-        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
-        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -200,11 +179,6 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
 {
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -224,11 +198,11 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
         cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
         real_t angle_5[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+            angle_5[i] = params->beta2 / CLOSEDFORM_C(2.0);
         cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
         real_t angle_6[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+            angle_6[i] = params->beta1 / CLOSEDFORM_C(2.0);
         cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
@@ -303,163 +277,139 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const real_t c1_z = s1 * t13;
     const real_t c2_z = s2 * t7;
     const real_t t16 = c1_z - c2_z;
-    const real_t size_u = cf_sqrt(t12 * t12 + t15 * t15 + t16 * t16);
-    const real_t t17 = r * CLOSEDFORM_VANISHING;
-    const int same = size_u <= t17;
-    const real_t t18 = r * CLOSEDFORM_C(2.0);
-    const real_t r_2 = cf_abs(s_beta2_half) * t18;
-    const real_t t19 = cf_select(same, r, r_2);
-    const real_t r_1 = cf_abs(s_beta1_half) * t18;
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t20 = r_1 - D;
-    const real_t t21 = t19 + t20;
-    const real_t t22 = r_1 + D;
-    const real_t t23 = t22 - t19;
-    const real_t t24 = t19 - t20;
-    const real_t t25 = cf_rarely(single, same, r_2, r);
-    const real_t t26 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t25;
-    const real_t t27 = CLOSEDFORM_FEASIBILITY * (r * t26 * CLOSEDFORM_C(0.5));
-    const real_t t28 = cf_rarely(single, same, t12, c1_x);
-    const int all_same = size_u + size_v <= t17;
-    const real_t t29 = cf_rarely(single, same, c1_x, t12) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t29);
-    const real_t t30 = cf_rarely(single, same, c1_y, t15) / cf_divisor(single, all_same, D);
-    const real_t t31 = cf_select(all_same, CLOSEDFORM_C(0.0), t30);
-    const real_t t32 = cf_rarely(single, same, t15, c1_y);
-    const real_t t33 = cf_rarely(single, same, c1_z, t16) / cf_divisor(single, all_same, D);
-    const real_t t34 = cf_select(all_same, CLOSEDFORM_C(0.0), t33);
+    const real_t u_u = t12 * t12 + t15 * t15 + t16 * t16;
+    const real_t t17 = r * r;
+    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t17;
+    const int same = u_u <= t18;
+    const real_t t19 = r * CLOSEDFORM_C(2.0);
+    const real_t r_2 = cf_abs(s_beta2_half) * t19;
+    const real_t t20 = cf_select(same, r, r_2);
+    const real_t r_1 = cf_abs(s_beta1_half) * t19;
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t18;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t21 = r_1 - D;
+    const real_t t22 = t20 + t21;
+    const real_t t23 = r_1 + D;
+    const real_t t24 = t23 - t20;
+    const real_t t25 = t20 - t21;
+    const real_t t26 = cf_rarely(single, same, r_2, r);
+    const real_t t27 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t26;
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (r * t27 * CLOSEDFORM_C(0.5));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t29 = cf_rarely(single, same, c1_y, t15);
+    const real_t t30 = cf_rarely(single, same, c1_x, t12);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t30);
+    const real_t t31 = cf_rarely(single, same, t15, c1_y);
+    const real_t t32 = cf_rarely(single, same, t12, c1_x);
+    const real_t t33 = a_x * t31 + t29 * t32;
+    const real_t t34 = cf_rarely(single, same, c1_z, t16);
     const real_t t35 = cf_rarely(single, same, t16, c1_z);
-    const real_t t36 = t28 * E_11 - t31 * t32 - t34 * t35;
-    const real_t t37 = t28 - E_11 * t36;
-    const real_t t38 = t32 + t31 * t36;
-    const real_t t39 = t35 + t34 * t36;
-    const real_t t40 = E_11 * t37 - t31 * t38 - t34 * t39;
-    const real_t t41 = t37 - E_11 * t40;
-    const real_t t42 = t38 + t31 * t40;
-    const real_t t43 = t39 + t34 * t40;
-    const real_t j = cf_sqrt(t41 * t41 + t42 * t42 + t43 * t43);
-    const real_t t44 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t outer = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t inner = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t m_y = a_x * t35 + t32 * t34;
+    const real_t t36 = over * (t29 * t33 + t34 * m_y);
+    const real_t m_x = t29 * t35 - t31 * t34;
+    const real_t t37 = over * (a_x * t33 - t34 * m_x);
+    const real_t t38 = over * (a_x * m_y + t29 * m_x);
+    const real_t nu = t36 * t36 + t37 * t37 + t38 * t38;
+    const int in_line = nu <= t18;
+    const real_t side = cf_sign(-(t29 * a_x));
+    const real_t t39 = t29 - a_x * side;
+    const real_t t40 = over * (CLOSEDFORM_C(2.0) * (t34 * t34) + t39 * t39);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t40, nu));
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t outer = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t inner = cf_max(t25, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
-    const real_t t45 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t45);
-    const real_t t46 = t36 + t40 + X;
-    const real_t t47 = cf_root(single, outer * inner * slack * (t19 + t22));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t47);
-    const real_t left = t44 + t46 * t46 + rho * rho;
-    const real_t t48 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t49 = j * t48;
-    const real_t t50 = left + t49;
-    const int t51 = (-t6 <= t21) & (-t6 <= t23) & (-t6 <= t24) & (-t27 <= t50);
-    const real_t t52 = t49 - left;
-    const real_t t53 = cf_poison(single, (!(t4 & t5)) | (!(t51 & (-t27 <= t52))));
-    const real_t t54 = CLOSEDFORM_C(0.0) + t53;
-    const real_t t55 = c1_x + t53;
-    const real_t t56 = c1_y + t53;
-    const real_t t57 = c1_z + t53;
-    const real_t t58 = t10 + t53;
-    const real_t t59 = t14 + t53;
-    const real_t t60 = -t11 + t53;
-    const real_t t61 = c2_y + t53;
-    const real_t t62 = c2_z + t53;
-    const int in_line = j <= t17;
-    const real_t t63 = cf_sign(-t34);
-    const real_t t64 = t34 - t63;
-    const real_t t65 = cf_nonzero(single, t64);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t63 / t65, -(t41 / cf_divisor(single, in_line, j)));
-    const real_t upper = cf_max(t50, CLOSEDFORM_C(0.0));
-    const real_t lower = cf_max(t52, CLOSEDFORM_C(0.0));
+    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
+    const real_t t41 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t41);
+    const real_t t42 = over_a * (a_x * t32 - t29 * t31 - t34 * t35) + along;
+    const real_t t43 = nu - cf_rarely(single, same, r_2 * r_2, t17) + t42 * t42;
+    const real_t t44 = cf_root(single, outer * inner * slack * (t20 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t44);
+    const real_t left = t43 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t45 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t46 = left + t45;
+    const int t47 = (-t6 <= t22) & (-t6 <= t24) & (-t6 <= t25) & (-t28 <= t46);
+    const real_t t48 = t45 - left;
+    const real_t t49 = cf_poison(single, (!(t4 & t5)) | (!(t47 & (-t28 <= t48))));
+    const real_t t50 = CLOSEDFORM_C(0.0) + t49;
+    const real_t t51 = c1_x + t49;
+    const real_t t52 = c1_y + t49;
+    const real_t t53 = c1_z + t49;
+    const real_t t54 = t10 + t49;
+    const real_t t55 = t14 + t49;
+    const real_t t56 = -t11 + t49;
+    const real_t t57 = c2_y + t49;
+    const real_t t58 = c2_z + t49;
+    const real_t X = over_a * along;
+    const real_t upper = cf_max(t46, CLOSEDFORM_C(0.0));
+    const real_t lower = cf_max(t48, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t25);
-    const real_t t66 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t66);
-    const real_t t67 = E_11 * X + E_21 * Y;
-    const real_t t68 = E_11 * t63;
-    const real_t t69 = cf_rarely(single, in_line, t68, t43 / cf_divisor(single, in_line, j));
-    const real_t t70 = cf_rarely(single, in_line, t31 * t68 / t65, t42 / cf_divisor(single, in_line, j));
-    const real_t t71 = t48 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t71);
-    const real_t t72 = (t31 * t69 - t34 * t70) * h;
-    const real_t t73 = t31 * X + t70 * Y;
-    const real_t t74 = (E_11 * t69 - t34 * E_21) * h;
-    const real_t t75 = t34 * X + t69 * Y;
-    const real_t t76 = (E_11 * t70 - t31 * E_21) * h;
-    points[0] = t54;
-    points[1] = t54;
-    points[2] = t54;
-    points[3] = t55;
-    points[4] = t54;
-    points[5] = t54;
-    points[6] = t55;
-    points[7] = t56;
-    points[8] = t57;
-    points[9] = t58;
-    points[10] = t59;
-    points[11] = t54;
-    points[12] = t60;
-    points[13] = t61;
-    points[14] = t62;
-    points[15] = c1_x + (t67 + t72) + t53;
-    points[16] = c1_y - (t73 - t74) + t53;
-    points[17] = c1_z - (t75 + t76) + t53;
-    points[18] = t54;
-    points[19] = t54;
-    points[20] = t54;
-    points[21] = t55;
-    points[22] = t54;
-    points[23] = t54;
-    points[24] = t55;
-    points[25] = t56;
-    points[26] = t57;
-    points[27] = t58;
-    points[28] = t59;
-    points[29] = t54;
-    points[30] = t60;
-    points[31] = t61;
-    points[32] = t62;
-    points[33] = c1_x + (t67 - t72) + t53;
-    points[34] = c1_y - (t73 + t74) + t53;
-    points[35] = c1_z - (t75 - t76) + t53;
+    const int t59 = (both <= CLOSEDFORM_VANISHING * (r * t26)) | in_line;
+    const real_t half = rho / cf_divisor(single, t59, both);
+    const real_t Y = cf_select(t59, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t60 = t30 * X + t36 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t34 * side), t29 * t38 - t34 * t37);
+    const real_t t61 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t59, rho, t61);
+    const real_t t62 = w_x * h;
+    const real_t t63 = t29 * X + t37 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t34, a_x * t38 + t34 * t36);
+    const real_t t64 = w_y * h;
+    const real_t t65 = t34 * X + t38 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t39, -(a_x * t37 + t29 * t36));
+    const real_t t66 = w_z * h;
+    points[0] = t50;
+    points[1] = t50;
+    points[2] = t50;
+    points[3] = t51;
+    points[4] = t50;
+    points[5] = t50;
+    points[6] = t51;
+    points[7] = t52;
+    points[8] = t53;
+    points[9] = t54;
+    points[10] = t55;
+    points[11] = t50;
+    points[12] = t56;
+    points[13] = t57;
+    points[14] = t58;
+    points[15] = c1_x - (t60 - t62) + t49;
+    points[16] = c1_y - (t63 - t64) + t49;
+    points[17] = c1_z - (t65 - t66) + t49;
+    points[18] = t50;
+    points[19] = t50;
+    points[20] = t50;
+    points[21] = t51;
+    points[22] = t50;
+    points[23] = t50;
+    points[24] = t51;
+    points[25] = t52;
+    points[26] = t53;
+    points[27] = t54;
+    points[28] = t55;
+    points[29] = t50;
+    points[30] = t56;
+    points[31] = t57;
+    points[32] = t58;
+    points[33] = c1_x - (t60 + t62) + t49;
+    points[34] = c1_y - (t63 + t64) + t49;
+    points[35] = c1_z - (t65 + t66) + t49;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
     const real_t q[2], real_t points[36])
 {
-    static const signed char points_degrees[36] = { 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(36, points_degrees, exponent, points, points);
-    }
-}
-
-CF_RARE void spherical_five_bar_skeleton_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[36];
-        spherical_five_bar_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 36; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -468,11 +418,6 @@ void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params
     real_t *points, size_t points_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -580,149 +525,125 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t6 = c1_y - (s_gamma * t3 + c_gamma * t2);
     const real_t c1_z = s1 * t5;
     const real_t t7 = c1_z - s2 * t1;
-    const real_t size_u = cf_sqrt(t4 * t4 + t6 * t6 + t7 * t7);
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t t8 = r * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t8;
-    const int same = size_u <= t8;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t9 = cf_rarely(single, same, c1_x, t4) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t9);
-    const real_t t10 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t10;
-    const real_t t11 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t10;
-    const real_t t12 = cf_select(same, r, r_2);
-    const real_t t13 = t11 - t12;
-    const real_t outer = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = D - r_1;
-    const real_t t15 = t12 + t14;
-    const real_t inner = cf_max(t15, CLOSEDFORM_C(0.0));
+    const real_t u_u = t4 * t4 + t6 * t6 + t7 * t7;
+    const real_t t8 = r * r;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, c1_x, t4);
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t9;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t11 = cf_rarely(single, same, c1_y, t6);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t10);
+    const real_t t12 = cf_rarely(single, same, t6, c1_y);
+    const real_t t13 = cf_rarely(single, same, t4, c1_x);
+    const real_t t14 = a_x * t12 + t11 * t13;
+    const real_t t15 = cf_rarely(single, same, c1_z, t7);
+    const real_t t16 = cf_rarely(single, same, t7, c1_z);
+    const real_t m_y = a_x * t16 + t13 * t15;
+    const real_t t17 = over * (t11 * t14 + t15 * m_y);
+    const real_t m_x = t11 * t16 - t12 * t15;
+    const real_t t18 = over * (a_x * t14 - t15 * m_x);
+    const real_t t19 = over * (a_x * m_y + t11 * m_x);
+    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
+    const int in_line = nu <= t9;
+    const real_t side = cf_sign(-(t11 * a_x));
+    const real_t t20 = t11 - a_x * side;
+    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t22 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t22;
+    const real_t t23 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t22;
+    const real_t t24 = cf_select(same, r, r_2);
+    const real_t t25 = t23 - t24;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = D - r_1;
+    const real_t t27 = t24 + t26;
+    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t16 = t12 - t14;
-    const real_t slack = cf_max(t16, CLOSEDFORM_C(0.0));
-    const real_t t17 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t17);
-    const real_t t18 = cf_rarely(single, same, t4, c1_x);
-    const real_t t19 = cf_rarely(single, same, c1_y, t6) / cf_divisor(single, all_same, D);
-    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(0.0), t19);
-    const real_t t21 = cf_rarely(single, same, t6, c1_y);
-    const real_t t22 = cf_rarely(single, same, c1_z, t7) / cf_divisor(single, all_same, D);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_rarely(single, same, t7, c1_z);
-    const real_t t25 = E_11 * t18 - t20 * t21 - t23 * t24;
-    const real_t t26 = t18 - E_11 * t25;
-    const real_t t27 = t21 + t20 * t25;
-    const real_t t28 = t24 + t23 * t25;
-    const real_t t29 = E_11 * t26 - t20 * t27 - t23 * t28;
-    const real_t t30 = t26 - E_11 * t29;
-    const real_t t31 = t27 + t20 * t29;
-    const real_t t32 = t28 + t23 * t29;
-    const real_t j = cf_sqrt(t30 * t30 + t31 * t31 + t32 * t32);
-    const int in_line = j <= t8;
-    const real_t t33 = cf_sign(-t23);
-    const real_t t34 = t23 - t33;
-    const real_t t35 = cf_nonzero(single, t34);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t33 / t35, -(t30 / cf_divisor(single, in_line, j)));
-    const real_t t36 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t t37 = t25 + t29 + X;
-    const real_t t38 = cf_root(single, outer * inner * slack * (t12 + t11));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
-    const real_t left = t36 + t37 * t37 + rho * rho;
-    const real_t t39 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t40 = j * t39;
-    const real_t t41 = left + t40;
-    const real_t upper = cf_max(t41, CLOSEDFORM_C(0.0));
-    const real_t t42 = t40 - left;
-    const real_t lower = cf_max(t42, CLOSEDFORM_C(0.0));
+    const real_t t28 = t24 - t26;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t X = over_a * along;
+    const real_t t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
+    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
+    const real_t left = t31 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t34 = left + t33;
+    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = t33 - left;
+    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t43 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t43);
-    const real_t t44 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t44);
-    const real_t t45 = E_11 * X + E_21 * Y;
-    const real_t t46 = E_11 * t33;
-    const real_t t47 = cf_rarely(single, in_line, t46, t32 / cf_divisor(single, in_line, j));
-    const real_t t48 = cf_rarely(single, in_line, t20 * t46 / t35, t31 / cf_divisor(single, in_line, j));
-    const real_t t49 = t39 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t49);
-    const real_t t50 = (t20 * t47 - t23 * t48) * h;
-    const real_t A_11 = t45 + t50;
-    const int t51 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t55 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t56 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t57 = (-t56 <= t16) & (-t56 <= t13) & (-t56 <= t15);
-    const real_t t58 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t43;
-    const real_t t59 = CLOSEDFORM_FEASIBILITY * (r * t58 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t54 & t55)) | (!(t57 & (-t59 <= t41) & (-t59 <= t42)));
-    const real_t t60 = cf_poison(single, failed);
-    const real_t t61 = t20 * X + t48 * Y;
-    const real_t t62 = (E_11 * t47 - t23 * E_21) * h;
-    const real_t t63 = t61 - t62;
-    const real_t t64 = t23 * X + t47 * Y;
-    const real_t t65 = (E_11 * t48 - t20 * E_21) * h;
-    const real_t t66 = t64 + t65;
-    const real_t A_11_below = t45 - t50;
-    const real_t t67 = t61 + t62;
-    const real_t t68 = t64 - t65;
-    A[0] = c1_x + A_11 + t60;
-    A[1] = c1_y - t63 + t60;
-    A[2] = c1_z - t66 + t60;
-    A[3] = A_11 + t60;
-    A[4] = -t63 + t60;
-    A[5] = -t66 + t60;
-    A[6] = t4 + A_11 + t60;
-    A[7] = t6 - t63 + t60;
-    A[8] = t7 - t66 + t60;
-    A[9] = c1_x + A_11_below + t60;
-    A[10] = c1_y - t67 + t60;
-    A[11] = c1_z - t68 + t60;
-    A[12] = A_11_below + t60;
-    A[13] = -t67 + t60;
-    A[14] = -t68 + t60;
-    A[15] = t4 + A_11_below + t60;
-    A[16] = t6 - t67 + t60;
-    A[17] = t7 - t68 + t60;
+    const real_t t36 = cf_rarely(single, same, r_2, r);
+    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
+    const real_t half = rho / cf_divisor(single, t37, both);
+    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t38 = t10 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t11 * t19 - t15 * t18);
+    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t37, rho, t39);
+    const real_t t40 = w_x * h;
+    const real_t t41 = t38 - t40;
+    const int t42 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t46 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t47 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t48 = (-t47 <= t28) & (-t47 <= t25) & (-t47 <= t27);
+    const real_t t49 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
+    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * t49 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t45 & t46)) | (!(t48 & (-t50 <= t34) & (-t50 <= t35)));
+    const real_t t51 = cf_poison(single, failed);
+    const real_t t52 = t11 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
+    const real_t t53 = w_y * h;
+    const real_t t54 = t52 - t53;
+    const real_t t55 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t11 * t17));
+    const real_t t56 = w_z * h;
+    const real_t t57 = t55 - t56;
+    const real_t t58 = t38 + t40;
+    const real_t t59 = t52 + t53;
+    const real_t t60 = t55 + t56;
+    A[0] = c1_x - t41 + t51;
+    A[1] = c1_y - t54 + t51;
+    A[2] = c1_z - t57 + t51;
+    A[3] = -t41 + t51;
+    A[4] = -t54 + t51;
+    A[5] = -t57 + t51;
+    A[6] = t4 - t41 + t51;
+    A[7] = t6 - t54 + t51;
+    A[8] = t7 - t57 + t51;
+    A[9] = c1_x - t58 + t51;
+    A[10] = c1_y - t59 + t51;
+    A[11] = c1_z - t60 + t51;
+    A[12] = -t58 + t51;
+    A[13] = -t59 + t51;
+    A[14] = -t60 + t51;
+    A[15] = t4 - t58 + t51;
+    A[16] = t6 - t59 + t51;
+    A[17] = t7 - t60 + t51;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian_parallel(const spherical_five_bar_params *params,
     const real_t q[2], real_t A[18])
 {
-    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(18, A_degrees, exponent, A, A);
-    }
-}
-
-CF_RARE void spherical_five_bar_jacobian_parallel_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *A, size_t A_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t A_i[18];
-        spherical_five_bar_jacobian_parallel(params, q_i, A_i);
-        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -731,11 +652,6 @@ void spherical_five_bar_jacobian_parallel_batch(size_t n, const spherical_five_b
     real_t *A, size_t A_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -826,138 +742,113 @@ CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
     const real_t t6 = c1_y - (s_gamma * t4 + c_gamma * t3);
     const real_t c2_z = s2 * t2;
     const real_t t7 = c2_z - c1_z;
-    const real_t size_u = cf_sqrt(t5 * t5 + t6 * t6 + t7 * t7);
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t t8 = r * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t8;
-    const int same = size_u <= t8;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t9 = cf_rarely(single, same, c1_y, t6) / cf_divisor(single, all_same, D);
-    const real_t t10 = cf_select(all_same, CLOSEDFORM_C(0.0), t9);
-    const real_t t11 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t11;
-    const real_t t12 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t11;
-    const real_t t13 = cf_select(same, r, r_2);
-    const real_t t14 = t12 - t13;
-    const real_t outer = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = D - r_1;
-    const real_t t16 = t13 + t15;
-    const real_t inner = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
+    const real_t t8 = r * r;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t9;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t11 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t11);
+    const real_t t12 = cf_rarely(single, same, t6, c1_y);
+    const real_t t13 = cf_rarely(single, same, t5, c1_x);
+    const real_t t14 = a_x * t12 + t10 * t13;
+    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
+    const real_t m_y = a_x * t16 + t13 * t15;
+    const real_t t17 = over * (t10 * t14 + t15 * m_y);
+    const real_t m_x = t10 * t16 - t12 * t15;
+    const real_t t18 = over * (a_x * t14 - t15 * m_x);
+    const real_t t19 = over * (a_x * m_y + t10 * m_x);
+    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
+    const int in_line = nu <= t9;
+    const real_t side = cf_sign(-(t10 * a_x));
+    const real_t t20 = t10 - a_x * side;
+    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t22 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t22;
+    const real_t t23 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t22;
+    const real_t t24 = cf_select(same, r, r_2);
+    const real_t t25 = t23 - t24;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = D - r_1;
+    const real_t t27 = t24 + t26;
+    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t17 = t13 - t15;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t t18 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t18);
-    const real_t t19 = cf_rarely(single, same, t5, c1_x);
-    const real_t t20 = cf_rarely(single, same, c1_x, t5) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t20);
-    const real_t t21 = cf_rarely(single, same, t6, c1_y);
-    const real_t t22 = cf_rarely(single, same, c1_z, -t7) / cf_divisor(single, all_same, D);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_rarely(single, same, -t7, c1_z);
-    const real_t t25 = t19 * E_11 - t10 * t21 - t23 * t24;
-    const real_t t26 = t19 - E_11 * t25;
-    const real_t t27 = t21 + t10 * t25;
-    const real_t t28 = t24 + t23 * t25;
-    const real_t t29 = E_11 * t26 - t10 * t27 - t23 * t28;
-    const real_t t30 = t26 - E_11 * t29;
-    const real_t t31 = t27 + t10 * t29;
-    const real_t t32 = t28 + t23 * t29;
-    const real_t j = cf_sqrt(t30 * t30 + t31 * t31 + t32 * t32);
-    const int in_line = j <= t8;
-    const real_t t33 = cf_sign(-t23);
-    const real_t t34 = E_11 * t33;
-    const real_t t35 = t23 - t33;
-    const real_t t36 = cf_nonzero(single, t35);
-    const real_t t37 = cf_rarely(single, in_line, t10 * t34 / t36, t31 / cf_divisor(single, in_line, j));
-    const real_t t38 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t t39 = t25 + t29 + X;
-    const real_t t40 = cf_root(single, outer * inner * slack * (t13 + t12));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t40);
-    const real_t left = t38 + t39 * t39 + rho * rho;
-    const real_t t41 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t42 = j * t41;
-    const real_t t43 = left + t42;
-    const real_t upper = cf_max(t43, CLOSEDFORM_C(0.0));
-    const real_t t44 = t42 - left;
-    const real_t lower = cf_max(t44, CLOSEDFORM_C(0.0));
+    const real_t t28 = t24 - t26;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t X = over_a * along;
+    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
+    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
+    const real_t left = t31 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t34 = left + t33;
+    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = t33 - left;
+    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t45 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t45);
-    const real_t t46 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t46);
-    const real_t t47 = t10 * X + t37 * Y;
-    const real_t t48 = cf_rarely(single, in_line, t34, t32 / cf_divisor(single, in_line, j));
-    const real_t t49 = CLOSEDFORM_C(1.0) + t33 * (E_11 * E_11) / t36;
-    const real_t E_21 = cf_rarely(single, in_line, t49, -(t30 / cf_divisor(single, in_line, j)));
-    const real_t t50 = t41 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t50);
-    const real_t t51 = (E_11 * t48 - t23 * E_21) * h;
-    const real_t t52 = t47 - t51;
-    const real_t t53 = t23 * X + t48 * Y;
-    const real_t t54 = (E_11 * t37 - t10 * E_21) * h;
-    const real_t t55 = t53 + t54;
-    const int t56 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t57 = t56 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t58 = t57 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t60 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t61 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t62 = (-t61 <= t17) & (-t61 <= t14) & (-t61 <= t16);
-    const real_t t63 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t45;
-    const real_t t64 = CLOSEDFORM_FEASIBILITY * (r * t63 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t59 & t60)) | (!(t62 & (-t64 <= t43) & (-t64 <= t44)));
-    const real_t t65 = cf_poison(single, failed);
-    const real_t t66 = s_gamma * c2_z;
-    const real_t t67 = E_11 * X + E_21 * Y;
-    const real_t t68 = (t10 * t48 - t23 * t37) * h;
-    const real_t t69 = c_gamma * c2_z;
-    const real_t B_22 = t66 * (t5 + (t67 + t68)) - t69 * (t6 - t52) - t3 * (t7 + t55);
-    const real_t t70 = t47 + t51;
-    const real_t t71 = t53 - t54;
-    const real_t B_22_below = t66 * (t5 + (t67 - t68)) - t69 * (t6 - t70) - t3 * (t7 + t71);
-    B[0] = c1_z * t52 - c1_y * t55 + t65;
-    B[1] = B_22 + t65;
-    B[2] = c1_z * t70 - c1_y * t71 + t65;
-    B[3] = B_22_below + t65;
+    const real_t t36 = cf_rarely(single, same, r_2, r);
+    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
+    const real_t half = rho / cf_divisor(single, t37, both);
+    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t38 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
+    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t37, rho, t39);
+    const real_t t40 = w_y * h;
+    const real_t t41 = t38 - t40;
+    const real_t t42 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
+    const real_t t43 = w_z * h;
+    const real_t t44 = t42 - t43;
+    const int t45 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t49 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t51 = (-t50 <= t28) & (-t50 <= t25) & (-t50 <= t27);
+    const real_t t52 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
+    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * t52 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t48 & t49)) | (!(t51 & (-t53 <= t34) & (-t53 <= t35)));
+    const real_t t54 = cf_poison(single, failed);
+    const real_t t55 = s_gamma * c2_z;
+    const real_t t56 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
+    const real_t t57 = w_x * h;
+    const real_t t58 = c_gamma * c2_z;
+    const real_t B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t41) - t3 * (t7 + t44);
+    const real_t t59 = t38 + t40;
+    const real_t t60 = t42 + t43;
+    const real_t B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60);
+    B[0] = c1_z * t41 - c1_y * t44 + t54;
+    B[1] = B_22 + t54;
+    B[2] = c1_z * t59 - c1_y * t60 + t54;
+    B[3] = B_22_below + t54;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian_serial(const spherical_five_bar_params *params,
     const real_t q[2], real_t B[4])
 {
-    static const signed char B_degrees[4] = { 2, 2, 2, 2 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(4, B_degrees, exponent, B, B);
-    }
-}
-
-CF_RARE void spherical_five_bar_jacobian_serial_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *B, size_t B_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t B_i[4];
-        spherical_five_bar_jacobian_serial(params, q_i, B_i);
-        for (size_t k = 0; k < 4; ++k) B[k * B_stride + i] = B_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -966,11 +857,6 @@ void spherical_five_bar_jacobian_serial_batch(size_t n, const spherical_five_bar
     real_t *B, size_t B_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -1047,176 +933,150 @@ CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
     const real_t t6 = c1_y - (s_gamma * t4 + c_gamma * t3);
     const real_t c2_z = s2 * t2;
     const real_t t7 = c2_z - c1_z;
-    const real_t size_u = cf_sqrt(t5 * t5 + t6 * t6 + t7 * t7);
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t t8 = r * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t8;
-    const int same = size_u <= t8;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t9 = cf_rarely(single, same, c1_y, t6) / cf_divisor(single, all_same, D);
-    const real_t t10 = cf_select(all_same, CLOSEDFORM_C(0.0), t9);
-    const real_t t11 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t11;
-    const real_t t12 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t11;
-    const real_t t13 = cf_select(same, r, r_2);
-    const real_t t14 = t12 - t13;
-    const real_t outer = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = D - r_1;
-    const real_t t16 = t13 + t15;
-    const real_t inner = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
+    const real_t t8 = r * r;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t9;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t11 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t11);
+    const real_t t12 = cf_rarely(single, same, t6, c1_y);
+    const real_t t13 = cf_rarely(single, same, t5, c1_x);
+    const real_t t14 = a_x * t12 + t10 * t13;
+    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
+    const real_t m_y = a_x * t16 + t13 * t15;
+    const real_t t17 = over * (t10 * t14 + t15 * m_y);
+    const real_t m_x = t10 * t16 - t12 * t15;
+    const real_t t18 = over * (a_x * t14 - t15 * m_x);
+    const real_t t19 = over * (a_x * m_y + t10 * m_x);
+    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
+    const int in_line = nu <= t9;
+    const real_t side = cf_sign(-(t10 * a_x));
+    const real_t t20 = t10 - a_x * side;
+    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t22 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t22;
+    const real_t t23 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t22;
+    const real_t t24 = cf_select(same, r, r_2);
+    const real_t t25 = t23 - t24;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = D - r_1;
+    const real_t t27 = t24 + t26;
+    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t17 = t13 - t15;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t t18 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t18);
-    const real_t t19 = cf_rarely(single, same, t5, c1_x);
-    const real_t t20 = cf_rarely(single, same, c1_x, t5) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t20);
-    const real_t t21 = cf_rarely(single, same, t6, c1_y);
-    const real_t t22 = cf_rarely(single, same, c1_z, -t7) / cf_divisor(single, all_same, D);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_rarely(single, same, -t7, c1_z);
-    const real_t t25 = t19 * E_11 - t10 * t21 - t23 * t24;
-    const real_t t26 = t19 - E_11 * t25;
-    const real_t t27 = t21 + t10 * t25;
-    const real_t t28 = t24 + t23 * t25;
-    const real_t t29 = E_11 * t26 - t10 * t27 - t23 * t28;
-    const real_t t30 = t26 - E_11 * t29;
-    const real_t t31 = t27 + t10 * t29;
-    const real_t t32 = t28 + t23 * t29;
-    const real_t j = cf_sqrt(t30 * t30 + t31 * t31 + t32 * t32);
-    const int in_line = j <= t8;
-    const real_t t33 = cf_sign(-t23);
-    const real_t t34 = E_11 * t33;
-    const real_t t35 = t23 - t33;
-    const real_t t36 = cf_nonzero(single, t35);
-    const real_t t37 = cf_rarely(single, in_line, t10 * t34 / t36, t31 / cf_divisor(single, in_line, j));
-    const real_t t38 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t t39 = t25 + t29 + X;
-    const real_t t40 = cf_root(single, outer * inner * slack * (t13 + t12));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t40);
-    const real_t left = t38 + t39 * t39 + rho * rho;
-    const real_t t41 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t42 = j * t41;
-    const real_t t43 = left + t42;
-    const real_t upper = cf_max(t43, CLOSEDFORM_C(0.0));
-    const real_t t44 = t42 - left;
-    const real_t lower = cf_max(t44, CLOSEDFORM_C(0.0));
+    const real_t t28 = t24 - t26;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t X = over_a * along;
+    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
+    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
+    const real_t left = t31 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t34 = left + t33;
+    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = t33 - left;
+    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t45 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t45);
-    const real_t t46 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t46);
-    const real_t t47 = t10 * X + t37 * Y;
-    const real_t t48 = cf_rarely(single, in_line, t34, t32 / cf_divisor(single, in_line, j));
-    const real_t t49 = CLOSEDFORM_C(1.0) + t33 * (E_11 * E_11) / t36;
-    const real_t E_21 = cf_rarely(single, in_line, t49, -(t30 / cf_divisor(single, in_line, j)));
-    const real_t t50 = t41 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t50);
-    const real_t t51 = (E_11 * t48 - t23 * E_21) * h;
-    const real_t t52 = t47 - t51;
-    const real_t t53 = t23 * X + t48 * Y;
-    const real_t t54 = (E_11 * t37 - t10 * E_21) * h;
-    const real_t t55 = t53 + t54;
-    const real_t B_11 = c1_z * t52 - c1_y * t55;
-    const real_t A_02 = c1_y - t52;
-    const real_t t56 = t7 + t55;
-    const real_t A_03 = c1_z - t55;
-    const real_t A_22 = t6 - t52;
-    const real_t Delta = D * j * h;
-    const real_t t57 = cf_nonzero(single, Delta);
-    const int t58 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t62 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t63 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t64 = (-t63 <= t17) & (-t63 <= t14) & (-t63 <= t16);
-    const real_t t65 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t45;
-    const real_t t66 = CLOSEDFORM_FEASIBILITY * (r * t65 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t61 & t62)) | (!(t64 & (-t66 <= t43) & (-t66 <= t44)));
-    const real_t t67 = cf_poison(single, failed);
-    const real_t t68 = B_11 * (A_02 * t56 + A_03 * A_22) / t57 + t67;
-    const real_t t69 = s_gamma * c2_z;
-    const real_t t70 = E_11 * X + E_21 * Y;
-    const real_t t71 = (t10 * t48 - t23 * t37) * h;
-    const real_t A_11 = t70 + t71;
-    const real_t A_21 = t5 + A_11;
-    const real_t t72 = c_gamma * c2_z;
-    const real_t B_22 = t69 * A_21 - t72 * A_22 - t3 * t56;
-    const real_t t73 = -(B_22 * (t55 * A_02 - t52 * A_03) / t57) + t67;
-    const real_t A_01 = c1_x + A_11;
-    const real_t t74 = -(B_11 * (t56 * A_01 + A_03 * A_21) / t57) + t67;
-    const real_t t75 = B_22 * (t55 * A_01 + A_03 * A_11) / t57 + t67;
-    const real_t t76 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t57) + t67;
-    const real_t t77 = -(B_22 * (t52 * A_01 + A_02 * A_11) / t57) + t67;
-    const real_t t78 = t47 + t51;
-    const real_t t79 = t53 - t54;
-    const real_t B_11_below = c1_z * t78 - c1_y * t79;
-    const real_t A_02_below = c1_y - t78;
-    const real_t t80 = t7 + t79;
-    const real_t A_03_below = c1_z - t79;
-    const real_t A_22_below = t6 - t78;
-    const real_t t81 = B_11_below * (A_02_below * t80 + A_03_below * A_22_below);
-    const real_t A_11_below = t70 - t71;
-    const real_t A_21_below = t5 + A_11_below;
-    const real_t B_22_below = t69 * A_21_below - t72 * A_22_below - t3 * t80;
-    const real_t t82 = B_22_below * (t79 * A_02_below - t78 * A_03_below);
-    const real_t A_01_below = c1_x + A_11_below;
-    const real_t t83 = B_11_below * (t80 * A_01_below + A_03_below * A_21_below);
-    const real_t t84 = B_22_below * (t79 * A_01_below + A_03_below * A_11_below);
-    const real_t t85 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const real_t t86 = B_22_below * (t78 * A_01_below + A_02_below * A_11_below);
-    J[0] = t68;
-    J[1] = t73;
-    J[2] = t74;
-    J[3] = t75;
-    J[4] = t76;
-    J[5] = t77;
-    J[6] = -(t81 / t57) + t67;
-    J[7] = t82 / t57 + t67;
-    J[8] = t83 / t57 + t67;
-    J[9] = -(t84 / t57) + t67;
-    J[10] = B_11_below * t85 / t57 + t67;
-    J[11] = t86 / t57 + t67;
+    const real_t t36 = cf_rarely(single, same, r_2, r);
+    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
+    const real_t half = rho / cf_divisor(single, t37, both);
+    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t38 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
+    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t37, rho, t39);
+    const real_t t40 = w_y * h;
+    const real_t t41 = t38 - t40;
+    const real_t t42 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
+    const real_t t43 = w_z * h;
+    const real_t t44 = t42 - t43;
+    const real_t B_11 = c1_z * t41 - c1_y * t44;
+    const real_t A_02 = c1_y - t41;
+    const real_t t45 = t7 + t44;
+    const real_t A_03 = c1_z - t44;
+    const real_t A_22 = t6 - t41;
+    const real_t Delta = mu * nu * h;
+    const real_t t46 = cf_nonzero(single, Delta);
+    const int t47 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t53 = (-t52 <= t28) & (-t52 <= t25) & (-t52 <= t27);
+    const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t34) & (-t55 <= t35)));
+    const real_t t56 = cf_poison(single, failed);
+    const real_t t57 = B_11 * (A_02 * t45 + A_03 * A_22) / t46 + t56;
+    const real_t t58 = s_gamma * c2_z;
+    const real_t t59 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
+    const real_t t60 = w_x * h;
+    const real_t t61 = t59 - t60;
+    const real_t A_21 = t5 - t61;
+    const real_t t62 = c_gamma * c2_z;
+    const real_t B_22 = t58 * A_21 - t62 * A_22 - t3 * t45;
+    const real_t t63 = -(B_22 * (t44 * A_02 - t41 * A_03) / t46) + t56;
+    const real_t A_01 = c1_x - t61;
+    const real_t t64 = -(B_11 * (t45 * A_01 + A_03 * A_21) / t46) + t56;
+    const real_t t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t46) + t56;
+    const real_t t66 = -(B_22 * (t41 * A_01 - A_02 * t61) / t46) + t56;
+    const real_t t67 = t38 + t40;
+    const real_t t68 = t42 + t43;
+    const real_t B_11_below = c1_z * t67 - c1_y * t68;
+    const real_t A_02_below = c1_y - t67;
+    const real_t t69 = t7 + t68;
+    const real_t A_03_below = c1_z - t68;
+    const real_t A_22_below = t6 - t67;
+    const real_t t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below);
+    const real_t t71 = t59 + t60;
+    const real_t A_21_below = t5 - t71;
+    const real_t B_22_below = t58 * A_21_below - t62 * A_22_below - t3 * t69;
+    const real_t t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below);
+    const real_t A_01_below = c1_x - t71;
+    const real_t t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below);
+    const real_t t74 = B_22_below * (t68 * A_01_below - A_03_below * t71);
+    const real_t t75 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t76 = B_22_below * (t67 * A_01_below - A_02_below * t71);
+    J[0] = t57;
+    J[1] = t63;
+    J[2] = t64;
+    J[3] = B_22 * (t44 * A_01 - A_03 * t61) / t46 + t56;
+    J[4] = t65;
+    J[5] = t66;
+    J[6] = -(t70 / t46) + t56;
+    J[7] = t72 / t46 + t56;
+    J[8] = t73 / t46 + t56;
+    J[9] = -(t74 / t46) + t56;
+    J[10] = B_11_below * t75 / t46 + t56;
+    J[11] = t76 / t46 + t56;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian(const spherical_five_bar_params *params,
     const real_t q[2], real_t J[12])
 {
-    static const signed char J_degrees[12] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(12, J_degrees, exponent, J, J);
-    }
-}
-
-CF_RARE void spherical_five_bar_jacobian_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t J_i[12];
-        spherical_five_bar_jacobian(params, q_i, J_i);
-        for (size_t k = 0; k < 12; ++k) J[k * J_stride + i] = J_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1225,11 +1085,6 @@ void spherical_five_bar_jacobian_batch(size_t n, const spherical_five_bar_params
     real_t *J, size_t J_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -1314,141 +1169,116 @@ CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
     const real_t t6 = c1_y - (s_gamma * t4 + c_gamma * t3);
     const real_t c2_z = s2 * t2;
     const real_t t7 = c2_z - c1_z;
-    const real_t size_u = cf_sqrt(t5 * t5 + t6 * t6 + t7 * t7);
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t t8 = r * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t8;
-    const int same = size_u <= t8;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t9 = cf_rarely(single, same, c1_y, t6) / cf_divisor(single, all_same, D);
-    const real_t t10 = cf_select(all_same, CLOSEDFORM_C(0.0), t9);
-    const real_t t11 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t11;
-    const real_t t12 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t11;
-    const real_t t13 = cf_select(same, r, r_2);
-    const real_t t14 = t12 - t13;
-    const real_t outer = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = D - r_1;
-    const real_t t16 = t13 + t15;
-    const real_t inner = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
+    const real_t t8 = r * r;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t9;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t11 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t11);
+    const real_t t12 = cf_rarely(single, same, t6, c1_y);
+    const real_t t13 = cf_rarely(single, same, t5, c1_x);
+    const real_t t14 = a_x * t12 + t10 * t13;
+    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
+    const real_t m_y = a_x * t16 + t13 * t15;
+    const real_t t17 = over * (t10 * t14 + t15 * m_y);
+    const real_t m_x = t10 * t16 - t12 * t15;
+    const real_t t18 = over * (a_x * t14 - t15 * m_x);
+    const real_t t19 = over * (a_x * m_y + t10 * m_x);
+    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
+    const int in_line = nu <= t9;
+    const real_t side = cf_sign(-(t10 * a_x));
+    const real_t t20 = t10 - a_x * side;
+    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t22 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t22;
+    const real_t t23 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t22;
+    const real_t t24 = cf_select(same, r, r_2);
+    const real_t t25 = t23 - t24;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = D - r_1;
+    const real_t t27 = t24 + t26;
+    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t17 = t13 - t15;
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t t18 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t18);
-    const real_t t19 = cf_rarely(single, same, t5, c1_x);
-    const real_t t20 = cf_rarely(single, same, c1_x, t5) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t20);
-    const real_t t21 = cf_rarely(single, same, t6, c1_y);
-    const real_t t22 = cf_rarely(single, same, c1_z, -t7) / cf_divisor(single, all_same, D);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_rarely(single, same, -t7, c1_z);
-    const real_t t25 = t19 * E_11 - t10 * t21 - t23 * t24;
-    const real_t t26 = t19 - E_11 * t25;
-    const real_t t27 = t21 + t10 * t25;
-    const real_t t28 = t24 + t23 * t25;
-    const real_t t29 = E_11 * t26 - t10 * t27 - t23 * t28;
-    const real_t t30 = t26 - E_11 * t29;
-    const real_t t31 = t27 + t10 * t29;
-    const real_t t32 = t28 + t23 * t29;
-    const real_t j = cf_sqrt(t30 * t30 + t31 * t31 + t32 * t32);
-    const int in_line = j <= t8;
-    const real_t t33 = cf_sign(-t23);
-    const real_t t34 = E_11 * t33;
-    const real_t t35 = t23 - t33;
-    const real_t t36 = cf_nonzero(single, t35);
-    const real_t t37 = cf_rarely(single, in_line, t10 * t34 / t36, t31 / cf_divisor(single, in_line, j));
-    const real_t t38 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t t39 = t25 + t29 + X;
-    const real_t t40 = cf_root(single, outer * inner * slack * (t13 + t12));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t40);
-    const real_t left = t38 + t39 * t39 + rho * rho;
-    const real_t t41 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t42 = j * t41;
-    const real_t t43 = left + t42;
-    const real_t upper = cf_max(t43, CLOSEDFORM_C(0.0));
-    const real_t t44 = t42 - left;
-    const real_t lower = cf_max(t44, CLOSEDFORM_C(0.0));
+    const real_t t28 = t24 - t26;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t X = over_a * along;
+    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
+    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
+    const real_t left = t31 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t34 = left + t33;
+    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = t33 - left;
+    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t45 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t45);
-    const real_t t46 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t46);
-    const real_t t47 = t10 * X + t37 * Y;
-    const real_t t48 = cf_rarely(single, in_line, t34, t32 / cf_divisor(single, in_line, j));
-    const real_t t49 = CLOSEDFORM_C(1.0) + t33 * (E_11 * E_11) / t36;
-    const real_t E_21 = cf_rarely(single, in_line, t49, -(t30 / cf_divisor(single, in_line, j)));
-    const real_t t50 = t41 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t50);
-    const real_t t51 = (E_11 * t48 - t23 * E_21) * h;
-    const real_t t52 = t47 - t51;
-    const real_t t53 = t23 * X + t48 * Y;
-    const real_t t54 = (E_11 * t37 - t10 * E_21) * h;
-    const real_t t55 = t53 + t54;
-    const int t56 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t57 = t56 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t58 = t57 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t60 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t61 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t62 = (-t61 <= t17) & (-t61 <= t14) & (-t61 <= t16);
-    const real_t t63 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t45;
-    const real_t t64 = CLOSEDFORM_FEASIBILITY * (r * t63 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t59 & t60)) | (!(t62 & (-t64 <= t43) & (-t64 <= t44)));
-    const real_t t65 = cf_poison(single, failed);
-    const real_t t66 = s_gamma * c2_z;
-    const real_t t67 = E_11 * X + E_21 * Y;
-    const real_t t68 = (t10 * t48 - t23 * t37) * h;
-    const real_t t69 = c_gamma * c2_z;
-    const real_t B_22 = t66 * (t5 + (t67 + t68)) - t69 * (t6 - t52) - t3 * (t7 + t55);
-    const real_t Delta = D * j * h;
-    const real_t t70 = t47 + t51;
-    const real_t t71 = t53 - t54;
-    const real_t B_22_below = t66 * (t5 + (t67 - t68)) - t69 * (t6 - t70) - t3 * (t7 + t71);
-    factors[0] = c1_z * t52 - c1_y * t55 + t65;
-    factors[1] = B_22 + t65;
-    factors[2] = Delta + t65;
-    factors[3] = c1_z * t70 - c1_y * t71 + t65;
-    factors[4] = B_22_below + t65;
-    factors[5] = -Delta + t65;
+    const real_t t36 = cf_rarely(single, same, r_2, r);
+    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
+    const real_t half = rho / cf_divisor(single, t37, both);
+    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t38 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
+    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t37, rho, t39);
+    const real_t t40 = w_y * h;
+    const real_t t41 = t38 - t40;
+    const real_t t42 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
+    const real_t t43 = w_z * h;
+    const real_t t44 = t42 - t43;
+    const int t45 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t49 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t51 = (-t50 <= t28) & (-t50 <= t25) & (-t50 <= t27);
+    const real_t t52 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
+    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * t52 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t48 & t49)) | (!(t51 & (-t53 <= t34) & (-t53 <= t35)));
+    const real_t t54 = cf_poison(single, failed);
+    const real_t t55 = s_gamma * c2_z;
+    const real_t t56 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
+    const real_t t57 = w_x * h;
+    const real_t t58 = c_gamma * c2_z;
+    const real_t B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t41) - t3 * (t7 + t44);
+    const real_t Delta = mu * nu * h;
+    const real_t t59 = t38 + t40;
+    const real_t t60 = t42 + t43;
+    const real_t B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60);
+    factors[0] = c1_z * t41 - c1_y * t44 + t54;
+    factors[1] = B_22 + t54;
+    factors[2] = Delta + t54;
+    factors[3] = c1_z * t59 - c1_y * t60 + t54;
+    factors[4] = B_22_below + t54;
+    factors[5] = -Delta + t54;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_singularities(const spherical_five_bar_params *params,
     const real_t q[2], real_t factors[6])
 {
-    static const signed char factors_degrees[6] = { 2, 2, 3, 2, 2, 3 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(6, factors_degrees, exponent, factors, factors);
-    }
-}
-
-CF_RARE void spherical_five_bar_singularities_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t factors_i[6];
-        spherical_five_bar_singularities(params, q_i, factors_i);
-        for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1457,11 +1287,6 @@ void spherical_five_bar_singularities_batch(size_t n, const spherical_five_bar_p
     real_t *factors, size_t factors_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -1539,184 +1364,163 @@ CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
     const real_t t6 = c1_y - (s_gamma * t3 + c_gamma * t2);
     const real_t c1_z = s1 * t5;
     const real_t t7 = c1_z - s2 * t1;
-    const real_t size_u = cf_sqrt(t4 * t4 + t6 * t6 + t7 * t7);
-    const real_t size_v = cf_sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z);
-    const real_t t8 = r * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t8;
-    const int same = size_u <= t8;
-    const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t t9 = cf_rarely(single, same, c1_x, t4) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -t9);
-    const real_t t10 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t10;
-    const real_t t11 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t10;
-    const real_t t12 = cf_select(same, r, r_2);
-    const real_t t13 = t11 - t12;
-    const real_t outer = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = D - r_1;
-    const real_t t15 = t12 + t14;
-    const real_t inner = cf_max(t15, CLOSEDFORM_C(0.0));
+    const real_t u_u = t4 * t4 + t6 * t6 + t7 * t7;
+    const real_t t8 = r * r;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, c1_x, t4);
+    const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
+    const int all_same = u_u + v_v <= t9;
+    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t11 = cf_rarely(single, same, c1_y, t6);
+    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t10);
+    const real_t t12 = cf_rarely(single, same, t6, c1_y);
+    const real_t t13 = cf_rarely(single, same, t4, c1_x);
+    const real_t t14 = a_x * t12 + t11 * t13;
+    const real_t t15 = cf_rarely(single, same, c1_z, t7);
+    const real_t t16 = cf_rarely(single, same, t7, c1_z);
+    const real_t m_y = a_x * t16 + t13 * t15;
+    const real_t t17 = over * (t11 * t14 + t15 * m_y);
+    const real_t m_x = t11 * t16 - t12 * t15;
+    const real_t t18 = over * (a_x * t14 - t15 * m_x);
+    const real_t t19 = over * (a_x * m_y + t11 * m_x);
+    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
+    const int in_line = nu <= t9;
+    const real_t side = cf_sign(-(t11 * a_x));
+    const real_t t20 = t11 - a_x * side;
+    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t length_a = cf_sqrt(mu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
+    const real_t over_a = length_n * part;
+    const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t22 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t22;
+    const real_t t23 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t22;
+    const real_t t24 = cf_select(same, r, r_2);
+    const real_t t25 = t23 - t24;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = D - r_1;
+    const real_t t27 = t24 + t26;
+    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t16 = t12 - t14;
-    const real_t slack = cf_max(t16, CLOSEDFORM_C(0.0));
-    const real_t t17 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t17);
-    const real_t t18 = cf_rarely(single, same, t4, c1_x);
-    const real_t t19 = cf_rarely(single, same, c1_y, t6) / cf_divisor(single, all_same, D);
-    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(0.0), t19);
-    const real_t t21 = cf_rarely(single, same, t6, c1_y);
-    const real_t t22 = cf_rarely(single, same, c1_z, t7) / cf_divisor(single, all_same, D);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_rarely(single, same, t7, c1_z);
-    const real_t t25 = E_11 * t18 - t20 * t21 - t23 * t24;
-    const real_t t26 = t18 - E_11 * t25;
-    const real_t t27 = t21 + t20 * t25;
-    const real_t t28 = t24 + t23 * t25;
-    const real_t t29 = E_11 * t26 - t20 * t27 - t23 * t28;
-    const real_t t30 = t26 - E_11 * t29;
-    const real_t t31 = t27 + t20 * t29;
-    const real_t t32 = t28 + t23 * t29;
-    const real_t j = cf_sqrt(t30 * t30 + t31 * t31 + t32 * t32);
-    const int in_line = j <= t8;
-    const real_t t33 = cf_sign(-t23);
-    const real_t t34 = t23 - t33;
-    const real_t t35 = cf_nonzero(single, t34);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t33 / t35, -(t30 / cf_divisor(single, in_line, j)));
-    const real_t t36 = j * j - cf_rarely(single, same, r_2 * r_2, r * r);
-    const real_t t37 = t25 + t29 + X;
-    const real_t t38 = cf_root(single, outer * inner * slack * (t12 + t11));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
-    const real_t left = t36 + t37 * t37 + rho * rho;
-    const real_t t39 = CLOSEDFORM_C(2.0) * rho;
-    const real_t t40 = j * t39;
-    const real_t t41 = left + t40;
-    const real_t upper = cf_max(t41, CLOSEDFORM_C(0.0));
-    const real_t t42 = t40 - left;
-    const real_t lower = cf_max(t42, CLOSEDFORM_C(0.0));
+    const real_t t28 = t24 - t26;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t X = over_a * along;
+    const real_t t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
+    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
+    const real_t left = t31 + rho * rho;
+    const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
+    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t34 = left + t33;
+    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t35 = t33 - left;
+    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t43 = cf_rarely(single, same, r_2, r);
-    const int flat = both <= CLOSEDFORM_VANISHING * (r * t43);
-    const real_t t44 = rho * (upper - lower) / cf_divisor(single, flat, both);
-    const real_t Y = cf_select(flat, CLOSEDFORM_C(0.0), t44);
-    const real_t t45 = E_11 * X + E_21 * Y;
-    const real_t t46 = E_11 * t33;
-    const real_t t47 = cf_rarely(single, in_line, t46, t32 / cf_divisor(single, in_line, j));
-    const real_t t48 = cf_rarely(single, in_line, t20 * t46 / t35, t31 / cf_divisor(single, in_line, j));
-    const real_t t49 = t39 * cf_sqrt(upper * lower) / cf_divisor(single, flat, both);
-    const real_t h = cf_rarely(single, flat, rho, t49);
-    const real_t t50 = (t20 * t47 - t23 * t48) * h;
-    const real_t A_11 = t45 + t50;
-    const real_t A_01 = c1_x + A_11;
-    const real_t t51 = t20 * X + t48 * Y;
-    const real_t t52 = (E_11 * t47 - t23 * E_21) * h;
-    const real_t t53 = t51 - t52;
-    const real_t A_02 = c1_y - t53;
-    const real_t t54 = t23 * X + t47 * Y;
-    const real_t t55 = (E_11 * t48 - t20 * E_21) * h;
-    const real_t t56 = t54 + t55;
-    const real_t A_03 = c1_z - t56;
+    const real_t t36 = cf_rarely(single, same, r_2, r);
+    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
+    const real_t half = rho / cf_divisor(single, t37, both);
+    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t38 = t10 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t11 * t19 - t15 * t18);
+    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t37, rho, t39);
+    const real_t t40 = w_x * h;
+    const real_t t41 = t38 - t40;
+    const real_t A_01 = c1_x - t41;
+    const real_t t42 = t11 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
+    const real_t t43 = w_y * h;
+    const real_t t44 = t42 - t43;
+    const real_t A_02 = c1_y - t44;
+    const real_t t45 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t11 * t17));
+    const real_t t46 = w_z * h;
+    const real_t t47 = t45 - t46;
+    const real_t A_03 = c1_z - t47;
     const real_t strut = cf_sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03);
-    const real_t t57 = cf_nonzero(single, strut);
-    const real_t radial_x = A_01 / t57;
-    const real_t radial_y = A_02 / t57;
-    const real_t radial_z = A_03 / t57;
-    const real_t off1 = A_11 * radial_x - t53 * radial_y - t56 * radial_z;
-    const real_t t1_x = A_11 - radial_x * off1;
-    const real_t t58 = t53 + radial_y * off1;
-    const real_t t59 = t56 + radial_z * off1;
-    const real_t square1 = t1_x * t1_x + t58 * t58 + t59 * t59;
-    const real_t A_21 = t4 + A_11;
-    const real_t A_22 = t6 - t53;
-    const real_t A_23 = t7 - t56;
+    const real_t t48 = cf_nonzero(single, strut);
+    const real_t radial_x = A_01 / t48;
+    const real_t radial_y = A_02 / t48;
+    const real_t radial_z = A_03 / t48;
+    const real_t t49 = t41 * radial_x + t44 * radial_y + t47 * radial_z;
+    const real_t t50 = t41 - radial_x * t49;
+    const real_t t51 = t44 - radial_y * t49;
+    const real_t t52 = t47 - radial_z * t49;
+    const real_t square1 = t50 * t50 + t51 * t51 + t52 * t52;
+    const real_t A_21 = t4 - t41;
+    const real_t A_22 = t6 - t44;
+    const real_t A_23 = t7 - t47;
     const real_t off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23;
     const real_t t2_x = A_21 - radial_x * off2;
     const real_t t2_y = A_22 - radial_y * off2;
     const real_t t2_z = A_23 - radial_z * off2;
     const real_t square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z;
-    const real_t t60 = square1 - square2;
-    const real_t t61 = t1_x * t2_x - t58 * t2_y - t59 * t2_z;
-    const real_t t62 = cf_sqrt(t60 * t60 + CLOSEDFORM_C(4.0) * (t61 * t61));
-    const real_t t63 = CLOSEDFORM_C(2.0) * (D * j * h);
-    const real_t t64 = cf_quotient(single, strut * (square1 + square2 + t62), t63);
-    const int t65 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t66 = t65 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t67 = t66 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t68 = t67 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t69 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t70 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t71 = (-t70 <= t16) & (-t70 <= t13) & (-t70 <= t15);
-    const real_t t72 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t43;
-    const real_t t73 = CLOSEDFORM_FEASIBILITY * (r * t72 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t68 & t69)) | (!(t71 & (-t73 <= t41) & (-t73 <= t42)));
-    const real_t t74 = cf_poison(single, failed);
-    const real_t A_11_below = t45 - t50;
-    const real_t A_01_below = c1_x + A_11_below;
-    const real_t t75 = t51 + t52;
-    const real_t A_02_below = c1_y - t75;
-    const real_t t76 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const real_t t77 = t54 - t55;
-    const real_t A_03_below = c1_z - t77;
-    const real_t strut_below = cf_sqrt(t76 + A_03_below * A_03_below);
-    const real_t t78 = cf_nonzero(single, strut_below);
-    const real_t radial_x_below = A_01_below / t78;
-    const real_t radial_y_below = A_02_below / t78;
-    const real_t t79 = A_11_below * radial_x_below - t75 * radial_y_below;
-    const real_t radial_z_below = A_03_below / t78;
-    const real_t off1_below = t79 - t77 * radial_z_below;
-    const real_t t1_x_below = A_11_below - radial_x_below * off1_below;
-    const real_t t80 = t75 + radial_y_below * off1_below;
-    const real_t t81 = t77 + radial_z_below * off1_below;
-    const real_t square1_below = t1_x_below * t1_x_below + t80 * t80 + t81 * t81;
-    const real_t A_21_below = t4 + A_11_below;
-    const real_t A_22_below = t6 - t75;
-    const real_t t82 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const real_t A_23_below = t7 - t77;
-    const real_t off2_below = t82 + radial_z_below * A_23_below;
+    const real_t t53 = square1 - square2;
+    const real_t t54 = t50 * t2_x + t51 * t2_y + t52 * t2_z;
+    const real_t t55 = cf_sqrt(t53 * t53 + CLOSEDFORM_C(4.0) * (t54 * t54));
+    const real_t t56 = CLOSEDFORM_C(2.0) * (mu * nu * h);
+    const real_t t57 = cf_quotient(single, strut * (square1 + square2 + t55), t56);
+    const int t58 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t62 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t63 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t64 = (-t63 <= t28) & (-t63 <= t25) & (-t63 <= t27);
+    const real_t t65 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
+    const real_t t66 = CLOSEDFORM_FEASIBILITY * (r * t65 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t61 & t62)) | (!(t64 & (-t66 <= t34) & (-t66 <= t35)));
+    const real_t t67 = cf_poison(single, failed);
+    const real_t t68 = t38 + t40;
+    const real_t A_01_below = c1_x - t68;
+    const real_t t69 = t42 + t43;
+    const real_t A_02_below = c1_y - t69;
+    const real_t t70 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const real_t t71 = t45 + t46;
+    const real_t A_03_below = c1_z - t71;
+    const real_t strut_below = cf_sqrt(t70 + A_03_below * A_03_below);
+    const real_t t72 = cf_nonzero(single, strut_below);
+    const real_t radial_x_below = A_01_below / t72;
+    const real_t radial_y_below = A_02_below / t72;
+    const real_t radial_z_below = A_03_below / t72;
+    const real_t t73 = t68 * radial_x_below + t69 * radial_y_below + t71 * radial_z_below;
+    const real_t t74 = t68 - radial_x_below * t73;
+    const real_t t75 = t69 - radial_y_below * t73;
+    const real_t t76 = t71 - radial_z_below * t73;
+    const real_t square1_below = t74 * t74 + t75 * t75 + t76 * t76;
+    const real_t A_21_below = t4 - t68;
+    const real_t A_22_below = t6 - t69;
+    const real_t t77 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const real_t A_23_below = t7 - t71;
+    const real_t off2_below = t77 + radial_z_below * A_23_below;
     const real_t t2_x_below = A_21_below - radial_x_below * off2_below;
     const real_t t2_y_below = A_22_below - radial_y_below * off2_below;
-    const real_t t83 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const real_t t78 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const real_t t2_z_below = A_23_below - radial_z_below * off2_below;
-    const real_t square2_below = t83 + t2_z_below * t2_z_below;
-    const real_t t84 = square1_below - square2_below;
-    const real_t t85 = t1_x_below * t2_x_below - t80 * t2_y_below - t81 * t2_z_below;
-    const real_t t86 = cf_sqrt(t84 * t84 + CLOSEDFORM_C(4.0) * (t85 * t85));
-    const real_t t87 = strut_below * (square1_below + square2_below + t86);
-    kappa[0] = t64 + t74;
-    kappa[1] = cf_quotient(single, t87, t63) + t74;
+    const real_t square2_below = t78 + t2_z_below * t2_z_below;
+    const real_t t79 = square1_below - square2_below;
+    const real_t t80 = t74 * t2_x_below + t75 * t2_y_below + t76 * t2_z_below;
+    const real_t t81 = cf_sqrt(t79 * t79 + CLOSEDFORM_C(4.0) * (t80 * t80));
+    const real_t t82 = strut_below * (square1_below + square2_below + t81);
+    kappa[0] = t57 + t67;
+    kappa[1] = cf_quotient(single, t82, t56) + t67;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_condition_number(const spherical_five_bar_params *params,
     const real_t q[2], real_t kappa[2])
 {
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
-}
-
-CF_RARE void spherical_five_bar_condition_number_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *kappa, size_t kappa_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t kappa_i[2];
-        spherical_five_bar_condition_number(params, q_i, kappa_i);
-        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
-
-    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1725,11 +1529,6 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
     real_t *kappa, size_t kappa_stride)
 {
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
-        return;
-    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];

@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 63 compare and select, 65 add, 12 divide, 87 multiply, 7 sincos, 5 sqrt
- *   skeleton: 62 compare and select, 77 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
- *   jacobian_parallel: 62 compare and select, 86 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
- *   jacobian_serial: 62 compare and select, 72 add, 18 divide, 89 multiply, 7 sincos, 5 sqrt
- *   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
- *   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
- *   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
+ *   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
+ *   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *

@@ -2,15 +2,15 @@
 // derivations/delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-//   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
-//   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-//   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
-//   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
-//   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
-//   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
-//   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
-//   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
+//   fk: 43 compare and select, 64 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
+//   skeleton: 42 compare and select, 179 add, 14 divide, 84 multiply, 6 sincos, 1 sqrt
+//   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
+//   jacobian_serial: 42 compare and select, 85 add, 8 divide, 108 multiply, 6 sincos, 1 sqrt
+//   jacobian: 42 compare and select, 115 add, 26 divide, 163 multiply, 6 sincos, 1 sqrt
+//   determinant: 42 compare and select, 81 add, 10 divide, 113 multiply, 6 sincos, 1 sqrt
+//   singularities: 42 compare and select, 87 add, 8 divide, 109 multiply, 6 sincos, 1 sqrt
+//   condition_number: 42 compare and select, 119 add, 10 divide, 160 multiply, 6 sincos, 3 sqrt
+//   constraint: 42 compare and select, 91 add, 8 divide, 146 multiply, 6 sincos, 1 sqrt
 //   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 
@@ -142,12 +142,12 @@ function _fk(v, o) {
     _runtime.sincos(alpha2);
     const s_alpha2 = _runtime.found[0];
     const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(theta3);
-    const s3 = _runtime.found[0];
-    const c3 = _runtime.found[1];
     _runtime.sincos(alpha3);
     const s_alpha3 = _runtime.found[0];
     const c_alpha3 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
     const t1 = L * s1;
     const u_z = t1 - L * s2;
     const t2 = L * c1;
@@ -156,75 +156,68 @@ function _fk(v, o) {
     const t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4);
     const t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
     const t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
-    const size_u = Math.sqrt(u_z * u_z + t5 * t5 + t7 * t7);
-    const v_z = t1 - L * s3;
-    const t8 = L * c3;
-    const t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
-    const t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
-    const size_v = Math.sqrt(v_z * v_z + t9 * t9 + t10 * t10);
+    const u_u = u_z * u_z + t5 * t5 + t7 * t7;
     const size = f + e + L + l;
-    const t11 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t11;
-    const same = size_u <= t11;
-    const D = same ? size_v : size_u;
-    const t12 = 1.0 / D;
-    const t13 = same ? t10 : t7;
-    const t14 = all_same ? 0.0 : t12 * t13;
-    const t15 = same ? t5 : t9;
-    const t16 = same ? t9 : t5;
-    const E_11 = all_same ? 1.0 : t16 * t12;
-    const t17 = same ? t7 : t10;
-    const t18 = same ? u_z : v_z;
-    const t19 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t12 * t19;
-    const t20 = E_11 * t15 + t17 * t14 + t18 * E_13;
-    const t21 = t15 - E_11 * t20;
-    const t22 = t17 - t14 * t20;
-    const m_z = t18 - E_13 * t20;
-    const t23 = E_11 * t21 + t14 * t22 + E_13 * m_z;
-    const t24 = t21 - E_11 * t23;
-    const t25 = t22 - t14 * t23;
-    const n_z = m_z - E_13 * t23;
-    const j = Math.sqrt(t24 * t24 + t25 * t25 + n_z * n_z);
-    const in_line = j <= t11;
-    const t26 = E_13 < 0 ? -1 : 1;
-    const t27 = E_11 * t26;
-    const t28 = 1.0 / j;
-    const E_23 = in_line ? -t27 : n_z * t28;
-    const t29 = 1.0 / (E_13 + t26);
-    const E_22 = in_line ? -(t29 * (t14 * t27)) : t25 * t28;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t30 = t15 * (t16 - t15) - t17 * (t17 - t13) - t18 * (t18 - t19);
-    const t31 = in_line ? 0.0 : t30 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t31 * t31);
-    const t32 = l - rho;
-    const slack = Math.max(t32, 0.0);
-    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t33 = (t14 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t26 * t29 : t24 * t28;
-    const t34 = E_21 * t31 + (t3 - X * E_11);
-    const t35 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t8 = size * size;
+    const t9 = _runtime.VANISHING * _runtime.VANISHING * t8;
+    const same = u_u <= t9;
+    const t10 = L * c3;
+    const t11 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10);
+    const d_x = same ? t11 : t5;
+    const v_z = t1 - L * s3;
+    const t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10);
+    const v_v = v_z * v_z + t11 * t11 + t12 * t12;
+    const all_same = u_u + v_v <= t9;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t13 = same ? t12 : t7;
+    const a_x = all_same ? 1.0 : d_x;
+    const t14 = same ? t7 : t12;
+    const t15 = same ? t5 : t11;
+    const t16 = a_x * t14 - t13 * t15;
+    const d_z = same ? v_z : u_z;
+    const t17 = same ? u_z : v_z;
+    const t18 = a_x * t17 - t15 * d_z;
+    const t19 = over * (t13 * t16 + d_z * t18);
+    const t20 = t13 * t17 - t14 * d_z;
+    const t21 = over * (a_x * t16 - d_z * t20);
+    const n_z = over * (a_x * t18 + t13 * t20);
+    const nu = t19 * t19 + t21 * t21 + n_z * n_z;
+    const in_line = nu <= t9;
+    const side = t13 * a_x < 0 ? -1 : 1;
+    const t22 = t13 + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / (mu * nu);
+    const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
+    const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
+    const t25 = d_x * 0.5 - (t3 - t19 * t24);
+    const t26 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
+    const t27 = l * l - t26;
+    const slack = Math.max(t27, 0.0);
+    const t28 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
+    const t29 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t36 = t35 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t37 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const invalid = !(t36 && t37);
-    const t38 = Math.abs(in_line ? -t30 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t38 && -(size * _runtime.FEASIBILITY) <= t32);
-    const t39 = invalid || unreachable ? NaN : 0;
-    const t40 = h * (E_11 * E_23 - E_13 * E_21);
-    const t41 = t31 * E_22 + (t6 - X * t14);
-    const t42 = h * (E_11 * E_22 - t14 * E_21);
-    const t43 = t31 * E_23 + (t1 - X * E_13);
-    const t44 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = -(t33 + t34) + t39;
-    o[1] = t40 - t41 + t39;
-    o[2] = -(t42 + t43) + t39;
-    o[3] = t33 - t34 + t39;
-    o[4] = -(t40 + t41) + t39;
-    o[5] = t42 - t43 + t39;
-    o[6] = t44;
-    o[7] = t44;
+    const t31 = t30 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t32 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const invalid = !(t31 && t32);
+    const t33 = Math.abs(in_line ? -t23 : 0.0) <= t8 * _runtime.FEASIBILITY;
+    const unreachable = !(t33 && -(_runtime.FEASIBILITY * t28) <= t27);
+    const t34 = invalid || unreachable ? NaN : 0;
+    const t35 = t13 * 0.5 - (t6 + t21 * t24);
+    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t37 = d_z * 0.5 - (t1 + n_z * t24);
+    const t38 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
+    const t39 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t25 - t29 + t34;
+    o[1] = t35 - t36 + t34;
+    o[2] = t37 - t38 + t34;
+    o[3] = t29 + t25 + t34;
+    o[4] = t36 + t35 + t34;
+    o[5] = t38 + t37 + t34;
+    o[6] = t39;
+    o[7] = t39;
 }
 
 const _FK = _runtime.kernel({
@@ -240,12 +233,7 @@ const _FK = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -311,12 +299,12 @@ function _skeleton(v, o) {
     _runtime.sincos(alpha2);
     const s_alpha2 = _runtime.found[0];
     const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
     _runtime.sincos(theta3);
     const s3 = _runtime.found[0];
     const c3 = _runtime.found[1];
+    _runtime.sincos(alpha3);
+    const s_alpha3 = _runtime.found[0];
+    const c_alpha3 = _runtime.found[1];
     const t1 = f * c_alpha1;
     const t2 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
@@ -343,249 +331,244 @@ function _skeleton(v, o) {
     const t21 = f * s_alpha2;
     const t22 = t21 + s_alpha2 * t13;
     const t23 = t19 - (t20 - t22);
-    const size_u = Math.sqrt(u_z * u_z + t15 * t15 + t23 * t23);
-    const size = f + e + L + l;
-    const t24 = size * _runtime.VANISHING;
-    const same = size_u <= t24;
+    const u_u = u_z * u_z + t15 * t15 + t23 * t23;
+    const t24 = L * s3;
+    const v_z = t5 - t24;
     const t25 = e * c_alpha3;
     const t26 = f * c_alpha3;
     const t27 = L * c3;
     const t28 = t26 + c_alpha3 * t27;
     const t29 = t10 - (t25 - t28);
-    const t30 = same ? t15 : t29;
-    const t31 = L * s3;
-    const v_z = t5 - t31;
-    const t32 = e * s_alpha3;
-    const t33 = f * s_alpha3;
-    const t34 = t33 + s_alpha3 * t27;
-    const t35 = t19 - (t32 - t34);
-    const size_v = Math.sqrt(v_z * v_z + t29 * t29 + t35 * t35);
-    const all_same = size_u + size_v <= t24;
-    const t36 = same ? t29 : t15;
-    const D = same ? size_v : size_u;
-    const E_11 = all_same ? 1.0 : t36 / D;
-    const t37 = same ? t35 : t23;
-    const t38 = all_same ? 0.0 : t37 / D;
-    const t39 = same ? t23 : t35;
-    const t40 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t40 / D;
-    const t41 = same ? u_z : v_z;
-    const t42 = t30 * E_11 + t38 * t39 + E_13 * t41;
-    const t43 = t30 - E_11 * t42;
-    const t44 = t39 - t38 * t42;
-    const m_z = t41 - E_13 * t42;
-    const t45 = E_11 * t43 + t38 * t44 + E_13 * m_z;
-    const t46 = t43 - E_11 * t45;
-    const t47 = t44 - t38 * t45;
-    const n_z = m_z - E_13 * t45;
-    const j = Math.sqrt(t46 * t46 + t47 * t47 + n_z * n_z);
-    const in_line = j <= t24;
-    const left = t30 * (t30 - t36) - t39 * (t37 - t39) - t41 * (t40 - t41);
-    const t48 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const X = all_same ? 0.0 : D * 0.5;
-    const t49 = in_line ? 0.0 : left / (2.0 * j);
-    const rho = Math.sqrt(X * X + t49 * t49);
-    const t50 = l - rho;
-    const unreachable = !(t48 && -(size * _runtime.FEASIBILITY) <= t50);
-    const t51 = !(t3 && t4) || unreachable ? NaN : 0;
-    const t52 = t1 + t51;
-    const t53 = t17 + t51;
-    const t54 = 0.0 + t51;
-    const t55 = t9 + t51;
-    const t56 = t18 + t51;
-    const t57 = -t5 + t51;
-    const t58 = E_13 < 0 ? -1 : 1;
-    const t59 = E_13 + t58;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t58 / t59 : t46 / j;
-    const t60 = E_11 * X + t49 * E_21;
-    const t61 = E_11 * t58;
-    const E_23 = in_line ? -t61 : n_z / j;
-    const E_22 = in_line ? -(t38 * t61 / t59) : t47 / j;
-    const slack = Math.max(t50, 0.0);
-    const h = slack <= t24 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t62 = (t38 * E_23 - E_13 * E_22) * h;
-    const t63 = t10 - (t60 - t62);
-    const t64 = t7 - t63;
-    const t65 = t38 * X + t49 * E_22;
-    const t66 = h * (E_11 * E_23 - E_13 * E_21);
-    const t67 = t19 - (t65 + t66);
-    const t68 = t16 - t67;
-    const t69 = E_13 * X + t49 * E_23;
-    const t70 = h * (E_11 * E_22 - t38 * E_21);
-    const t71 = t69 - t70 - t5 + t51;
-    const t72 = t16 * 0.5;
-    const t73 = t9 - t72 + t51;
-    const t74 = t7 * 0.5;
-    const t75 = t74 + t18 + t51;
-    const t76 = t72 + t9 + t51;
-    const t77 = t18 - t74 + t51;
-    const t78 = t12 + t51;
-    const t79 = t21 + t51;
-    const t80 = t14 + t51;
-    const t81 = t22 + t51;
-    const t82 = -t6 + t51;
-    const t83 = t11 - t63;
-    const t84 = t20 - t67;
-    const t85 = t20 * 0.5;
-    const t86 = t14 - t85 + t51;
-    const t87 = t11 * 0.5;
-    const t88 = t87 + t22 + t51;
-    const t89 = t85 + t14 + t51;
-    const t90 = t22 - t87 + t51;
-    const t91 = t26 + t51;
-    const t92 = t33 + t51;
-    const t93 = t28 + t51;
-    const t94 = t34 + t51;
-    const t95 = -t31 + t51;
-    const t96 = t25 - t63;
-    const t97 = t32 - t67;
-    const t98 = t32 * 0.5;
-    const t99 = t28 - t98 + t51;
-    const t100 = t25 * 0.5;
-    const t101 = t100 + t34 + t51;
-    const t102 = t98 + t28 + t51;
-    const t103 = t34 - t100 + t51;
-    const t104 = t10 - (t60 + t62);
-    const t105 = t7 - t104;
-    const t106 = t19 - (t65 - t66);
-    const t107 = t16 - t106;
-    const t108 = t69 + t70 - t5 + t51;
-    const t109 = t11 - t104;
-    const t110 = t20 - t106;
-    const t111 = t25 - t104;
-    const t112 = t32 - t106;
-    o[0] = t52;
-    o[1] = t53;
-    o[2] = t54;
-    o[3] = t55;
-    o[4] = t56;
-    o[5] = t57;
-    o[6] = t64 + t51;
-    o[7] = t68 + t51;
-    o[8] = t71;
-    o[9] = t73;
-    o[10] = t75;
-    o[11] = t57;
-    o[12] = t76;
-    o[13] = t77;
-    o[14] = t57;
-    o[15] = t64 - t72 + t51;
-    o[16] = t74 + t68 + t51;
-    o[17] = t71;
-    o[18] = t72 + t64 + t51;
-    o[19] = t68 - t74 + t51;
-    o[20] = t71;
-    o[21] = t78;
-    o[22] = t79;
-    o[23] = t54;
-    o[24] = t80;
-    o[25] = t81;
-    o[26] = t82;
-    o[27] = t83 + t51;
-    o[28] = t84 + t51;
-    o[29] = t71;
-    o[30] = t86;
-    o[31] = t88;
-    o[32] = t82;
-    o[33] = t89;
-    o[34] = t90;
-    o[35] = t82;
-    o[36] = t83 - t85 + t51;
-    o[37] = t87 + t84 + t51;
-    o[38] = t71;
-    o[39] = t85 + t83 + t51;
-    o[40] = t84 - t87 + t51;
-    o[41] = t71;
-    o[42] = t91;
-    o[43] = t92;
-    o[44] = t54;
-    o[45] = t93;
-    o[46] = t94;
-    o[47] = t95;
-    o[48] = t96 + t51;
-    o[49] = t97 + t51;
-    o[50] = t71;
-    o[51] = t99;
-    o[52] = t101;
-    o[53] = t95;
-    o[54] = t102;
-    o[55] = t103;
-    o[56] = t95;
-    o[57] = t96 - t98 + t51;
-    o[58] = t100 + t97 + t51;
-    o[59] = t71;
-    o[60] = t98 + t96 + t51;
-    o[61] = t97 - t100 + t51;
-    o[62] = t71;
-    o[63] = -t63 + t51;
-    o[64] = -t67 + t51;
-    o[65] = t71;
-    o[66] = t52;
-    o[67] = t53;
-    o[68] = t54;
-    o[69] = t55;
-    o[70] = t56;
-    o[71] = t57;
-    o[72] = t105 + t51;
-    o[73] = t107 + t51;
-    o[74] = t108;
-    o[75] = t73;
-    o[76] = t75;
-    o[77] = t57;
-    o[78] = t76;
-    o[79] = t77;
-    o[80] = t57;
-    o[81] = t105 - t72 + t51;
-    o[82] = t74 + t107 + t51;
-    o[83] = t108;
-    o[84] = t72 + t105 + t51;
-    o[85] = t107 - t74 + t51;
-    o[86] = t108;
-    o[87] = t78;
-    o[88] = t79;
-    o[89] = t54;
-    o[90] = t80;
-    o[91] = t81;
-    o[92] = t82;
-    o[93] = t109 + t51;
-    o[94] = t110 + t51;
-    o[95] = t108;
-    o[96] = t86;
-    o[97] = t88;
-    o[98] = t82;
-    o[99] = t89;
-    o[100] = t90;
-    o[101] = t82;
-    o[102] = t109 - t85 + t51;
-    o[103] = t87 + t110 + t51;
-    o[104] = t108;
-    o[105] = t85 + t109 + t51;
-    o[106] = t110 - t87 + t51;
-    o[107] = t108;
-    o[108] = t91;
-    o[109] = t92;
-    o[110] = t54;
-    o[111] = t93;
-    o[112] = t94;
-    o[113] = t95;
-    o[114] = t111 + t51;
-    o[115] = t112 + t51;
-    o[116] = t108;
-    o[117] = t99;
-    o[118] = t101;
-    o[119] = t95;
-    o[120] = t102;
-    o[121] = t103;
-    o[122] = t95;
-    o[123] = t111 - t98 + t51;
-    o[124] = t100 + t112 + t51;
-    o[125] = t108;
-    o[126] = t98 + t111 + t51;
-    o[127] = t112 - t100 + t51;
-    o[128] = t108;
-    o[129] = -t104 + t51;
-    o[130] = -t106 + t51;
-    o[131] = t108;
+    const t30 = e * s_alpha3;
+    const t31 = f * s_alpha3;
+    const t32 = t31 + s_alpha3 * t27;
+    const t33 = t19 - (t30 - t32);
+    const v_v = v_z * v_z + t29 * t29 + t33 * t33;
+    const size = f + e + L + l;
+    const t34 = size * size;
+    const t35 = _runtime.VANISHING * _runtime.VANISHING * t34;
+    const all_same = u_u + v_v <= t35;
+    const same = u_u <= t35;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t36 = same ? t33 : t23;
+    const d_x = same ? t29 : t15;
+    const a_x = all_same ? 1.0 : d_x;
+    const t37 = same ? t23 : t33;
+    const t38 = same ? t15 : t29;
+    const t39 = a_x * t37 - t36 * t38;
+    const d_z = same ? v_z : u_z;
+    const t40 = same ? u_z : v_z;
+    const t41 = a_x * t40 - t38 * d_z;
+    const t42 = over * (t36 * t39 + d_z * t41);
+    const t43 = t36 * t40 - t37 * d_z;
+    const t44 = over * (a_x * t39 - d_z * t43);
+    const n_z = over * (a_x * t41 + t36 * t43);
+    const nu = t42 * t42 + t44 * t44 + n_z * n_z;
+    const in_line = nu <= t35;
+    const t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40);
+    const t46 = Math.abs(in_line ? -t45 : 0.0) <= t34 * _runtime.FEASIBILITY;
+    const t47 = l * size * 2.0;
+    const side = t36 * a_x < 0 ? -1 : 1;
+    const t48 = t36 + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t48 * t48) : 1.0 / (mu * nu);
+    const t49 = in_line ? 0.0 : mu * t45 * part * 0.5;
+    const t50 = all_same ? 0.0 : nu * (t49 * t49) + mu * 0.25;
+    const t51 = l * l - t50;
+    const unreachable = !(t46 && -(_runtime.FEASIBILITY * t47) <= t51);
+    const t52 = !(t3 && t4) || unreachable ? NaN : 0;
+    const t53 = t1 + t52;
+    const t54 = t17 + t52;
+    const t55 = 0.0 + t52;
+    const t56 = t9 + t52;
+    const t57 = t18 + t52;
+    const t58 = -t5 + t52;
+    const t59 = t42 * t49 + d_x * 0.5;
+    const slack = Math.max(t51, 0.0);
+    const h = slack <= _runtime.VANISHING * t47 ? 0.0 : Math.sqrt(part * slack);
+    const t60 = (in_line ? d_z * side : t36 * n_z - d_z * t44) * h;
+    const t61 = t10 - (t59 - t60);
+    const t62 = t7 - t61;
+    const t63 = t44 * t49 - t36 * 0.5;
+    const t64 = h * (in_line ? d_z : -(a_x * n_z + d_z * t42));
+    const t65 = t19 + (t63 + t64);
+    const t66 = t16 - t65;
+    const t67 = n_z * t49 - d_z * 0.5;
+    const t68 = h * (in_line ? -t48 : a_x * t44 + t36 * t42);
+    const t69 = -(t5 + (t67 + t68)) + t52;
+    const t70 = t16 * 0.5;
+    const t71 = t9 - t70 + t52;
+    const t72 = t7 * 0.5;
+    const t73 = t72 + t18 + t52;
+    const t74 = t70 + t9 + t52;
+    const t75 = t18 - t72 + t52;
+    const t76 = t12 + t52;
+    const t77 = t21 + t52;
+    const t78 = t14 + t52;
+    const t79 = t22 + t52;
+    const t80 = -t6 + t52;
+    const t81 = t11 - t61;
+    const t82 = t20 - t65;
+    const t83 = t20 * 0.5;
+    const t84 = t14 - t83 + t52;
+    const t85 = t11 * 0.5;
+    const t86 = t85 + t22 + t52;
+    const t87 = t83 + t14 + t52;
+    const t88 = t22 - t85 + t52;
+    const t89 = t26 + t52;
+    const t90 = t31 + t52;
+    const t91 = t28 + t52;
+    const t92 = t32 + t52;
+    const t93 = -t24 + t52;
+    const t94 = t25 - t61;
+    const t95 = t30 - t65;
+    const t96 = t30 * 0.5;
+    const t97 = t28 - t96 + t52;
+    const t98 = t25 * 0.5;
+    const t99 = t98 + t32 + t52;
+    const t100 = t96 + t28 + t52;
+    const t101 = t32 - t98 + t52;
+    const t102 = t10 - (t59 + t60);
+    const t103 = t7 - t102;
+    const t104 = t19 + (t63 - t64);
+    const t105 = t16 - t104;
+    const t106 = -(t5 + (t67 - t68)) + t52;
+    const t107 = t11 - t102;
+    const t108 = t20 - t104;
+    const t109 = t25 - t102;
+    const t110 = t30 - t104;
+    o[0] = t53;
+    o[1] = t54;
+    o[2] = t55;
+    o[3] = t56;
+    o[4] = t57;
+    o[5] = t58;
+    o[6] = t62 + t52;
+    o[7] = t66 + t52;
+    o[8] = t69;
+    o[9] = t71;
+    o[10] = t73;
+    o[11] = t58;
+    o[12] = t74;
+    o[13] = t75;
+    o[14] = t58;
+    o[15] = t62 - t70 + t52;
+    o[16] = t72 + t66 + t52;
+    o[17] = t69;
+    o[18] = t70 + t62 + t52;
+    o[19] = t66 - t72 + t52;
+    o[20] = t69;
+    o[21] = t76;
+    o[22] = t77;
+    o[23] = t55;
+    o[24] = t78;
+    o[25] = t79;
+    o[26] = t80;
+    o[27] = t81 + t52;
+    o[28] = t82 + t52;
+    o[29] = t69;
+    o[30] = t84;
+    o[31] = t86;
+    o[32] = t80;
+    o[33] = t87;
+    o[34] = t88;
+    o[35] = t80;
+    o[36] = t81 - t83 + t52;
+    o[37] = t85 + t82 + t52;
+    o[38] = t69;
+    o[39] = t83 + t81 + t52;
+    o[40] = t82 - t85 + t52;
+    o[41] = t69;
+    o[42] = t89;
+    o[43] = t90;
+    o[44] = t55;
+    o[45] = t91;
+    o[46] = t92;
+    o[47] = t93;
+    o[48] = t94 + t52;
+    o[49] = t95 + t52;
+    o[50] = t69;
+    o[51] = t97;
+    o[52] = t99;
+    o[53] = t93;
+    o[54] = t100;
+    o[55] = t101;
+    o[56] = t93;
+    o[57] = t94 - t96 + t52;
+    o[58] = t98 + t95 + t52;
+    o[59] = t69;
+    o[60] = t96 + t94 + t52;
+    o[61] = t95 - t98 + t52;
+    o[62] = t69;
+    o[63] = -t61 + t52;
+    o[64] = -t65 + t52;
+    o[65] = t69;
+    o[66] = t53;
+    o[67] = t54;
+    o[68] = t55;
+    o[69] = t56;
+    o[70] = t57;
+    o[71] = t58;
+    o[72] = t103 + t52;
+    o[73] = t105 + t52;
+    o[74] = t106;
+    o[75] = t71;
+    o[76] = t73;
+    o[77] = t58;
+    o[78] = t74;
+    o[79] = t75;
+    o[80] = t58;
+    o[81] = t103 - t70 + t52;
+    o[82] = t72 + t105 + t52;
+    o[83] = t106;
+    o[84] = t70 + t103 + t52;
+    o[85] = t105 - t72 + t52;
+    o[86] = t106;
+    o[87] = t76;
+    o[88] = t77;
+    o[89] = t55;
+    o[90] = t78;
+    o[91] = t79;
+    o[92] = t80;
+    o[93] = t107 + t52;
+    o[94] = t108 + t52;
+    o[95] = t106;
+    o[96] = t84;
+    o[97] = t86;
+    o[98] = t80;
+    o[99] = t87;
+    o[100] = t88;
+    o[101] = t80;
+    o[102] = t107 - t83 + t52;
+    o[103] = t85 + t108 + t52;
+    o[104] = t106;
+    o[105] = t83 + t107 + t52;
+    o[106] = t108 - t85 + t52;
+    o[107] = t106;
+    o[108] = t89;
+    o[109] = t90;
+    o[110] = t55;
+    o[111] = t91;
+    o[112] = t92;
+    o[113] = t93;
+    o[114] = t109 + t52;
+    o[115] = t110 + t52;
+    o[116] = t106;
+    o[117] = t97;
+    o[118] = t99;
+    o[119] = t93;
+    o[120] = t100;
+    o[121] = t101;
+    o[122] = t93;
+    o[123] = t109 - t96 + t52;
+    o[124] = t98 + t110 + t52;
+    o[125] = t106;
+    o[126] = t96 + t109 + t52;
+    o[127] = t110 - t98 + t52;
+    o[128] = t106;
+    o[129] = -t102 + t52;
+    o[130] = -t104 + t52;
+    o[131] = t106;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -600,12 +583,7 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 1], [1, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [67, 1], [69, 1], [70, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -677,87 +655,82 @@ function _jacobian_parallel(v, o) {
     const t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4);
     const t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
     const t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
-    const size_u = Math.sqrt(u_z * u_z + t5 * t5 + t7 * t7);
+    const u_u = u_z * u_z + t5 * t5 + t7 * t7;
     const v_z = t1 - L * s3;
     const t8 = L * c3;
     const t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
     const t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
-    const size_v = Math.sqrt(v_z * v_z + t9 * t9 + t10 * t10);
+    const v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const size = f + e + L + l;
-    const t11 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t11;
-    const same = size_u <= t11;
-    const t12 = same ? t10 : t7;
-    const D = same ? size_v : size_u;
-    const t13 = all_same ? 0.0 : t12 / D;
-    const t14 = same ? t5 : t9;
-    const t15 = same ? t9 : t5;
-    const E_11 = all_same ? 1.0 : t15 / D;
-    const t16 = same ? t7 : t10;
-    const t17 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t17 / D;
-    const t18 = same ? u_z : v_z;
-    const t19 = E_11 * t14 + t13 * t16 + E_13 * t18;
-    const t20 = t14 - E_11 * t19;
-    const t21 = t16 - t13 * t19;
-    const m_z = t18 - E_13 * t19;
-    const t22 = E_11 * t20 + t13 * t21 + E_13 * m_z;
-    const t23 = t20 - E_11 * t22;
-    const t24 = t21 - t13 * t22;
-    const n_z = m_z - E_13 * t22;
-    const j = Math.sqrt(t23 * t23 + t24 * t24 + n_z * n_z);
-    const in_line = j <= t11;
-    const t25 = E_13 < 0 ? -1 : 1;
-    const t26 = E_11 * t25;
-    const E_23 = in_line ? -t26 : n_z / j;
-    const t27 = E_13 + t25;
-    const E_22 = in_line ? -(t13 * t26 / t27) : t24 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t28 = t14 * (t15 - t14) + t16 * (t12 - t16) + t18 * (t17 - t18);
-    const t29 = in_line ? 0.0 : t28 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t29 * t29);
-    const t30 = l - rho;
-    const slack = Math.max(t30, 0.0);
-    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t31 = (t13 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t25 / t27 : t23 / j;
-    const t32 = E_11 * X - E_21 * t29;
-    const t33 = t31 - t32;
-    const t34 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t11 = size * size;
+    const t12 = _runtime.VANISHING * _runtime.VANISHING * t11;
+    const all_same = u_u + v_v <= t12;
+    const same = u_u <= t12;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t13 = same ? t10 : t7;
+    const d_x = same ? t9 : t5;
+    const a_x = all_same ? 1.0 : d_x;
+    const t14 = same ? t7 : t10;
+    const t15 = same ? t5 : t9;
+    const t16 = a_x * t14 - t13 * t15;
+    const d_z = same ? v_z : u_z;
+    const t17 = same ? u_z : v_z;
+    const t18 = a_x * t17 - t15 * d_z;
+    const t19 = over * (t13 * t16 + d_z * t18);
+    const t20 = t13 * t17 - t14 * d_z;
+    const t21 = over * (a_x * t16 - d_z * t20);
+    const n_z = over * (a_x * t18 + t13 * t20);
+    const nu = t19 * t19 + t21 * t21 + n_z * n_z;
+    const in_line = nu <= t12;
+    const side = t13 * a_x < 0 ? -1 : 1;
+    const t22 = t13 + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / (mu * nu);
+    const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
+    const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
+    const t25 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
+    const t26 = l * l - t25;
+    const slack = Math.max(t26, 0.0);
+    const t27 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t27 ? 0.0 : Math.sqrt(part * slack);
+    const t28 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t29 = t19 * t24 + d_x * 0.5;
+    const t30 = t28 - t29;
+    const t31 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t35 = t34 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t36 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t37 = Math.abs(in_line ? -t28 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t37 && -(size * _runtime.FEASIBILITY) <= t30);
-    const t38 = !(t35 && t36) || unreachable ? NaN : 0;
-    const t39 = h * (E_11 * E_23 - E_13 * E_21);
-    const t40 = X * t13 - t29 * E_22;
-    const A_12 = t39 + t40;
-    const t41 = h * (E_11 * E_22 - t13 * E_21);
-    const t42 = X * E_13 - t29 * E_23;
-    const t43 = t41 - t42;
-    const A_11_above = t31 + t32;
-    const t44 = t39 - t40;
-    const A_13_above = t41 + t42;
-    o[0] = -t33 + t38;
-    o[1] = A_12 + t38;
-    o[2] = -t43 + t38;
-    o[3] = -(t5 + t33) + t38;
-    o[4] = A_12 - t7 + t38;
-    o[5] = -(u_z + t43) + t38;
-    o[6] = -(t9 + t33) + t38;
-    o[7] = A_12 - t10 + t38;
-    o[8] = -(v_z + t43) + t38;
-    o[9] = A_11_above + t38;
-    o[10] = -t44 + t38;
-    o[11] = A_13_above + t38;
-    o[12] = A_11_above - t5 + t38;
-    o[13] = -(t7 + t44) + t38;
-    o[14] = A_13_above - u_z + t38;
-    o[15] = A_11_above - t9 + t38;
-    o[16] = -(t10 + t44) + t38;
-    o[17] = A_13_above - v_z + t38;
+    const t32 = t31 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t33 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t34 = Math.abs(in_line ? -t23 : 0.0) <= t11 * _runtime.FEASIBILITY;
+    const unreachable = !(t34 && -(_runtime.FEASIBILITY * t27) <= t26);
+    const t35 = !(t32 && t33) || unreachable ? NaN : 0;
+    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t37 = t21 * t24 - t13 * 0.5;
+    const t38 = t36 + t37;
+    const t39 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
+    const t40 = n_z * t24 - d_z * 0.5;
+    const t41 = t39 + t40;
+    const A_11_above = t28 + t29;
+    const A_12_above = t36 - t37;
+    const A_13_above = t39 - t40;
+    o[0] = -t30 + t35;
+    o[1] = -t38 + t35;
+    o[2] = -t41 + t35;
+    o[3] = -(t5 + t30) + t35;
+    o[4] = -(t7 + t38) + t35;
+    o[5] = -(u_z + t41) + t35;
+    o[6] = -(t9 + t30) + t35;
+    o[7] = -(t10 + t38) + t35;
+    o[8] = -(v_z + t41) + t35;
+    o[9] = A_11_above + t35;
+    o[10] = A_12_above + t35;
+    o[11] = A_13_above + t35;
+    o[12] = A_11_above - t5 + t35;
+    o[13] = A_12_above - t7 + t35;
+    o[14] = A_13_above - u_z + t35;
+    o[15] = A_11_above - t9 + t35;
+    o[16] = A_12_above - t10 + t35;
+    o[17] = A_13_above - v_z + t35;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -772,12 +745,7 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -850,86 +818,81 @@ function _jacobian_serial(v, o) {
     const t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
     const t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
-    const size_u = Math.sqrt(u_z * u_z + t7 * t7 + t9 * t9);
+    const u_u = u_z * u_z + t7 * t7 + t9 * t9;
     const t10 = L * s3;
     const v_z = t1 - t10;
     const t11 = L * c3;
     const t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
     const t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const size_v = Math.sqrt(v_z * v_z + t12 * t12 + t13 * t13);
+    const v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const size = f + e + L + l;
-    const t14 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t14;
-    const same = size_u <= t14;
-    const t15 = same ? t13 : t9;
-    const D = same ? size_v : size_u;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t7 : t12;
-    const t18 = same ? t12 : t7;
-    const E_11 = all_same ? 1.0 : t18 / D;
-    const t19 = same ? t9 : t13;
-    const t20 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t20 / D;
-    const t21 = same ? u_z : v_z;
-    const t22 = E_11 * t17 + t16 * t19 + E_13 * t21;
-    const t23 = t17 - E_11 * t22;
-    const t24 = t19 - t16 * t22;
-    const m_z = t21 - E_13 * t22;
-    const t25 = E_11 * t23 + t16 * t24 + E_13 * m_z;
-    const t26 = t23 - E_11 * t25;
-    const t27 = t24 - t16 * t25;
-    const n_z = m_z - E_13 * t25;
-    const j = Math.sqrt(t26 * t26 + t27 * t27 + n_z * n_z);
-    const in_line = j <= t14;
-    const t28 = E_13 < 0 ? -1 : 1;
-    const t29 = E_11 * t28;
-    const E_23 = in_line ? -t29 : n_z / j;
-    const t30 = E_13 + t28;
-    const E_22 = in_line ? -(t16 * t29 / t30) : t27 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21);
-    const t32 = in_line ? 0.0 : t31 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t32 * t32);
-    const t33 = l - rho;
-    const slack = Math.max(t33, 0.0);
-    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t34 = (t16 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
-    const t35 = E_11 * X - E_21 * t32;
-    const t36 = t34 - t35;
-    const t37 = s_alpha1 * t1;
-    const t38 = h * (E_11 * E_23 - E_13 * E_21);
-    const t39 = X * t16 - t32 * E_22;
-    const A_12 = t38 + t39;
-    const t40 = h * (E_11 * E_22 - t16 * E_21);
-    const t41 = X * E_13 - t32 * E_23;
-    const t42 = t40 - t41;
-    const t43 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t14 = size * size;
+    const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
+    const all_same = u_u + v_v <= t15;
+    const same = u_u <= t15;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t16 = same ? t13 : t9;
+    const d_x = same ? t12 : t7;
+    const a_x = all_same ? 1.0 : d_x;
+    const t17 = same ? t9 : t13;
+    const t18 = same ? t7 : t12;
+    const t19 = a_x * t17 - t16 * t18;
+    const d_z = same ? v_z : u_z;
+    const t20 = same ? u_z : v_z;
+    const t21 = a_x * t20 - t18 * d_z;
+    const t22 = over * (t16 * t19 + d_z * t21);
+    const t23 = t16 * t20 - t17 * d_z;
+    const t24 = over * (a_x * t19 - d_z * t23);
+    const n_z = over * (a_x * t21 + t16 * t23);
+    const nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const in_line = nu <= t15;
+    const side = t16 * a_x < 0 ? -1 : 1;
+    const t25 = t16 + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / (mu * nu);
+    const t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const t27 = in_line ? 0.0 : mu * part * t26 * 0.5;
+    const t28 = all_same ? 0.0 : nu * (t27 * t27) + mu * 0.25;
+    const t29 = l * l - t28;
+    const slack = Math.max(t29, 0.0);
+    const t30 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t30 ? 0.0 : Math.sqrt(part * slack);
+    const t31 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t32 = t22 * t27 + d_x * 0.5;
+    const t33 = t31 - t32;
+    const t34 = s_alpha1 * t1;
+    const t35 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t36 = t24 * t27 - t16 * 0.5;
+    const t37 = t35 + t36;
+    const t38 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
+    const t39 = n_z * t27 - d_z * 0.5;
+    const t40 = t38 + t39;
+    const t41 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t44 = t43 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t45 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t46 = Math.abs(in_line ? -t31 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t46 && -(size * _runtime.FEASIBILITY) <= t33);
-    const t47 = !(t44 && t45) || unreachable ? NaN : 0;
-    const t48 = c_alpha2 * t3;
-    const t49 = s_alpha2 * t3;
-    const B_22 = t48 * (t7 + t36) + t49 * (t9 - A_12) + t6 * (u_z + t42);
-    const t50 = c_alpha3 * t10;
-    const t51 = s_alpha3 * t10;
-    const B_33 = t50 * (t12 + t36) + t51 * (t13 - A_12) + t11 * (v_z + t42);
-    const A_11_above = t34 + t35;
-    const t52 = t38 - t39;
-    const A_13_above = t40 + t41;
-    const t53 = t2 * A_11_above - t37 * t52 + t4 * A_13_above;
-    const B_22_above = t48 * (t7 - A_11_above) + t49 * (t9 + t52) + t6 * (u_z - A_13_above);
-    const B_33_above = t50 * (t12 - A_11_above) + t51 * (t13 + t52) + t11 * (v_z - A_13_above);
-    o[0] = t2 * t36 - t37 * A_12 + t4 * t42 + t47;
-    o[1] = B_22 + t47;
-    o[2] = B_33 + t47;
-    o[3] = -t53 + t47;
-    o[4] = B_22_above + t47;
-    o[5] = B_33_above + t47;
+    const t42 = t41 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t43 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t44 = Math.abs(in_line ? -t26 : 0.0) <= t14 * _runtime.FEASIBILITY;
+    const unreachable = !(t44 && -(_runtime.FEASIBILITY * t30) <= t29);
+    const t45 = !(t42 && t43) || unreachable ? NaN : 0;
+    const t46 = c_alpha2 * t3;
+    const t47 = s_alpha2 * t3;
+    const B_22 = t46 * (t7 + t33) + t47 * (t9 + t37) + t6 * (u_z + t40);
+    const t48 = c_alpha3 * t10;
+    const t49 = s_alpha3 * t10;
+    const B_33 = t48 * (t12 + t33) + t49 * (t13 + t37) + t11 * (v_z + t40);
+    const A_11_above = t31 + t32;
+    const A_12_above = t35 - t36;
+    const t50 = t38 - t39;
+    const t51 = t2 * A_11_above + t34 * A_12_above + t4 * t50;
+    const t52 = t46 * (t7 - A_11_above) + t47 * (t9 - A_12_above);
+    const t53 = t48 * (t12 - A_11_above) + t49 * (t13 - A_12_above);
+    o[0] = t2 * t33 + t34 * t37 + t4 * t40 + t45;
+    o[1] = B_22 + t45;
+    o[2] = B_33 + t45;
+    o[3] = -t51 + t45;
+    o[4] = t52 + t6 * (u_z - t50) + t45;
+    o[5] = t53 + t11 * (v_z - t50) + t45;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -944,12 +907,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 2], [1, 2], [2, 2], [3, 2], [4, 2], [5, 2]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -1022,125 +980,121 @@ function _jacobian(v, o) {
     const t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
     const t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
-    const size_u = Math.sqrt(u_z * u_z + t7 * t7 + t9 * t9);
+    const u_u = u_z * u_z + t7 * t7 + t9 * t9;
     const t10 = L * s3;
     const v_z = t1 - t10;
     const t11 = L * c3;
     const t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
     const t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const size_v = Math.sqrt(v_z * v_z + t12 * t12 + t13 * t13);
+    const v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const size = f + e + L + l;
-    const t14 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t14;
-    const same = size_u <= t14;
-    const t15 = same ? t13 : t9;
-    const D = same ? size_v : size_u;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t7 : t12;
-    const t18 = same ? t12 : t7;
-    const E_11 = all_same ? 1.0 : t18 / D;
-    const t19 = same ? t9 : t13;
-    const t20 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t20 / D;
-    const t21 = same ? u_z : v_z;
-    const t22 = E_11 * t17 + t16 * t19 + E_13 * t21;
-    const t23 = t17 - E_11 * t22;
-    const t24 = t19 - t16 * t22;
-    const m_z = t21 - E_13 * t22;
-    const t25 = E_11 * t23 + t16 * t24 + E_13 * m_z;
-    const t26 = t23 - E_11 * t25;
-    const t27 = t24 - t16 * t25;
-    const n_z = m_z - E_13 * t25;
-    const j = Math.sqrt(t26 * t26 + t27 * t27 + n_z * n_z);
-    const in_line = j <= t14;
-    const t28 = E_13 < 0 ? -1 : 1;
-    const t29 = E_11 * t28;
-    const E_23 = in_line ? -t29 : n_z / j;
-    const t30 = E_13 + t28;
-    const E_22 = in_line ? -(t16 * t29 / t30) : t27 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21);
-    const t32 = in_line ? 0.0 : t31 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t32 * t32);
-    const t33 = l - rho;
-    const slack = Math.max(t33, 0.0);
-    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t34 = (t16 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
-    const t35 = E_11 * X - E_21 * t32;
-    const t36 = t34 - t35;
-    const t37 = s_alpha1 * t1;
-    const t38 = h * (E_11 * E_23 - E_13 * E_21);
-    const t39 = X * t16 - t32 * E_22;
-    const A_12 = t38 + t39;
-    const t40 = h * (E_11 * E_22 - t16 * E_21);
-    const t41 = X * E_13 - t32 * E_23;
-    const t42 = t40 - t41;
-    const t43 = t2 * t36 - t37 * A_12 + t4 * t42;
-    const t44 = t9 - A_12;
-    const t45 = v_z + t42;
-    const t46 = u_z + t42;
-    const t47 = t13 - A_12;
-    const Delta = D * j * h;
-    const t48 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t14 = size * size;
+    const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
+    const all_same = u_u + v_v <= t15;
+    const same = u_u <= t15;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t16 = same ? t13 : t9;
+    const d_x = same ? t12 : t7;
+    const a_x = all_same ? 1.0 : d_x;
+    const t17 = same ? t9 : t13;
+    const t18 = same ? t7 : t12;
+    const t19 = a_x * t17 - t16 * t18;
+    const d_z = same ? v_z : u_z;
+    const t20 = same ? u_z : v_z;
+    const t21 = a_x * t20 - t18 * d_z;
+    const t22 = over * (t16 * t19 + d_z * t21);
+    const t23 = t16 * t20 - t17 * d_z;
+    const t24 = over * (a_x * t19 - d_z * t23);
+    const n_z = over * (a_x * t21 + t16 * t23);
+    const nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const in_line = nu <= t15;
+    const side = t16 * a_x < 0 ? -1 : 1;
+    const t25 = t16 + a_x * side;
+    const t26 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
+    const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
+    const t30 = l * l - t29;
+    const slack = Math.max(t30, 0.0);
+    const t31 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
+    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t33 = t22 * t28 + d_x * 0.5;
+    const t34 = t32 - t33;
+    const t35 = s_alpha1 * t1;
+    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t37 = t24 * t28 - t16 * 0.5;
+    const t38 = t36 + t37;
+    const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
+    const t40 = n_z * t28 - d_z * 0.5;
+    const t41 = t39 + t40;
+    const t42 = t2 * t34 + t35 * t38 + t4 * t41;
+    const t43 = t9 + t38;
+    const t44 = v_z + t41;
+    const t45 = u_z + t41;
+    const t46 = t13 + t38;
+    const Delta = t26 * h;
+    const t47 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t49 = t48 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t50 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t51 = Math.abs(in_line ? -t31 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t51 && -(size * _runtime.FEASIBILITY) <= t33);
-    const t52 = !(t49 && t50) || unreachable ? NaN : 0;
-    const t53 = -(t43 * (t44 * t45 - t46 * t47) / Delta) + t52;
-    const t54 = c_alpha2 * t3;
-    const t55 = t7 + t36;
-    const t56 = s_alpha2 * t3;
-    const t57 = t54 * t55 + t56 * t44 + t6 * t46;
-    const t58 = -(t57 * (A_12 * t45 + t42 * t47) / Delta) + t52;
-    const t59 = c_alpha3 * t10;
-    const t60 = t12 + t36;
-    const t61 = s_alpha3 * t10;
-    const t62 = t59 * t60 + t61 * t47 + t11 * t45;
-    const t63 = -(t57 * (t36 * t45 - t42 * t60) / Delta) + t52;
-    const t64 = -(t43 * (t47 * t55 - t44 * t60) / Delta) + t52;
-    const t65 = -(t62 * (t36 * t44 + A_12 * t55) / Delta) + t52;
-    const A_11_above = t34 + t35;
-    const t66 = t38 - t39;
-    const A_13_above = t40 + t41;
-    const t67 = t2 * A_11_above - t37 * t66 + t4 * A_13_above;
-    const t68 = t9 + t66;
-    const t69 = v_z - A_13_above;
-    const t70 = u_z - A_13_above;
-    const t71 = t13 + t66;
-    const t72 = -(t67 * (t68 * t69 - t70 * t71) / Delta) + t52;
-    const t73 = t7 - A_11_above;
-    const t74 = t54 * t73 + t56 * t68 + t6 * t70;
-    const t75 = -(t74 * (t66 * t69 + A_13_above * t71) / Delta);
-    const t76 = t12 - A_11_above;
-    const t77 = t59 * t76 + t61 * t71 + t11 * t69;
-    const t78 = t77 * (t66 * t70 + A_13_above * t68) / Delta + t52;
-    const t79 = t74 * (A_11_above * t69 - A_13_above * t76) / Delta;
-    const t80 = t77 * (A_11_above * t70 - A_13_above * t73) / Delta;
-    const t81 = -(t67 * (t71 * t73 - t68 * t76) / Delta) + t52;
-    const t82 = t74 * (A_11_above * t71 + t66 * t76) / Delta + t52;
-    const t83 = -(t77 * (A_11_above * t68 + t66 * t73) / Delta);
-    o[0] = t53;
-    o[1] = t58;
-    o[2] = t62 * (A_12 * t46 + t42 * t44) / Delta + t52;
-    o[3] = t43 * (t45 * t55 - t46 * t60) / Delta + t52;
-    o[4] = t63;
-    o[5] = t62 * (t36 * t46 - t42 * t55) / Delta + t52;
-    o[6] = t64;
-    o[7] = t57 * (t36 * t47 + A_12 * t60) / Delta + t52;
-    o[8] = t65;
-    o[9] = t72;
-    o[10] = t75 + t52;
-    o[11] = t78;
-    o[12] = t67 * (t69 * t73 - t70 * t76) / Delta + t52;
-    o[13] = -t79 + t52;
-    o[14] = t80 + t52;
-    o[15] = t81;
-    o[16] = t82;
-    o[17] = t83 + t52;
+    const t48 = t47 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t49 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t50 = Math.abs(in_line ? -t27 : 0.0) <= t14 * _runtime.FEASIBILITY;
+    const unreachable = !(t50 && -(_runtime.FEASIBILITY * t31) <= t30);
+    const t51 = !(t48 && t49) || unreachable ? NaN : 0;
+    const t52 = -(t42 * (t43 * t44 - t45 * t46) / Delta) + t51;
+    const t53 = c_alpha2 * t3;
+    const t54 = t7 + t34;
+    const t55 = s_alpha2 * t3;
+    const t56 = t53 * t54 + t55 * t43 + t6 * t45;
+    const t57 = c_alpha3 * t10;
+    const t58 = t12 + t34;
+    const t59 = s_alpha3 * t10;
+    const t60 = t57 * t58 + t59 * t46 + t11 * t44;
+    const t61 = -(t60 * (t38 * t45 - t41 * t43) / Delta) + t51;
+    const t62 = -(t56 * (t34 * t44 - t41 * t58) / Delta) + t51;
+    const t63 = -(t42 * (t46 * t54 - t43 * t58) / Delta) + t51;
+    const t64 = -(t60 * (t34 * t43 - t38 * t54) / Delta) + t51;
+    const A_11_above = t32 + t33;
+    const A_12_above = t36 - t37;
+    const t65 = t39 - t40;
+    const t66 = t2 * A_11_above + t35 * A_12_above + t4 * t65;
+    const t67 = t9 - A_12_above;
+    const t68 = v_z - t65;
+    const t69 = u_z - t65;
+    const t70 = t13 - A_12_above;
+    const t71 = -(t66 * (t67 * t68 - t69 * t70) / Delta) + t51;
+    const t72 = t7 - A_11_above;
+    const t73 = t53 * t72 + t55 * t67 + t6 * t69;
+    const t74 = t73 * (A_12_above * t68 - t65 * t70) / Delta + t51;
+    const t75 = t12 - A_11_above;
+    const t76 = t57 * t75 + t59 * t70 + t11 * t68;
+    const t77 = -(t76 * (A_12_above * t69 - t65 * t67) / Delta);
+    const t78 = -(t73 * (A_11_above * t68 - t65 * t75) / Delta);
+    const t79 = t76 * (A_11_above * t69 - t65 * t72) / Delta + t51;
+    const t80 = -(t66 * (t70 * t72 - t67 * t75) / Delta) + t51;
+    const t81 = t73 * (A_11_above * t70 - A_12_above * t75) / Delta;
+    const t82 = t76 * (A_11_above * t67 - A_12_above * t72) / Delta;
+    o[0] = t52;
+    o[1] = t56 * (t38 * t44 - t41 * t46) / Delta + t51;
+    o[2] = t61;
+    o[3] = t42 * (t44 * t54 - t45 * t58) / Delta + t51;
+    o[4] = t62;
+    o[5] = t60 * (t34 * t45 - t41 * t54) / Delta + t51;
+    o[6] = t63;
+    o[7] = t56 * (t34 * t46 - t38 * t58) / Delta + t51;
+    o[8] = t64;
+    o[9] = t71;
+    o[10] = t74;
+    o[11] = t77 + t51;
+    o[12] = t66 * (t68 * t72 - t69 * t75) / Delta + t51;
+    o[13] = t78 + t51;
+    o[14] = t79;
+    o[15] = t80;
+    o[16] = t81 + t51;
+    o[17] = -t82 + t51;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1155,12 +1109,7 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
-        least: 2.938735877055719e-39,
-        most: 1.8092513943330656e+75,
-    },
+    size: null,
 });
 
 /**
@@ -1234,84 +1183,81 @@ function _determinant(v, o) {
     const t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
     const t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
-    const size_u = Math.sqrt(u_z * u_z + t7 * t7 + t9 * t9);
+    const u_u = u_z * u_z + t7 * t7 + t9 * t9;
     const t10 = L * s3;
     const v_z = t1 - t10;
     const t11 = L * c3;
     const t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
     const t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const size_v = Math.sqrt(v_z * v_z + t12 * t12 + t13 * t13);
+    const v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const size = f + e + L + l;
-    const t14 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t14;
-    const same = size_u <= t14;
-    const t15 = same ? t13 : t9;
-    const D = same ? size_v : size_u;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t7 : t12;
-    const t18 = same ? t12 : t7;
-    const E_11 = all_same ? 1.0 : t18 / D;
-    const t19 = same ? t9 : t13;
-    const t20 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t20 / D;
-    const t21 = same ? u_z : v_z;
-    const t22 = E_11 * t17 + t16 * t19 + E_13 * t21;
-    const t23 = t17 - E_11 * t22;
-    const t24 = t19 - t16 * t22;
-    const m_z = t21 - E_13 * t22;
-    const t25 = E_11 * t23 + t16 * t24 + E_13 * m_z;
-    const t26 = t23 - E_11 * t25;
-    const t27 = t24 - t16 * t25;
-    const n_z = m_z - E_13 * t25;
-    const j = Math.sqrt(t26 * t26 + t27 * t27 + n_z * n_z);
-    const in_line = j <= t14;
-    const t28 = E_13 < 0 ? -1 : 1;
-    const t29 = E_11 * t28;
-    const E_23 = in_line ? -t29 : n_z / j;
-    const t30 = E_13 + t28;
-    const E_22 = in_line ? -(t16 * t29 / t30) : t27 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21);
-    const t32 = in_line ? 0.0 : t31 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t32 * t32);
-    const t33 = l - rho;
-    const slack = Math.max(t33, 0.0);
-    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t34 = (t16 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
-    const t35 = E_11 * X - E_21 * t32;
-    const t36 = t34 - t35;
-    const t37 = s_alpha1 * t1;
-    const t38 = h * (E_11 * E_23 - E_13 * E_21);
-    const t39 = X * t16 - t32 * E_22;
-    const A_12 = t38 + t39;
-    const t40 = h * (E_11 * E_22 - t16 * E_21);
-    const t41 = X * E_13 - t32 * E_23;
-    const t42 = t40 - t41;
-    const t43 = c_alpha2 * t3;
-    const t44 = s_alpha2 * t3;
-    const t45 = t43 * (t7 + t36) + t44 * (t9 - A_12) + t6 * (u_z + t42);
-    const t46 = c_alpha3 * t10;
-    const t47 = s_alpha3 * t10;
-    const t48 = t46 * (t12 + t36) + t47 * (t13 - A_12) + t11 * (v_z + t42);
-    const t49 = (t2 * t36 - t37 * A_12 + t4 * t42) * t45 * t48;
-    const Delta = D * j * h;
-    const t50 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t14 = size * size;
+    const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
+    const all_same = u_u + v_v <= t15;
+    const same = u_u <= t15;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t16 = same ? t13 : t9;
+    const d_x = same ? t12 : t7;
+    const a_x = all_same ? 1.0 : d_x;
+    const t17 = same ? t9 : t13;
+    const t18 = same ? t7 : t12;
+    const t19 = a_x * t17 - t16 * t18;
+    const d_z = same ? v_z : u_z;
+    const t20 = same ? u_z : v_z;
+    const t21 = a_x * t20 - t18 * d_z;
+    const t22 = over * (t16 * t19 + d_z * t21);
+    const t23 = t16 * t20 - t17 * d_z;
+    const t24 = over * (a_x * t19 - d_z * t23);
+    const n_z = over * (a_x * t21 + t16 * t23);
+    const nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const in_line = nu <= t15;
+    const side = t16 * a_x < 0 ? -1 : 1;
+    const t25 = t16 + a_x * side;
+    const t26 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
+    const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
+    const t30 = l * l - t29;
+    const slack = Math.max(t30, 0.0);
+    const t31 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
+    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t33 = t22 * t28 + d_x * 0.5;
+    const t34 = t32 - t33;
+    const t35 = s_alpha1 * t1;
+    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t37 = t24 * t28 - t16 * 0.5;
+    const t38 = t36 + t37;
+    const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
+    const t40 = n_z * t28 - d_z * 0.5;
+    const t41 = t39 + t40;
+    const t42 = c_alpha2 * t3;
+    const t43 = s_alpha2 * t3;
+    const t44 = t42 * (t7 + t34) + t43 * (t9 + t38) + t6 * (u_z + t41);
+    const t45 = c_alpha3 * t10;
+    const t46 = s_alpha3 * t10;
+    const t47 = t45 * (t12 + t34) + t46 * (t13 + t38) + t11 * (v_z + t41);
+    const t48 = (t2 * t34 + t35 * t38 + t4 * t41) * t44 * t47;
+    const Delta = t26 * h;
+    const t49 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t51 = t50 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t52 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t53 = Math.abs(in_line ? -t31 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t53 && -(size * _runtime.FEASIBILITY) <= t33);
-    const t54 = !(t51 && t52) || unreachable ? NaN : 0;
-    const A_11_above = t34 + t35;
-    const t55 = t38 - t39;
-    const A_13_above = t40 + t41;
-    const t56 = t2 * A_11_above - t37 * t55 + t4 * A_13_above;
-    const t57 = t43 * (t7 - A_11_above) + t44 * (t9 + t55) + t6 * (u_z - A_13_above);
-    const t58 = t46 * (t12 - A_11_above) + t47 * (t13 + t55) + t11 * (v_z - A_13_above);
-    o[0] = -(t49 / Delta) + t54;
-    o[1] = -(t56 * t57 * t58 / Delta) + t54;
+    const t50 = t49 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t51 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t52 = Math.abs(in_line ? -t27 : 0.0) <= t14 * _runtime.FEASIBILITY;
+    const unreachable = !(t52 && -(_runtime.FEASIBILITY * t31) <= t30);
+    const t53 = !(t50 && t51) || unreachable ? NaN : 0;
+    const A_11_above = t32 + t33;
+    const A_12_above = t36 - t37;
+    const t54 = t39 - t40;
+    const t55 = t2 * A_11_above + t35 * A_12_above + t4 * t54;
+    const t56 = t42 * (t7 - A_11_above) + t43 * (t9 - A_12_above);
+    const t57 = t45 * (t12 - A_11_above) + t46 * (t13 - A_12_above);
+    const t58 = t55 * (t56 + t6 * (u_z - t54)) * (t57 + t11 * (v_z - t54));
+    o[0] = -(t48 / Delta) + t53;
+    o[1] = -(t58 / Delta) + t53;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1326,12 +1272,7 @@ const _DETERMINANT = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 3], [1, 3]],
-        least: 2.5849394142282115e-26,
-        most: 9.353610478917779e+49,
-    },
+    size: null,
 });
 
 /**
@@ -1404,89 +1345,85 @@ function _singularities(v, o) {
     const t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
     const t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
-    const size_u = Math.sqrt(u_z * u_z + t7 * t7 + t9 * t9);
+    const u_u = u_z * u_z + t7 * t7 + t9 * t9;
     const t10 = L * s3;
     const v_z = t1 - t10;
     const t11 = L * c3;
     const t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
     const t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const size_v = Math.sqrt(v_z * v_z + t12 * t12 + t13 * t13);
+    const v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const size = f + e + L + l;
-    const t14 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t14;
-    const same = size_u <= t14;
-    const t15 = same ? t13 : t9;
-    const D = same ? size_v : size_u;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t7 : t12;
-    const t18 = same ? t12 : t7;
-    const E_11 = all_same ? 1.0 : t18 / D;
-    const t19 = same ? t9 : t13;
-    const t20 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t20 / D;
-    const t21 = same ? u_z : v_z;
-    const t22 = E_11 * t17 + t16 * t19 + E_13 * t21;
-    const t23 = t17 - E_11 * t22;
-    const t24 = t19 - t16 * t22;
-    const m_z = t21 - E_13 * t22;
-    const t25 = E_11 * t23 + t16 * t24 + E_13 * m_z;
-    const t26 = t23 - E_11 * t25;
-    const t27 = t24 - t16 * t25;
-    const n_z = m_z - E_13 * t25;
-    const j = Math.sqrt(t26 * t26 + t27 * t27 + n_z * n_z);
-    const in_line = j <= t14;
-    const t28 = E_13 < 0 ? -1 : 1;
-    const t29 = E_11 * t28;
-    const E_23 = in_line ? -t29 : n_z / j;
-    const t30 = E_13 + t28;
-    const E_22 = in_line ? -(t16 * t29 / t30) : t27 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21);
-    const t32 = in_line ? 0.0 : t31 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t32 * t32);
-    const t33 = l - rho;
-    const slack = Math.max(t33, 0.0);
-    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t34 = (t16 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
-    const t35 = E_11 * X - E_21 * t32;
-    const t36 = t34 - t35;
-    const t37 = s_alpha1 * t1;
-    const t38 = h * (E_11 * E_23 - E_13 * E_21);
-    const t39 = X * t16 - t32 * E_22;
-    const A_12 = t38 + t39;
-    const t40 = h * (E_11 * E_22 - t16 * E_21);
-    const t41 = X * E_13 - t32 * E_23;
-    const t42 = t40 - t41;
-    const t43 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t14 = size * size;
+    const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
+    const all_same = u_u + v_v <= t15;
+    const same = u_u <= t15;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t16 = same ? t13 : t9;
+    const d_x = same ? t12 : t7;
+    const a_x = all_same ? 1.0 : d_x;
+    const t17 = same ? t9 : t13;
+    const t18 = same ? t7 : t12;
+    const t19 = a_x * t17 - t16 * t18;
+    const d_z = same ? v_z : u_z;
+    const t20 = same ? u_z : v_z;
+    const t21 = a_x * t20 - t18 * d_z;
+    const t22 = over * (t16 * t19 + d_z * t21);
+    const t23 = t16 * t20 - t17 * d_z;
+    const t24 = over * (a_x * t19 - d_z * t23);
+    const n_z = over * (a_x * t21 + t16 * t23);
+    const nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const in_line = nu <= t15;
+    const side = t16 * a_x < 0 ? -1 : 1;
+    const t25 = t16 + a_x * side;
+    const t26 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
+    const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
+    const t30 = l * l - t29;
+    const slack = Math.max(t30, 0.0);
+    const t31 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
+    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t33 = t22 * t28 + d_x * 0.5;
+    const t34 = t32 - t33;
+    const t35 = s_alpha1 * t1;
+    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t37 = t24 * t28 - t16 * 0.5;
+    const t38 = t36 + t37;
+    const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
+    const t40 = n_z * t28 - d_z * 0.5;
+    const t41 = t39 + t40;
+    const t42 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t44 = t43 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t45 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t46 = Math.abs(in_line ? -t31 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t46 && -(size * _runtime.FEASIBILITY) <= t33);
-    const t47 = !(t44 && t45) || unreachable ? NaN : 0;
-    const t48 = c_alpha2 * t3;
-    const t49 = s_alpha2 * t3;
-    const B_22 = t48 * (t7 + t36) + t49 * (t9 - A_12) + t6 * (u_z + t42);
-    const t50 = c_alpha3 * t10;
-    const t51 = s_alpha3 * t10;
-    const B_33 = t50 * (t12 + t36) + t51 * (t13 - A_12) + t11 * (v_z + t42);
-    const Delta = D * j * h;
-    const A_11_above = t34 + t35;
-    const t52 = t38 - t39;
-    const A_13_above = t40 + t41;
-    const t53 = t2 * A_11_above - t37 * t52 + t4 * A_13_above;
-    const B_22_above = t48 * (t7 - A_11_above) + t49 * (t9 + t52) + t6 * (u_z - A_13_above);
-    const B_33_above = t50 * (t12 - A_11_above) + t51 * (t13 + t52) + t11 * (v_z - A_13_above);
-    o[0] = t2 * t36 - t37 * A_12 + t4 * t42 + t47;
-    o[1] = B_22 + t47;
-    o[2] = B_33 + t47;
-    o[3] = -Delta + t47;
-    o[4] = -t53 + t47;
-    o[5] = B_22_above + t47;
-    o[6] = B_33_above + t47;
-    o[7] = Delta + t47;
+    const t43 = t42 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t44 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t45 = Math.abs(in_line ? -t27 : 0.0) <= t14 * _runtime.FEASIBILITY;
+    const unreachable = !(t45 && -(_runtime.FEASIBILITY * t31) <= t30);
+    const t46 = !(t43 && t44) || unreachable ? NaN : 0;
+    const t47 = c_alpha2 * t3;
+    const t48 = s_alpha2 * t3;
+    const B_22 = t47 * (t7 + t34) + t48 * (t9 + t38) + t6 * (u_z + t41);
+    const t49 = c_alpha3 * t10;
+    const t50 = s_alpha3 * t10;
+    const B_33 = t49 * (t12 + t34) + t50 * (t13 + t38) + t11 * (v_z + t41);
+    const Delta = t26 * h;
+    const A_11_above = t32 + t33;
+    const A_12_above = t36 - t37;
+    const t51 = t39 - t40;
+    const t52 = t2 * A_11_above + t35 * A_12_above + t4 * t51;
+    const t53 = t47 * (t7 - A_11_above) + t48 * (t9 - A_12_above);
+    const t54 = t49 * (t12 - A_11_above) + t50 * (t13 - A_12_above);
+    o[0] = t2 * t34 + t35 * t38 + t4 * t41 + t46;
+    o[1] = B_22 + t46;
+    o[2] = B_33 + t46;
+    o[3] = -Delta + t46;
+    o[4] = -t52 + t46;
+    o[5] = t53 + t6 * (u_z - t51) + t46;
+    o[6] = t54 + t11 * (v_z - t51) + t46;
+    o[7] = Delta + t46;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1501,12 +1438,7 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 2], [1, 2], [2, 2], [3, 3], [4, 2], [5, 2], [6, 2], [7, 3]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**
@@ -1577,111 +1509,107 @@ function _condition_number(v, o) {
     const t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4);
     const t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
     const t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
-    const size_u = Math.sqrt(u_z * u_z + t5 * t5 + t7 * t7);
+    const u_u = u_z * u_z + t5 * t5 + t7 * t7;
     const v_z = t1 - L * s3;
     const t8 = L * c3;
     const t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
     const t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
-    const size_v = Math.sqrt(v_z * v_z + t9 * t9 + t10 * t10);
+    const v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const size = f + e + L + l;
-    const t11 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t11;
-    const same = size_u <= t11;
-    const t12 = same ? t10 : t7;
-    const D = same ? size_v : size_u;
-    const t13 = all_same ? 0.0 : t12 / D;
-    const t14 = same ? t5 : t9;
-    const t15 = same ? t9 : t5;
-    const E_11 = all_same ? 1.0 : t15 / D;
-    const t16 = same ? t7 : t10;
-    const t17 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t17 / D;
-    const t18 = same ? u_z : v_z;
-    const t19 = E_11 * t14 + t13 * t16 + E_13 * t18;
-    const t20 = t14 - E_11 * t19;
-    const t21 = t16 - t13 * t19;
-    const m_z = t18 - E_13 * t19;
-    const t22 = E_11 * t20 + t13 * t21 + E_13 * m_z;
-    const t23 = t20 - E_11 * t22;
-    const t24 = t21 - t13 * t22;
-    const n_z = m_z - E_13 * t22;
-    const j = Math.sqrt(t23 * t23 + t24 * t24 + n_z * n_z);
-    const in_line = j <= t11;
-    const t25 = E_13 < 0 ? -1 : 1;
-    const t26 = E_11 * t25;
-    const E_23 = in_line ? -t26 : n_z / j;
-    const t27 = E_13 + t25;
-    const E_22 = in_line ? -(t13 * t26 / t27) : t24 / j;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t28 = t14 * (t15 - t14) + t16 * (t12 - t16) + t18 * (t17 - t18);
-    const t29 = in_line ? 0.0 : t28 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t29 * t29);
-    const t30 = l - rho;
-    const slack = Math.max(t30, 0.0);
-    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t31 = (t13 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t25 / t27 : t23 / j;
-    const t32 = E_11 * X - E_21 * t29;
-    const t33 = t31 - t32;
-    const t34 = h * (E_11 * E_23 - E_13 * E_21);
-    const t35 = X * t13 - t29 * E_22;
-    const A_12 = t34 + t35;
-    const t36 = h * (E_11 * E_22 - t13 * E_21);
-    const t37 = X * E_13 - t29 * E_23;
-    const t38 = t36 - t37;
-    const t39 = t5 + t33;
-    const t40 = t7 - A_12;
-    const t41 = u_z + t38;
-    const t42 = t33 * t33 + A_12 * A_12 + t38 * t38 + (t39 * t39 + t40 * t40 + t41 * t41);
-    const t43 = t9 + t33;
-    const t44 = t10 - A_12;
-    const t45 = v_z + t38;
-    const t46 = t33 * t40 + A_12 * t39;
-    const t47 = t33 * t41 - t38 * t39;
-    const t48 = t33 * t44 + A_12 * t43;
-    const t49 = t33 * t45 - t38 * t43;
-    const t50 = t46 * t46 + t47 * t47 + t48 * t48 + t49 * t49;
-    const t51 = A_12 * t41 + t38 * t40;
-    const t52 = A_12 * t45 + t38 * t44;
-    const t53 = t39 * t44 - t40 * t43;
-    const t54 = t39 * t45 - t41 * t43;
-    const t55 = t50 + t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54;
-    const t56 = t40 * t45 - t41 * t44;
-    const t57 = (t42 + (t43 * t43 + t44 * t44 + t45 * t45)) * (t55 + t56 * t56);
-    const t58 = 3.0 * (D * j * h);
-    const t59 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t11 = size * size;
+    const t12 = _runtime.VANISHING * _runtime.VANISHING * t11;
+    const all_same = u_u + v_v <= t12;
+    const same = u_u <= t12;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t13 = same ? t10 : t7;
+    const d_x = same ? t9 : t5;
+    const a_x = all_same ? 1.0 : d_x;
+    const t14 = same ? t7 : t10;
+    const t15 = same ? t5 : t9;
+    const t16 = a_x * t14 - t13 * t15;
+    const d_z = same ? v_z : u_z;
+    const t17 = same ? u_z : v_z;
+    const t18 = a_x * t17 - t15 * d_z;
+    const t19 = over * (t13 * t16 + d_z * t18);
+    const t20 = t13 * t17 - t14 * d_z;
+    const t21 = over * (a_x * t16 - d_z * t20);
+    const n_z = over * (a_x * t18 + t13 * t20);
+    const nu = t19 * t19 + t21 * t21 + n_z * n_z;
+    const in_line = nu <= t12;
+    const side = t13 * a_x < 0 ? -1 : 1;
+    const t22 = t13 + a_x * side;
+    const t23 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / t23;
+    const t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
+    const t25 = in_line ? 0.0 : mu * part * t24 * 0.5;
+    const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
+    const t27 = l * l - t26;
+    const slack = Math.max(t27, 0.0);
+    const t28 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
+    const t29 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t30 = t19 * t25 + d_x * 0.5;
+    const t31 = t29 - t30;
+    const t32 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t33 = t21 * t25 - t13 * 0.5;
+    const t34 = t32 + t33;
+    const t35 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
+    const t36 = n_z * t25 - d_z * 0.5;
+    const t37 = t35 + t36;
+    const t38 = t5 + t31;
+    const t39 = t7 + t34;
+    const t40 = u_z + t37;
+    const t41 = t31 * t31 + t34 * t34 + t37 * t37 + (t38 * t38 + t39 * t39 + t40 * t40);
+    const t42 = t9 + t31;
+    const t43 = t10 + t34;
+    const t44 = v_z + t37;
+    const t45 = t31 * t39 - t34 * t38;
+    const t46 = t31 * t40 - t37 * t38;
+    const t47 = t31 * t43 - t34 * t42;
+    const t48 = t31 * t44 - t37 * t42;
+    const t49 = t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48;
+    const t50 = t34 * t40 - t37 * t39;
+    const t51 = t34 * t44 - t37 * t43;
+    const t52 = t38 * t43 - t39 * t42;
+    const t53 = t38 * t44 - t40 * t42;
+    const t54 = t49 + t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53;
+    const t55 = t39 * t44 - t40 * t43;
+    const t56 = (t41 + (t42 * t42 + t43 * t43 + t44 * t44)) * (t54 + t55 * t55);
+    const t57 = 3.0 * (t23 * h);
+    const t58 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t60 = t59 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t61 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t62 = Math.abs(in_line ? -t28 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t62 && -(size * _runtime.FEASIBILITY) <= t30);
-    const t63 = !(t60 && t61) || unreachable ? NaN : 0;
-    const A_11_above = t31 + t32;
-    const t64 = t34 - t35;
-    const A_13_above = t36 + t37;
-    const square1_above = A_11_above * A_11_above + t64 * t64 + A_13_above * A_13_above;
+    const t59 = t58 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t60 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t61 = Math.abs(in_line ? -t24 : 0.0) <= t11 * _runtime.FEASIBILITY;
+    const unreachable = !(t61 && -(_runtime.FEASIBILITY * t28) <= t27);
+    const t62 = !(t59 && t60) || unreachable ? NaN : 0;
+    const A_11_above = t29 + t30;
+    const A_12_above = t32 - t33;
+    const t63 = A_11_above * A_11_above + A_12_above * A_12_above;
+    const t64 = t35 - t36;
     const t65 = t5 - A_11_above;
-    const t66 = t7 + t64;
-    const t67 = u_z - A_13_above;
-    const t68 = square1_above + (t65 * t65 + t66 * t66 + t67 * t67);
+    const t66 = t7 - A_12_above;
+    const t67 = u_z - t64;
+    const t68 = t63 + t64 * t64 + (t65 * t65 + t66 * t66 + t67 * t67);
     const t69 = t9 - A_11_above;
-    const t70 = t10 + t64;
-    const t71 = v_z - A_13_above;
-    const t72 = A_11_above * t66 + t64 * t65;
-    const t73 = A_11_above * t67 - A_13_above * t65;
-    const t74 = A_11_above * t70 + t64 * t69;
-    const t75 = A_11_above * t71 - A_13_above * t69;
+    const t70 = t10 - A_12_above;
+    const t71 = v_z - t64;
+    const t72 = A_11_above * t66 - A_12_above * t65;
+    const t73 = A_11_above * t67 - t64 * t65;
+    const t74 = A_11_above * t70 - A_12_above * t69;
+    const t75 = A_11_above * t71 - t64 * t69;
     const t76 = t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75;
-    const t77 = t64 * t67 + A_13_above * t66;
-    const t78 = t64 * t71 + A_13_above * t70;
+    const t77 = A_12_above * t67 - t64 * t66;
+    const t78 = A_12_above * t71 - t64 * t70;
     const t79 = t65 * t70 - t66 * t69;
     const t80 = t65 * t71 - t67 * t69;
     const t81 = t76 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80;
     const t82 = t66 * t71 - t67 * t70;
     const t83 = (t68 + (t69 * t69 + t70 * t70 + t71 * t71)) * (t81 + t82 * t82);
-    o[0] = Math.sqrt(t57) / t58 + t63;
-    o[1] = Math.sqrt(t83) / t58 + t63;
+    o[0] = Math.sqrt(t56) / t57 + t62;
+    o[1] = Math.sqrt(t83) / t57 + t62;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -1696,12 +1624,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [],
-        least: 2.5849394142282115e-26,
-        most: 9.353610478917779e+49,
-    },
+    size: null,
 });
 
 /**
@@ -1774,110 +1697,105 @@ function _constraint(v, o) {
     const t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5);
     const t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3;
     const t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5);
-    const size_u = Math.sqrt(u_z * u_z + t6 * t6 + t8 * t8);
+    const u_u = u_z * u_z + t6 * t6 + t8 * t8;
     const v_z = t2 - L * s3;
     const t9 = L * c3;
     const t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9);
     const t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9);
-    const size_v = Math.sqrt(v_z * v_z + t10 * t10 + t11 * t11);
+    const v_v = v_z * v_z + t10 * t10 + t11 * t11;
     const size = f + e + L + l;
-    const t12 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t12;
-    const same = size_u <= t12;
-    const D = same ? size_v : size_u;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t13 = same ? t6 : t10;
-    const t14 = same ? t10 : t6;
-    const E_11 = all_same ? 1.0 : t14 / D;
-    const t15 = same ? t11 : t8;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t8 : t11;
-    const t18 = same ? v_z : u_z;
-    const E_13 = all_same ? 0.0 : t18 / D;
-    const t19 = same ? u_z : v_z;
-    const t20 = E_11 * t13 + t16 * t17 + E_13 * t19;
-    const t21 = t13 - E_11 * t20;
-    const t22 = t17 - t16 * t20;
-    const m_z = t19 - E_13 * t20;
-    const t23 = E_11 * t21 + t16 * t22 + E_13 * m_z;
-    const t24 = t21 - E_11 * t23;
-    const t25 = t22 - t16 * t23;
-    const n_z = m_z - E_13 * t23;
-    const j = Math.sqrt(t24 * t24 + t25 * t25 + n_z * n_z);
-    const in_line = j <= t12;
-    const t26 = t13 * (t14 - t13) + t17 * (t15 - t17) + t19 * (t18 - t19);
-    const t27 = in_line ? 0.0 : t26 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t27 * t27);
-    const t28 = l - rho;
-    const slack = Math.max(t28, 0.0);
-    const h = slack <= t12 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t29 = E_13 < 0 ? -1 : 1;
-    const t30 = E_11 * t29;
-    const t31 = E_13 + t29;
-    const E_22 = in_line ? -(t16 * t30 / t31) : t25 / j;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t29 / t31 : t24 / j;
-    const t32 = h * (E_11 * E_22 - t16 * E_21);
-    const E_23 = in_line ? -t30 : n_z / j;
-    const t33 = X * E_13 - t27 * E_23;
-    const t34 = t32 - t33;
-    const t35 = s_alpha3 * t34;
-    const t36 = t1 * t35;
-    const t37 = u_z + t34;
-    const t38 = h * (E_11 * E_23 - E_13 * E_21);
-    const t39 = X * t16 - t27 * E_22;
-    const A_12 = t38 + t39;
-    const t40 = t37 * (t11 - A_12);
-    const t41 = c_alpha3 * t1;
-    const t42 = (t16 * E_23 - E_13 * E_22) * h;
-    const t43 = E_11 * X - E_21 * t27;
-    const t44 = t42 - t43;
-    const t45 = v_z + t34;
-    const t46 = t37 * t45;
-    const t47 = t44 * t46;
-    const t48 = c_alpha1 * c_alpha2;
-    const t49 = s_alpha3 * t48;
-    const t50 = s_alpha1 * s_alpha2;
-    const t51 = c_alpha3 * t50;
-    const t52 = t46 * A_12;
-    const t53 = s_alpha1 * c_alpha2;
-    const t54 = s_alpha3 * t53;
-    const t55 = t41 * t47 - t49 * t47 - t51 * t52 + t54 * t52;
-    const t56 = c_alpha3 * t34;
-    const t57 = t53 * t56;
-    const t58 = t45 * (t6 + t44);
-    const t59 = t45 * (t8 - A_12);
-    const t60 = t55 - t57 * t58 + t48 * t58 * t35 - t50 * t56 * t59;
-    const t61 = t37 * (t10 + t44);
-    const t62 = t60 + t59 * t36 + t57 * t61 - t1 * t56 * t61 + t53 * t35 * t40;
-    const t63 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+    const t12 = size * size;
+    const t13 = _runtime.VANISHING * _runtime.VANISHING * t12;
+    const all_same = u_u + v_v <= t13;
+    const same = u_u <= t13;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const t14 = same ? t11 : t8;
+    const d_x = same ? t10 : t6;
+    const a_x = all_same ? 1.0 : d_x;
+    const t15 = same ? t8 : t11;
+    const t16 = same ? t6 : t10;
+    const t17 = a_x * t15 - t14 * t16;
+    const d_z = same ? v_z : u_z;
+    const t18 = same ? u_z : v_z;
+    const t19 = a_x * t18 - t16 * d_z;
+    const t20 = over * (t14 * t17 + d_z * t19);
+    const t21 = t14 * t18 - t15 * d_z;
+    const t22 = over * (a_x * t17 - d_z * t21);
+    const n_z = over * (a_x * t19 + t14 * t21);
+    const nu = t20 * t20 + t22 * t22 + n_z * n_z;
+    const in_line = nu <= t13;
+    const side = t14 * a_x < 0 ? -1 : 1;
+    const t23 = t14 + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t23 * t23) : 1.0 / (mu * nu);
+    const t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
+    const t25 = in_line ? 0.0 : mu * part * t24 * 0.5;
+    const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
+    const t27 = l * l - t26;
+    const slack = Math.max(t27, 0.0);
+    const t28 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
+    const t29 = h * (in_line ? -t23 : a_x * t22 + t14 * t20);
+    const t30 = n_z * t25 - d_z * 0.5;
+    const t31 = t29 + t30;
+    const t32 = s_alpha3 * t31;
+    const t33 = t1 * t32;
+    const t34 = u_z + t31;
+    const t35 = h * (in_line ? d_z : -(a_x * n_z + d_z * t20));
+    const t36 = t22 * t25 - t14 * 0.5;
+    const t37 = t35 + t36;
+    const t38 = t34 * (t11 + t37);
+    const t39 = c_alpha3 * t1;
+    const t40 = (in_line ? d_z * side : t14 * n_z - d_z * t22) * h;
+    const t41 = t20 * t25 + d_x * 0.5;
+    const t42 = t40 - t41;
+    const t43 = v_z + t31;
+    const t44 = t34 * t43;
+    const t45 = t42 * t44;
+    const t46 = c_alpha1 * c_alpha2;
+    const t47 = s_alpha3 * t46;
+    const t48 = s_alpha1 * s_alpha2;
+    const t49 = c_alpha3 * t48;
+    const t50 = t44 * t37;
+    const t51 = s_alpha1 * c_alpha2;
+    const t52 = s_alpha3 * t51;
+    const t53 = t39 * t45 - t47 * t45 + t49 * t50 - t52 * t50;
+    const t54 = c_alpha3 * t31;
+    const t55 = t51 * t54;
+    const t56 = t43 * (t6 + t42);
+    const t57 = t43 * (t8 + t37);
+    const t58 = t53 - t55 * t56 + t46 * t56 * t32 - t48 * t54 * t57;
+    const t59 = t34 * (t10 + t42);
+    const t60 = t58 + t57 * t33 + t55 * t59 - t1 * t54 * t59 + t51 * t32 * t38;
+    const t61 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
-    const t64 = t63 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
-    const t65 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const t66 = Math.abs(in_line ? -t26 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t66 && -(size * _runtime.FEASIBILITY) <= t28);
-    const t67 = !(t64 && t65) || unreachable ? NaN : 0;
-    const A_11_above = t42 + t43;
-    const A_13_above = t32 + t33;
-    const t68 = u_z - A_13_above;
-    const t69 = v_z - A_13_above;
-    const t70 = t68 * t69;
-    const t71 = A_11_above * t70;
-    const t72 = t38 - t39;
-    const t73 = t70 * t72;
-    const t74 = t41 * t71 - t49 * t71 - t51 * t73 + t54 * t73;
-    const t75 = c_alpha3 * A_13_above;
-    const t76 = t53 * t75;
-    const t77 = t69 * (t6 - A_11_above);
-    const t78 = s_alpha3 * A_13_above;
-    const t79 = t69 * (t8 + t72);
-    const t80 = t74 - t76 * t77 + t48 * t77 * t78 - t50 * t75 * t79;
-    const t81 = t1 * t78;
-    const t82 = t68 * (t10 - A_11_above);
-    const t83 = t68 * (t11 + t72);
-    const t84 = t80 + t79 * t81 + t76 * t82 - t1 * t75 * t82 + t53 * t78 * t83;
-    o[0] = t36 * t40 - t62 + t67;
-    o[1] = t84 - t81 * t83 + t67;
+    const t62 = t61 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t63 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t64 = Math.abs(in_line ? -t24 : 0.0) <= t12 * _runtime.FEASIBILITY;
+    const unreachable = !(t64 && -(_runtime.FEASIBILITY * t28) <= t27);
+    const t65 = !(t62 && t63) || unreachable ? NaN : 0;
+    const A_11_above = t40 + t41;
+    const t66 = t29 - t30;
+    const t67 = u_z - t66;
+    const t68 = v_z - t66;
+    const t69 = t67 * t68;
+    const t70 = A_11_above * t69;
+    const A_12_above = t35 - t36;
+    const t71 = t69 * A_12_above;
+    const t72 = t39 * t70 - t47 * t70 + t49 * t71 - t52 * t71;
+    const t73 = c_alpha3 * t66;
+    const t74 = t51 * t73;
+    const t75 = t68 * (t6 - A_11_above);
+    const t76 = s_alpha3 * t66;
+    const t77 = t68 * (t8 - A_12_above);
+    const t78 = t72 - t74 * t75 + t46 * t75 * t76 - t48 * t73 * t77;
+    const t79 = t1 * t76;
+    const t80 = t67 * (t10 - A_11_above);
+    const t81 = t67 * (t11 - A_12_above);
+    const t82 = t78 + t77 * t79 + t74 * t80 - t1 * t73 * t80 + t51 * t76 * t81;
+    o[0] = t33 * t38 - t60 + t65;
+    o[1] = t82 - t79 * t81 + t65;
 }
 
 const _CONSTRAINT = _runtime.kernel({
@@ -1892,12 +1810,7 @@ const _CONSTRAINT = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [3, 4, 5, 6],
-        degrees: [[0, 3], [1, 3]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**

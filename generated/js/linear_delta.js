@@ -2,15 +2,15 @@
 // derivations/linear_delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-//   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
-//   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
-//   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
-//   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
-//   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
-//   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
-//   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
-//   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
+//   fk: 42 compare and select, 50 add, 12 divide, 59 multiply, 1 sqrt
+//   skeleton: 41 compare and select, 124 add, 14 divide, 59 multiply, 1 sqrt
+//   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 59 multiply, 1 sqrt
+//   jacobian_serial: 39 compare and select, 44 add, 10 divide, 50 multiply, 1 sqrt
+//   jacobian: 41 compare and select, 88 add, 30 divide, 110 multiply, 1 sqrt
+//   determinant: 39 compare and select, 40 add, 12 divide, 55 multiply, 1 sqrt
+//   singularities: 39 compare and select, 46 add, 10 divide, 51 multiply, 1 sqrt
+//   condition_number: 41 compare and select, 104 add, 14 divide, 129 multiply, 3 sqrt
+//   constraint: 41 compare and select, 62 add, 18 divide, 83 multiply, 1 sqrt
 //   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
@@ -114,73 +114,66 @@ function _fk(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
+    const t1 = rho1 - rho2;
     const c1_x = f - e;
-    const t1 = c1_x - (e * 0.5 - f * 0.5);
-    const t2 = rho1 - rho2;
+    const t2 = c1_x - (e * 0.5 - f * 0.5);
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
-    const t3 = t1 * t1 + c3_y * c3_y;
-    const size_u = Math.sqrt(t2 * t2 + t3);
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const u_u = t1 * t1 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const D = same ? size_v : size_u;
-    const t6 = 1.0 / D;
-    const E_11 = all_same ? 1.0 : -(t1 * t6);
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const d_y = same ? c3_y : -c3_y;
+    const a_x = all_same ? 1.0 : -t2;
     const t7 = same ? -c3_y : c3_y;
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t6 * t8;
-    const t9 = same ? t2 : t4;
-    const t10 = same ? t4 : t2;
-    const t11 = all_same ? 0.0 : t6 * t10;
-    const t12 = t1 * E_11 - t7 * E_12 - t9 * t11;
-    const t13 = t1 - E_11 * t12;
-    const m_y = t7 + E_12 * t12;
-    const t14 = t9 + t11 * t12;
-    const t15 = E_11 * t13 - E_12 * m_y - t11 * t14;
-    const t16 = t13 - E_11 * t15;
-    const n_y = m_y + E_12 * t15;
-    const t17 = t14 + t11 * t15;
-    const j = Math.sqrt(t16 * t16 + n_y * n_y + t17 * t17);
-    const in_line = j <= t5;
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = 1.0 / (t11 - t18);
-    const t20 = 1.0 / j;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 * t19 : -(t16 * t20);
-    const left = t7 * (t7 - t8) + t9 * (t9 - t10);
-    const t21 = in_line ? 0.0 : left / (2.0 * j);
-    const X = all_same ? 0.0 : D * 0.5;
-    const t22 = E_21 * t21 + (c1_x + E_11 * X);
-    const rho = Math.sqrt(X * X + t21 * t21);
-    const t23 = l - rho;
-    const slack = Math.max(t23, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t24 = E_11 * t18;
-    const t25 = in_line ? t24 : t17 * t20;
-    const E_22 = in_line ? t19 * (E_12 * t24) : n_y * t20;
-    const t26 = h * (E_12 * t25 - t11 * E_22);
-    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
-    const invalid = !t29;
-    const t30 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t23);
-    const t31 = invalid || unreachable ? NaN : 0;
-    const t32 = E_12 * X + t21 * E_22;
-    const t33 = h * (E_11 * t25 - t11 * E_21);
-    const t34 = h * (E_12 * E_21 - E_11 * E_22);
-    const t35 = t21 * t25 - (rho1 - t11 * X);
-    const t36 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = t22 + t26 + t31;
-    o[1] = t32 - t33 + t31;
-    o[2] = t34 - t35 + t31;
-    o[3] = t22 - t26 + t31;
-    o[4] = t32 + t33 + t31;
-    o[5] = -(t35 + t34) + t31;
-    o[6] = t36;
-    o[7] = t36;
+    const m_z = a_x * t7 + t2 * d_y;
+    const t8 = same ? t4 : t1;
+    const t9 = same ? t1 : t4;
+    const m_y = a_x * t9 + t2 * t8;
+    const t10 = over * (d_y * m_z + t8 * m_y);
+    const t11 = d_y * t9 - t7 * t8;
+    const n_y = over * (a_x * m_z - t8 * t11);
+    const t12 = over * (a_x * m_y + d_y * t11);
+    const nu = t10 * t10 + n_y * n_y + t12 * t12;
+    const in_line = nu <= t6;
+    const side = d_y * a_x < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
+    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
+    const t15 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
+    const t16 = l * l - t15;
+    const slack = Math.max(t16, 0.0);
+    const t17 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t17 ? 0.0 : Math.sqrt(part * slack);
+    const t18 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
+    const t19 = t2 * 0.5 - (c1_x + t10 * t14);
+    const t20 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t21 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t22 = t20 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t21;
+    const invalid = !t22;
+    const t23 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t23 && -(_runtime.FEASIBILITY * t17) <= t16);
+    const t24 = invalid || unreachable ? NaN : 0;
+    const t25 = n_y * t14 - d_y * 0.5;
+    const t26 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
+    const t27 = t8 * 0.5 - (rho1 + t12 * t14);
+    const t28 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const t29 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t18 - t19 + t24;
+    o[1] = -(t25 + t26) + t24;
+    o[2] = -(t27 + t28) + t24;
+    o[3] = -(t19 + t18) + t24;
+    o[4] = t26 - t25 + t24;
+    o[5] = t28 - t27 + t24;
+    o[6] = t29;
+    o[7] = t29;
 }
 
 const _FK = _runtime.kernel({
@@ -196,12 +189,7 @@ const _FK = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -254,237 +242,232 @@ function _skeleton(v, o) {
     const t1 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
     const t2 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const invalid = !(t1 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t2);
+    const t3 = rho1 - rho2;
     const c1_x = f - e;
-    const t3 = e * 0.5;
-    const t4 = f * 0.5;
-    const t5 = c1_x - (t3 - t4);
-    const t6 = rho1 - rho2;
+    const t4 = e * 0.5;
+    const t5 = f * 0.5;
+    const t6 = c1_x - (t4 - t5);
     const t7 = e * 1.7320508075688772;
     const t8 = t7 * 0.5;
     const t9 = f * 1.7320508075688772 * 0.5;
     const c3_y = t8 - t9;
-    const t10 = t5 * t5 + c3_y * c3_y;
-    const size_u = Math.sqrt(t6 * t6 + t10);
+    const t10 = t6 * t6 + c3_y * c3_y;
+    const u_u = t3 * t3 + t10;
     const t11 = rho1 - rho3;
-    const size_v = Math.sqrt(t11 * t11 + t10);
+    const v_v = t11 * t11 + t10;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t12 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t12;
-    const same = size_u <= t12;
-    const D = same ? size_v : size_u;
-    const E_11 = all_same ? 1.0 : -(t5 / D);
-    const t13 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t13 / D;
+    const t12 = size * size;
+    const t13 = _runtime.VANISHING * _runtime.VANISHING * t12;
+    const all_same = u_u + v_v <= t13;
+    const same = u_u <= t13;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const d_y = same ? c3_y : -c3_y;
+    const a_x = all_same ? 1.0 : -t6;
     const t14 = same ? -c3_y : c3_y;
-    const t15 = same ? t11 : t6;
-    const t16 = all_same ? 0.0 : t15 / D;
-    const t17 = same ? t6 : t11;
-    const t18 = t5 * E_11 - E_12 * t14 - t16 * t17;
-    const t19 = t5 - E_11 * t18;
-    const m_y = t14 + E_12 * t18;
-    const t20 = t17 + t16 * t18;
-    const t21 = E_11 * t19 - E_12 * m_y - t16 * t20;
-    const t22 = t19 - E_11 * t21;
-    const n_y = m_y + E_12 * t21;
-    const t23 = t20 + t16 * t21;
-    const j = Math.sqrt(t22 * t22 + n_y * n_y + t23 * t23);
-    const in_line = j <= t12;
-    const t24 = t14 * (t13 - t14) + t17 * (t15 - t17);
-    const t25 = Math.abs(in_line ? -t24 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const X = all_same ? 0.0 : D * 0.5;
-    const t26 = in_line ? 0.0 : t24 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t26 * t26);
-    const t27 = l - rho;
-    const unreachable = !(t25 && -(size * _runtime.FEASIBILITY) <= t27);
-    const t28 = invalid || unreachable ? NaN : 0;
-    const t29 = f + t28;
-    const t30 = 0.0 + t28;
-    const t31 = rho1 + t28;
-    const t32 = e + c1_x;
-    const t33 = -t16 < 0 ? -1 : 1;
-    const t34 = t16 - t33;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t33 / t34 : -(t22 / j);
-    const t35 = E_11 * X - t26 * E_21;
-    const slack = Math.max(t27, 0.0);
-    const h = slack <= t12 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t36 = E_11 * t33;
-    const t37 = in_line ? t36 : t23 / j;
-    const E_22 = in_line ? E_12 * t36 / t34 : n_y / j;
-    const t38 = h * (E_12 * t37 - t16 * E_22);
-    const A_11 = t35 + t38;
-    const t39 = t32 + A_11 + t28;
-    const t40 = E_12 * X - t26 * E_22;
-    const t41 = h * (E_11 * t37 - t16 * E_21);
-    const A_12 = t40 - t41;
-    const t42 = A_12 + t28;
-    const t43 = t16 * X - t26 * t37;
-    const t44 = h * (E_12 * E_21 - E_11 * E_22);
-    const t45 = rho1 - (t43 - t44) + t28;
-    const t46 = t3 + t28;
-    const t47 = -t3 + t28;
-    const t48 = -t4 + t28;
-    const t49 = t9 + t28;
-    const t50 = rho2 + t28;
-    const t51 = c1_x - t3;
-    const t52 = t51 + A_11;
-    const t53 = t52 + t28;
-    const t54 = t7 * 0.25;
-    const t55 = -(t4 + t54) + t28;
-    const t56 = e * 0.25;
-    const t57 = t9 - t56;
-    const t58 = t57 + t28;
-    const t59 = t54 - t4 + t28;
-    const t60 = t9 + t56;
-    const t61 = t60 + t28;
-    const t62 = t52 - t54 + t28;
-    const t63 = t8 - t56;
-    const t64 = t54 + t52 + t28;
-    const t65 = t8 + t56;
-    const t66 = -t9 + t28;
-    const t67 = rho3 + t28;
-    const t68 = -t60 + t28;
-    const t69 = -t57 + t28;
-    const A_11_above = t35 - t38;
-    const t70 = t32 + A_11_above + t28;
-    const A_12_above = t40 + t41;
-    const t71 = A_12_above + t28;
-    const t72 = rho1 - (t43 + t44) + t28;
-    const t73 = t51 + A_11_above;
-    const t74 = t73 + t28;
-    const t75 = t73 - t54 + t28;
-    const t76 = t54 + t73 + t28;
-    o[0] = t29;
-    o[1] = t30;
-    o[2] = t30;
-    o[3] = t29;
-    o[4] = t30;
-    o[5] = t31;
-    o[6] = t39;
-    o[7] = t42;
-    o[8] = t45;
-    o[9] = t29;
-    o[10] = t46;
-    o[11] = t31;
-    o[12] = t29;
-    o[13] = t47;
-    o[14] = t31;
-    o[15] = t39;
-    o[16] = t3 + A_12 + t28;
-    o[17] = t45;
-    o[18] = t39;
-    o[19] = A_12 - t3 + t28;
-    o[20] = t45;
-    o[21] = t48;
-    o[22] = t49;
-    o[23] = t30;
-    o[24] = t48;
-    o[25] = t49;
-    o[26] = t50;
-    o[27] = t53;
-    o[28] = t8 + A_12 + t28;
-    o[29] = t45;
-    o[30] = t55;
-    o[31] = t58;
-    o[32] = t50;
-    o[33] = t59;
-    o[34] = t61;
-    o[35] = t50;
-    o[36] = t62;
-    o[37] = t63 + A_12 + t28;
-    o[38] = t45;
-    o[39] = t64;
-    o[40] = t65 + A_12 + t28;
-    o[41] = t45;
-    o[42] = t48;
-    o[43] = t66;
-    o[44] = t30;
-    o[45] = t48;
-    o[46] = t66;
-    o[47] = t67;
-    o[48] = t53;
-    o[49] = A_12 - t8 + t28;
-    o[50] = t45;
-    o[51] = t59;
-    o[52] = t68;
-    o[53] = t67;
-    o[54] = t55;
-    o[55] = t69;
-    o[56] = t67;
-    o[57] = t64;
-    o[58] = A_12 - t65 + t28;
-    o[59] = t45;
-    o[60] = t62;
-    o[61] = A_12 - t63 + t28;
-    o[62] = t45;
-    o[63] = c1_x + A_11 + t28;
-    o[64] = t42;
-    o[65] = t45;
-    o[66] = t29;
-    o[67] = t30;
-    o[68] = t30;
-    o[69] = t29;
-    o[70] = t30;
-    o[71] = t31;
-    o[72] = t70;
-    o[73] = t71;
-    o[74] = t72;
-    o[75] = t29;
-    o[76] = t46;
-    o[77] = t31;
-    o[78] = t29;
-    o[79] = t47;
-    o[80] = t31;
-    o[81] = t70;
-    o[82] = t3 + A_12_above + t28;
-    o[83] = t72;
-    o[84] = t70;
-    o[85] = A_12_above - t3 + t28;
-    o[86] = t72;
-    o[87] = t48;
-    o[88] = t49;
-    o[89] = t30;
-    o[90] = t48;
-    o[91] = t49;
-    o[92] = t50;
-    o[93] = t74;
-    o[94] = t8 + A_12_above + t28;
-    o[95] = t72;
-    o[96] = t55;
-    o[97] = t58;
-    o[98] = t50;
-    o[99] = t59;
-    o[100] = t61;
-    o[101] = t50;
-    o[102] = t75;
-    o[103] = t63 + A_12_above + t28;
-    o[104] = t72;
-    o[105] = t76;
-    o[106] = t65 + A_12_above + t28;
-    o[107] = t72;
-    o[108] = t48;
-    o[109] = t66;
-    o[110] = t30;
-    o[111] = t48;
-    o[112] = t66;
-    o[113] = t67;
-    o[114] = t74;
-    o[115] = A_12_above - t8 + t28;
-    o[116] = t72;
-    o[117] = t59;
-    o[118] = t68;
-    o[119] = t67;
-    o[120] = t55;
-    o[121] = t69;
-    o[122] = t67;
-    o[123] = t76;
-    o[124] = A_12_above - t65 + t28;
-    o[125] = t72;
-    o[126] = t75;
-    o[127] = A_12_above - t63 + t28;
-    o[128] = t72;
-    o[129] = c1_x + A_11_above + t28;
-    o[130] = t71;
-    o[131] = t72;
+    const m_z = a_x * t14 + t6 * d_y;
+    const t15 = same ? t11 : t3;
+    const t16 = same ? t3 : t11;
+    const m_y = a_x * t16 + t6 * t15;
+    const t17 = over * (d_y * m_z + t15 * m_y);
+    const t18 = d_y * t16 - t14 * t15;
+    const n_y = over * (a_x * m_z - t15 * t18);
+    const t19 = over * (a_x * m_y + d_y * t18);
+    const nu = t17 * t17 + n_y * n_y + t19 * t19;
+    const in_line = nu <= t13;
+    const t20 = t14 * (d_y - t14) + t16 * (t15 - t16);
+    const t21 = Math.abs(in_line ? -t20 : 0.0) <= t12 * _runtime.FEASIBILITY;
+    const t22 = l * size * 2.0;
+    const side = d_y * a_x < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (t15 * t15) + last * last) : 1.0 / (mu * nu);
+    const t23 = in_line ? 0.0 : mu * t20 * part * 0.5;
+    const t24 = all_same ? 0.0 : nu * (t23 * t23) + mu * 0.25;
+    const t25 = l * l - t24;
+    const unreachable = !(t21 && -(_runtime.FEASIBILITY * t22) <= t25);
+    const t26 = invalid || unreachable ? NaN : 0;
+    const t27 = f + t26;
+    const t28 = 0.0 + t26;
+    const t29 = rho1 + t26;
+    const t30 = e + c1_x;
+    const t31 = t6 * 0.5 - t17 * t23;
+    const slack = Math.max(t25, 0.0);
+    const h = slack <= _runtime.VANISHING * t22 ? 0.0 : Math.sqrt(part * slack);
+    const t32 = (in_line ? t15 * side : d_y * t19 - t15 * n_y) * h;
+    const t33 = t31 - t32;
+    const t34 = t30 - t33 + t26;
+    const t35 = n_y * t23 - d_y * 0.5;
+    const t36 = h * (in_line ? -t15 : a_x * t19 + t15 * t17);
+    const t37 = t35 + t36;
+    const t38 = -t37 + t26;
+    const t39 = t19 * t23 - t15 * 0.5;
+    const t40 = h * (in_line ? -last : a_x * n_y + d_y * t17);
+    const t41 = rho1 + (t39 - t40) + t26;
+    const t42 = t4 + t26;
+    const t43 = -t4 + t26;
+    const t44 = -t5 + t26;
+    const t45 = t9 + t26;
+    const t46 = rho2 + t26;
+    const t47 = c1_x - t4;
+    const t48 = t47 - t33;
+    const t49 = t48 + t26;
+    const t50 = t7 * 0.25;
+    const t51 = -(t5 + t50) + t26;
+    const t52 = e * 0.25;
+    const t53 = t9 - t52;
+    const t54 = t53 + t26;
+    const t55 = t50 - t5 + t26;
+    const t56 = t9 + t52;
+    const t57 = t56 + t26;
+    const t58 = t48 - t50 + t26;
+    const t59 = t8 - t52;
+    const t60 = t50 + t48 + t26;
+    const t61 = t8 + t52;
+    const t62 = -t9 + t26;
+    const t63 = rho3 + t26;
+    const t64 = -t56 + t26;
+    const t65 = -t53 + t26;
+    const t66 = t31 + t32;
+    const t67 = t30 - t66 + t26;
+    const t68 = t35 - t36;
+    const t69 = -t68 + t26;
+    const t70 = rho1 + (t39 + t40) + t26;
+    const t71 = t47 - t66;
+    const t72 = t71 + t26;
+    const t73 = t71 - t50 + t26;
+    const t74 = t50 + t71 + t26;
+    o[0] = t27;
+    o[1] = t28;
+    o[2] = t28;
+    o[3] = t27;
+    o[4] = t28;
+    o[5] = t29;
+    o[6] = t34;
+    o[7] = t38;
+    o[8] = t41;
+    o[9] = t27;
+    o[10] = t42;
+    o[11] = t29;
+    o[12] = t27;
+    o[13] = t43;
+    o[14] = t29;
+    o[15] = t34;
+    o[16] = t4 - t37 + t26;
+    o[17] = t41;
+    o[18] = t34;
+    o[19] = -(t4 + t37) + t26;
+    o[20] = t41;
+    o[21] = t44;
+    o[22] = t45;
+    o[23] = t28;
+    o[24] = t44;
+    o[25] = t45;
+    o[26] = t46;
+    o[27] = t49;
+    o[28] = t8 - t37 + t26;
+    o[29] = t41;
+    o[30] = t51;
+    o[31] = t54;
+    o[32] = t46;
+    o[33] = t55;
+    o[34] = t57;
+    o[35] = t46;
+    o[36] = t58;
+    o[37] = t59 - t37 + t26;
+    o[38] = t41;
+    o[39] = t60;
+    o[40] = t61 - t37 + t26;
+    o[41] = t41;
+    o[42] = t44;
+    o[43] = t62;
+    o[44] = t28;
+    o[45] = t44;
+    o[46] = t62;
+    o[47] = t63;
+    o[48] = t49;
+    o[49] = -(t8 + t37) + t26;
+    o[50] = t41;
+    o[51] = t55;
+    o[52] = t64;
+    o[53] = t63;
+    o[54] = t51;
+    o[55] = t65;
+    o[56] = t63;
+    o[57] = t60;
+    o[58] = -(t61 + t37) + t26;
+    o[59] = t41;
+    o[60] = t58;
+    o[61] = -(t59 + t37) + t26;
+    o[62] = t41;
+    o[63] = c1_x - t33 + t26;
+    o[64] = t38;
+    o[65] = t41;
+    o[66] = t27;
+    o[67] = t28;
+    o[68] = t28;
+    o[69] = t27;
+    o[70] = t28;
+    o[71] = t29;
+    o[72] = t67;
+    o[73] = t69;
+    o[74] = t70;
+    o[75] = t27;
+    o[76] = t42;
+    o[77] = t29;
+    o[78] = t27;
+    o[79] = t43;
+    o[80] = t29;
+    o[81] = t67;
+    o[82] = t4 - t68 + t26;
+    o[83] = t70;
+    o[84] = t67;
+    o[85] = -(t4 + t68) + t26;
+    o[86] = t70;
+    o[87] = t44;
+    o[88] = t45;
+    o[89] = t28;
+    o[90] = t44;
+    o[91] = t45;
+    o[92] = t46;
+    o[93] = t72;
+    o[94] = t8 - t68 + t26;
+    o[95] = t70;
+    o[96] = t51;
+    o[97] = t54;
+    o[98] = t46;
+    o[99] = t55;
+    o[100] = t57;
+    o[101] = t46;
+    o[102] = t73;
+    o[103] = t59 - t68 + t26;
+    o[104] = t70;
+    o[105] = t74;
+    o[106] = t61 - t68 + t26;
+    o[107] = t70;
+    o[108] = t44;
+    o[109] = t62;
+    o[110] = t28;
+    o[111] = t44;
+    o[112] = t62;
+    o[113] = t63;
+    o[114] = t72;
+    o[115] = -(t8 + t68) + t26;
+    o[116] = t70;
+    o[117] = t55;
+    o[118] = t64;
+    o[119] = t63;
+    o[120] = t51;
+    o[121] = t65;
+    o[122] = t63;
+    o[123] = t74;
+    o[124] = -(t61 + t68) + t26;
+    o[125] = t70;
+    o[126] = t73;
+    o[127] = -(t59 + t68) + t26;
+    o[128] = t70;
+    o[129] = c1_x - t66 + t26;
+    o[130] = t69;
+    o[131] = t70;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -499,12 +482,7 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [3, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [69, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -546,86 +524,81 @@ function _jacobian_parallel(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const t1 = rho1 - rho2;
-    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t1 = f - e - (e * 0.5 - f * 0.5);
+    const t2 = rho1 - rho2;
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
-    const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const t3 = t1 * t1 + c3_y * c3_y;
+    const u_u = t2 * t2 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const D = same ? size_v : size_u;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t6 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const d_y = same ? c3_y : -c3_y;
+    const a_x = all_same ? 1.0 : -t1;
     const t7 = same ? -c3_y : c3_y;
-    const t8 = same ? t4 : t1;
-    const t9 = all_same ? 0.0 : t8 / D;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t7 - t9 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t7 + E_12 * t11;
-    const t13 = t10 + t9 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t9 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t9 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t9 < 0 ? -1 : 1;
-    const t18 = t9 - t17;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t17 / t18 : -(t15 / j);
-    const t19 = t7 * (t6 - t7) + t10 * (t8 - t10);
-    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
-    const t21 = E_11 * X - E_21 * t20;
-    const rho = Math.sqrt(X * X + t20 * t20);
-    const t22 = l - rho;
-    const slack = Math.max(t22, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t23 = E_11 * t17;
-    const t24 = in_line ? t23 : t16 / j;
-    const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;
-    const t25 = h * (E_12 * t24 - t9 * E_22);
-    const A_11 = t21 + t25;
-    const t26 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t27 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t28 = t26 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t27;
-    const t29 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t29 && -(size * _runtime.FEASIBILITY) <= t22);
-    const t30 = !t28 || unreachable ? NaN : 0;
-    const t31 = X * E_12 - t20 * E_22;
-    const t32 = h * (E_11 * t24 - t9 * E_21);
-    const A_12 = t31 - t32;
-    const t33 = X * t9 - t20 * t24;
-    const t34 = h * (E_12 * E_21 - E_11 * E_22);
-    const t35 = t33 - t34;
-    const t36 = t2 + A_11 + t30;
-    const A_11_above = t21 - t25;
-    const A_12_above = t31 + t32;
-    const t37 = t33 + t34;
-    const t38 = t2 + A_11_above + t30;
-    o[0] = A_11 + t30;
-    o[1] = A_12 + t30;
-    o[2] = -t35 + t30;
-    o[3] = t36;
-    o[4] = c3_y + A_12 + t30;
-    o[5] = t1 - t35 + t30;
-    o[6] = t36;
-    o[7] = A_12 - c3_y + t30;
-    o[8] = t4 - t35 + t30;
-    o[9] = A_11_above + t30;
-    o[10] = A_12_above + t30;
-    o[11] = -t37 + t30;
-    o[12] = t38;
-    o[13] = c3_y + A_12_above + t30;
-    o[14] = t1 - t37 + t30;
-    o[15] = t38;
-    o[16] = A_12_above - c3_y + t30;
-    o[17] = t4 - t37 + t30;
+    const m_z = a_x * t7 + t1 * d_y;
+    const t8 = same ? t4 : t2;
+    const t9 = same ? t2 : t4;
+    const m_y = a_x * t9 + t1 * t8;
+    const t10 = over * (d_y * m_z + t8 * m_y);
+    const t11 = d_y * t9 - t7 * t8;
+    const n_y = over * (a_x * m_z - t8 * t11);
+    const t12 = over * (a_x * m_y + d_y * t11);
+    const nu = t10 * t10 + n_y * n_y + t12 * t12;
+    const in_line = nu <= t6;
+    const side = d_y * a_x < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
+    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
+    const t15 = t1 * 0.5 - t10 * t14;
+    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
+    const t17 = l * l - t16;
+    const slack = Math.max(t17, 0.0);
+    const t18 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
+    const t19 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
+    const t20 = t15 - t19;
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
+    const t24 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t18) <= t17);
+    const t25 = !t23 || unreachable ? NaN : 0;
+    const t26 = n_y * t14 - d_y * 0.5;
+    const t27 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
+    const t28 = t26 + t27;
+    const t29 = t12 * t14 - t8 * 0.5;
+    const t30 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t29 - t30;
+    const t31 = t1 - t20 + t25;
+    const t32 = t15 + t19;
+    const t33 = t26 - t27;
+    const A_13_above = t29 + t30;
+    const t34 = t1 - t32 + t25;
+    o[0] = -t20 + t25;
+    o[1] = -t28 + t25;
+    o[2] = A_13 + t25;
+    o[3] = t31;
+    o[4] = c3_y - t28 + t25;
+    o[5] = t2 + A_13 + t25;
+    o[6] = t31;
+    o[7] = -(c3_y + t28) + t25;
+    o[8] = t4 + A_13 + t25;
+    o[9] = -t32 + t25;
+    o[10] = -t33 + t25;
+    o[11] = A_13_above + t25;
+    o[12] = t34;
+    o[13] = c3_y - t33 + t25;
+    o[14] = t2 + A_13_above + t25;
+    o[15] = t34;
+    o[16] = -(c3_y + t33) + t25;
+    o[17] = t4 + A_13_above + t25;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -640,12 +613,7 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -690,59 +658,54 @@ function _jacobian_serial(v, o) {
     const t2 = f - e - (e * 0.5 - f * 0.5);
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
     const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const u_u = t1 * t1 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const t6 = same ? t4 : t1;
-    const D = same ? size_v : size_u;
-    const t7 = all_same ? 0.0 : t6 / D;
-    const X = all_same ? 0.0 : D * 0.5;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const a_x = all_same ? 1.0 : -t2;
+    const t7 = same ? t1 : t4;
+    const t8 = same ? t4 : t1;
+    const m_y = a_x * t7 + t2 * t8;
+    const d_y = same ? c3_y : -c3_y;
     const t9 = same ? -c3_y : c3_y;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t9 + E_12 * t11;
-    const t13 = t10 + t7 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t7 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t7 < 0 ? -1 : 1;
-    const t18 = E_11 * t17;
-    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
-    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
-    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
-    const rho = Math.sqrt(X * X + t20 * t20);
-    const t22 = l - rho;
-    const slack = Math.max(t22, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t23 = t7 - t17;
-    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
-    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
-    const t25 = h * (E_12 * E_21 - t24);
-    const t26 = t21 - t25;
-    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
-    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
-    const t31 = !t29 || unreachable ? NaN : 0;
-    const t32 = t21 + t25;
-    o[0] = -t26 + t31;
-    o[1] = t1 - t26 + t31;
-    o[2] = t4 - t26 + t31;
-    o[3] = -t32 + t31;
-    o[4] = t1 - t32 + t31;
-    o[5] = t4 - t32 + t31;
+    const t10 = t7 * d_y - t8 * t9;
+    const t11 = over * (a_x * m_y + d_y * t10);
+    const m_z = a_x * t9 + t2 * d_y;
+    const t12 = over * (d_y * m_z + t8 * m_y);
+    const n_y = over * (a_x * m_z - t8 * t10);
+    const nu = t12 * t12 + n_y * n_y + t11 * t11;
+    const in_line = nu <= t6;
+    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
+    const t13 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
+    const t15 = t11 * t14 - t8 * 0.5;
+    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
+    const t17 = l * l - t16;
+    const slack = Math.max(t17, 0.0);
+    const t18 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
+    const t19 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t15 - t19;
+    const t20 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t21 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t22 = t20 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t21;
+    const t23 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t23 && -(_runtime.FEASIBILITY * t18) <= t17);
+    const t24 = !t22 || unreachable ? NaN : 0;
+    const A_13_above = t15 + t19;
+    o[0] = A_13 + t24;
+    o[1] = t1 + A_13 + t24;
+    o[2] = t4 + A_13 + t24;
+    o[3] = A_13_above + t24;
+    o[4] = t1 + A_13_above + t24;
+    o[5] = t4 + A_13_above + t24;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -757,12 +720,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
+    size: null,
 });
 
 /**
@@ -807,109 +765,105 @@ function _jacobian(v, o) {
     const t2 = f - e - (e * 0.5 - f * 0.5);
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
     const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const u_u = t1 * t1 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const t6 = same ? t4 : t1;
-    const D = same ? size_v : size_u;
-    const t7 = all_same ? 0.0 : t6 / D;
-    const X = all_same ? 0.0 : D * 0.5;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const a_x = all_same ? 1.0 : -t2;
+    const t7 = same ? t1 : t4;
+    const t8 = same ? t4 : t1;
+    const m_y = a_x * t7 + t2 * t8;
+    const d_y = same ? c3_y : -c3_y;
     const t9 = same ? -c3_y : c3_y;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t9 + E_12 * t11;
-    const t13 = t10 + t7 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t7 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t7 < 0 ? -1 : 1;
-    const t18 = E_11 * t17;
-    const t19 = in_line ? t18 : t16 / j;
-    const t20 = t9 * (t8 - t9) + t10 * (t6 - t10);
-    const t21 = in_line ? 0.0 : t20 / (2.0 * j);
-    const t22 = t7 * X - t19 * t21;
-    const rho = Math.sqrt(X * X + t21 * t21);
-    const t23 = l - rho;
-    const slack = Math.max(t23, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t24 = t7 - t17;
-    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t24 : -(t15 / j);
-    const E_22 = in_line ? E_12 * t18 / t24 : n_y / j;
-    const t25 = h * (E_12 * E_21 - E_11 * E_22);
-    const t26 = t22 - t25;
-    const t27 = X * E_12 - t21 * E_22;
-    const t28 = h * (E_11 * t19 - t7 * E_21);
-    const A_12 = t27 - t28;
-    const A_22 = c3_y + A_12;
-    const A_33 = t4 - t26;
-    const A_23 = t1 - t26;
-    const t29 = c3_y - A_12;
-    const Delta = D * j * h;
-    const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t31 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t32 = t30 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t31;
-    const t33 = Math.abs(in_line ? -t20 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t33 && -(size * _runtime.FEASIBILITY) <= t23);
-    const t34 = !t32 || unreachable ? NaN : 0;
-    const t35 = t26 * (A_22 * A_33 + A_23 * t29) / Delta + t34;
-    const t36 = A_23 * (A_12 * A_33 - t26 * t29) / Delta + t34;
-    const t37 = -(A_33 * (A_12 * A_23 + t26 * A_22) / Delta) + t34;
-    const t38 = X * E_11 - t21 * E_21;
-    const t39 = h * (E_12 * t19 - t7 * E_22);
-    const A_11 = t38 + t39;
-    const A_21 = t2 + A_11;
-    const t40 = -(t26 * (A_33 * A_21 - A_23 * A_21) / Delta) + t34;
-    const t41 = t26 * A_21;
-    const t42 = -(t26 * (t29 * A_21 + A_22 * A_21) / Delta) + t34;
-    const t43 = A_12 * A_21;
-    const t44 = t22 + t25;
-    const A_12_above = t27 + t28;
-    const A_22_above = c3_y + A_12_above;
-    const A_33_above = t4 - t44;
-    const A_23_above = t1 - t44;
-    const t45 = c3_y - A_12_above;
-    const t46 = t44 * (A_22_above * A_33_above + A_23_above * t45);
-    const t47 = A_23_above * (A_12_above * A_33_above - t44 * t45);
-    const t48 = A_33_above * (A_12_above * A_23_above + t44 * A_22_above);
-    const A_11_above = t38 - t39;
-    const A_21_above = t2 + A_11_above;
-    const t49 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const t50 = t44 * A_21_above;
-    const t51 = A_23_above * (A_33_above * A_11_above + t50) / Delta;
-    const t52 = A_33_above * (t50 + A_23_above * A_11_above) / Delta;
-    const t53 = t44 * (t45 * A_21_above + A_22_above * A_21_above);
-    const t54 = A_12_above * A_21_above;
-    const t55 = A_23_above * (t45 * A_11_above + t54) / Delta;
-    const t56 = A_33_above * (t54 - A_22_above * A_11_above) / Delta;
-    o[0] = t35;
-    o[1] = t36;
-    o[2] = t37;
-    o[3] = t40;
-    o[4] = -(A_23 * (A_33 * A_11 + t41) / Delta) + t34;
-    o[5] = A_33 * (t41 + A_23 * A_11) / Delta + t34;
-    o[6] = t42;
-    o[7] = -(A_23 * (t29 * A_11 + t43) / Delta) + t34;
-    o[8] = A_33 * (t43 - A_22 * A_11) / Delta + t34;
-    o[9] = -(t46 / Delta) + t34;
-    o[10] = -(t47 / Delta) + t34;
-    o[11] = t48 / Delta + t34;
-    o[12] = t44 * t49 / Delta + t34;
-    o[13] = t51 + t34;
-    o[14] = -t52 + t34;
-    o[15] = t53 / Delta + t34;
-    o[16] = t55 + t34;
-    o[17] = -t56 + t34;
+    const t10 = t7 * d_y - t8 * t9;
+    const t11 = over * (a_x * m_y + d_y * t10);
+    const m_z = a_x * t9 + t2 * d_y;
+    const t12 = over * (d_y * m_z + t8 * m_y);
+    const n_y = over * (a_x * m_z - t8 * t10);
+    const nu = t12 * t12 + n_y * n_y + t11 * t11;
+    const in_line = nu <= t6;
+    const side = a_x * d_y < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const t13 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
+    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t11 * t15 - t8 * 0.5;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t16 - t20;
+    const t21 = n_y * t15 - d_y * 0.5;
+    const t22 = h * (in_line ? -t8 : a_x * t11 + t8 * t12);
+    const t23 = t21 + t22;
+    const A_22 = c3_y - t23;
+    const A_33 = t4 + A_13;
+    const A_23 = t1 + A_13;
+    const t24 = c3_y + t23;
+    const Delta = t13 * h;
+    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
+    const t28 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t28 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t29 = !t27 || unreachable ? NaN : 0;
+    const t30 = -(A_13 * (A_22 * A_33 + A_23 * t24) / Delta) + t29;
+    const t31 = -(A_23 * (t23 * A_33 - A_13 * t24) / Delta) + t29;
+    const t32 = A_33 * (t23 * A_23 + A_13 * A_22) / Delta + t29;
+    const t33 = t2 * 0.5 - t12 * t15;
+    const t34 = h * (in_line ? t8 * side : d_y * t11 - t8 * n_y);
+    const t35 = t33 - t34;
+    const A_21 = t2 - t35;
+    const t36 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t29;
+    const t37 = A_13 * A_21;
+    const t38 = A_13 * (t24 * A_21 + A_22 * A_21) / Delta + t29;
+    const t39 = t23 * A_21;
+    const A_13_above = t16 + t20;
+    const t40 = t21 - t22;
+    const A_22_above = c3_y - t40;
+    const A_33_above = t4 + A_13_above;
+    const A_23_above = t1 + A_13_above;
+    const t41 = c3_y + t40;
+    const t42 = A_13_above * (A_22_above * A_33_above + A_23_above * t41);
+    const t43 = A_23_above * (t40 * A_33_above - A_13_above * t41);
+    const t44 = A_33_above * (t40 * A_23_above + A_13_above * A_22_above);
+    const t45 = t33 + t34;
+    const A_21_above = t2 - t45;
+    const t46 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const t47 = A_13_above * A_21_above;
+    const t48 = A_23_above * (A_33_above * t45 + t47) / Delta;
+    const t49 = A_33_above * (t47 + A_23_above * t45) / Delta;
+    const t50 = A_13_above * (t41 * A_21_above + A_22_above * A_21_above);
+    const t51 = t40 * A_21_above;
+    const t52 = -(A_23_above * (t41 * t45 + t51) / Delta) + t29;
+    const t53 = A_33_above * (t51 - A_22_above * t45) / Delta;
+    o[0] = t30;
+    o[1] = t31;
+    o[2] = t32;
+    o[3] = t36;
+    o[4] = A_23 * (A_33 * t35 + t37) / Delta + t29;
+    o[5] = -(A_33 * (t37 + A_23 * t35) / Delta) + t29;
+    o[6] = t38;
+    o[7] = A_23 * (t24 * t35 + t39) / Delta + t29;
+    o[8] = -(A_33 * (t39 - A_22 * t35) / Delta) + t29;
+    o[9] = t42 / Delta + t29;
+    o[10] = t43 / Delta + t29;
+    o[11] = -(t44 / Delta) + t29;
+    o[12] = -(A_13_above * t46 / Delta) + t29;
+    o[13] = -t48 + t29;
+    o[14] = t49 + t29;
+    o[15] = -(t50 / Delta) + t29;
+    o[16] = t52;
+    o[17] = t53 + t29;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -924,12 +878,7 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**
@@ -975,57 +924,54 @@ function _determinant(v, o) {
     const t2 = f - e - (e * 0.5 - f * 0.5);
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
     const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const u_u = t1 * t1 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const t6 = same ? t4 : t1;
-    const D = same ? size_v : size_u;
-    const t7 = all_same ? 0.0 : t6 / D;
-    const X = all_same ? 0.0 : D * 0.5;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const a_x = all_same ? 1.0 : -t2;
+    const t7 = same ? t1 : t4;
+    const t8 = same ? t4 : t1;
+    const m_y = a_x * t7 + t2 * t8;
+    const d_y = same ? c3_y : -c3_y;
     const t9 = same ? -c3_y : c3_y;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t9 + E_12 * t11;
-    const t13 = t10 + t7 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t7 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t7 < 0 ? -1 : 1;
-    const t18 = E_11 * t17;
-    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
-    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
-    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
-    const rho = Math.sqrt(X * X + t20 * t20);
-    const t22 = l - rho;
-    const slack = Math.max(t22, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t23 = t7 - t17;
-    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
-    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
-    const t25 = h * (E_12 * E_21 - t24);
-    const t26 = t21 - t25;
-    const Delta = D * j * h;
-    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
-    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
-    const t31 = !t29 || unreachable ? NaN : 0;
-    const t32 = t21 + t25;
-    const t33 = -(t32 * (t1 - t32) * (t4 - t32) / Delta) + t31;
-    o[0] = t26 * (t1 - t26) * (t4 - t26) / Delta + t31;
-    o[1] = t33;
+    const t10 = t7 * d_y - t8 * t9;
+    const t11 = over * (a_x * m_y + d_y * t10);
+    const m_z = a_x * t9 + t2 * d_y;
+    const t12 = over * (d_y * m_z + t8 * m_y);
+    const n_y = over * (a_x * m_z - t8 * t10);
+    const nu = t12 * t12 + n_y * n_y + t11 * t11;
+    const in_line = nu <= t6;
+    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
+    const t13 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
+    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t11 * t15 - t8 * 0.5;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t16 - t20;
+    const Delta = t13 * h;
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
+    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t25 = !t23 || unreachable ? NaN : 0;
+    const t26 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t25;
+    const A_13_above = t16 + t20;
+    const t27 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above);
+    o[0] = t26;
+    o[1] = t27 / Delta + t25;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1040,12 +986,7 @@ const _DETERMINANT = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**
@@ -1090,62 +1031,58 @@ function _singularities(v, o) {
     const t2 = f - e - (e * 0.5 - f * 0.5);
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
     const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const u_u = t1 * t1 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const t6 = same ? t4 : t1;
-    const D = same ? size_v : size_u;
-    const t7 = all_same ? 0.0 : t6 / D;
-    const X = all_same ? 0.0 : D * 0.5;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const a_x = all_same ? 1.0 : -t2;
+    const t7 = same ? t1 : t4;
+    const t8 = same ? t4 : t1;
+    const m_y = a_x * t7 + t2 * t8;
+    const d_y = same ? c3_y : -c3_y;
     const t9 = same ? -c3_y : c3_y;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t9 + E_12 * t11;
-    const t13 = t10 + t7 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t7 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t7 < 0 ? -1 : 1;
-    const t18 = E_11 * t17;
-    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
-    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
-    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
-    const rho = Math.sqrt(X * X + t20 * t20);
-    const t22 = l - rho;
-    const slack = Math.max(t22, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t23 = t7 - t17;
-    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
-    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
-    const t25 = h * (E_12 * E_21 - t24);
-    const t26 = t21 - t25;
-    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
-    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
-    const t31 = !t29 || unreachable ? NaN : 0;
-    const Delta = D * j * h;
-    const t32 = t21 + t25;
-    o[0] = -t26 + t31;
-    o[1] = t1 - t26 + t31;
-    o[2] = t4 - t26 + t31;
-    o[3] = -Delta + t31;
-    o[4] = -t32 + t31;
-    o[5] = t1 - t32 + t31;
-    o[6] = t4 - t32 + t31;
-    o[7] = Delta + t31;
+    const t10 = t7 * d_y - t8 * t9;
+    const t11 = over * (a_x * m_y + d_y * t10);
+    const m_z = a_x * t9 + t2 * d_y;
+    const t12 = over * (d_y * m_z + t8 * m_y);
+    const n_y = over * (a_x * m_z - t8 * t10);
+    const nu = t12 * t12 + n_y * n_y + t11 * t11;
+    const in_line = nu <= t6;
+    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
+    const t13 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
+    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t11 * t15 - t8 * 0.5;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t16 - t20;
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
+    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t25 = !t23 || unreachable ? NaN : 0;
+    const Delta = t13 * h;
+    const A_13_above = t16 + t20;
+    o[0] = A_13 + t25;
+    o[1] = t1 + A_13 + t25;
+    o[2] = t4 + A_13 + t25;
+    o[3] = -Delta + t25;
+    o[4] = A_13_above + t25;
+    o[5] = t1 + A_13_above + t25;
+    o[6] = t4 + A_13_above + t25;
+    o[7] = Delta + t25;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1160,12 +1097,7 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 3], [4, 1], [5, 1], [6, 1], [7, 3]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**
@@ -1206,113 +1138,109 @@ function _condition_number(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const t1 = rho1 - rho2;
-    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t1 = f - e - (e * 0.5 - f * 0.5);
+    const t2 = rho1 - rho2;
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
-    const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const t3 = t1 * t1 + c3_y * c3_y;
+    const u_u = t2 * t2 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const D = same ? size_v : size_u;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t6 / D;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const d_y = same ? c3_y : -c3_y;
+    const a_x = all_same ? 1.0 : -t1;
     const t7 = same ? -c3_y : c3_y;
-    const t8 = same ? t4 : t1;
-    const t9 = all_same ? 0.0 : t8 / D;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t7 - t9 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t7 + E_12 * t11;
-    const t13 = t10 + t9 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t9 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t9 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = -t9 < 0 ? -1 : 1;
-    const t18 = t9 - t17;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t17 / t18 : -(t15 / j);
-    const t19 = t7 * (t6 - t7) + t10 * (t8 - t10);
-    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
-    const t21 = E_11 * X - E_21 * t20;
-    const rho = Math.sqrt(X * X + t20 * t20);
-    const t22 = l - rho;
-    const slack = Math.max(t22, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t23 = E_11 * t17;
-    const t24 = in_line ? t23 : t16 / j;
-    const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;
-    const t25 = h * (E_12 * t24 - t9 * E_22);
-    const A_11 = t21 + t25;
-    const t26 = X * E_12 - t20 * E_22;
-    const t27 = h * (E_11 * t24 - t9 * E_21);
-    const A_12 = t26 - t27;
-    const t28 = X * t9 - t20 * t24;
-    const t29 = h * (E_12 * E_21 - E_11 * E_22);
-    const t30 = t28 - t29;
-    const A_21 = t2 + A_11;
-    const t31 = A_21 * A_21;
-    const A_22 = c3_y + A_12;
-    const A_23 = t1 - t30;
-    const t32 = A_11 * A_11 + A_12 * A_12 + t30 * t30 + (t31 + A_22 * A_22 + A_23 * A_23);
-    const t33 = c3_y - A_12;
-    const A_33 = t4 - t30;
-    const t34 = A_12 * A_21;
-    const t35 = A_11 * A_22 - t34;
-    const t36 = t30 * A_21;
-    const t37 = A_11 * A_23 + t36;
-    const t38 = t34 + A_11 * t33;
-    const t39 = t36 + A_11 * A_33;
-    const t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39;
-    const t41 = A_12 * A_23 + t30 * A_22;
-    const t42 = A_12 * A_33 - t30 * t33;
-    const t43 = A_21 * t33 + A_21 * A_22;
-    const t44 = A_21 * A_33 - A_21 * A_23;
-    const t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44;
-    const t46 = A_22 * A_33 + A_23 * t33;
-    const t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46);
-    const t48 = 3.0 * (D * j * h);
-    const t49 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t50 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t51 = t49 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t50;
-    const t52 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t52 && -(size * _runtime.FEASIBILITY) <= t22);
-    const t53 = !t51 || unreachable ? NaN : 0;
-    const A_11_above = t21 - t25;
-    const A_12_above = t26 + t27;
-    const t54 = A_11_above * A_11_above + A_12_above * A_12_above;
-    const t55 = t28 + t29;
-    const A_21_above = t2 + A_11_above;
-    const t56 = A_21_above * A_21_above;
-    const A_22_above = c3_y + A_12_above;
-    const A_23_above = t1 - t55;
-    const square2_above = t56 + A_22_above * A_22_above + A_23_above * A_23_above;
-    const t57 = c3_y - A_12_above;
-    const A_33_above = t4 - t55;
-    const t58 = t54 + t55 * t55 + square2_above + (t56 + t57 * t57 + A_33_above * A_33_above);
-    const t59 = A_12_above * A_21_above;
-    const t60 = A_11_above * A_22_above - t59;
-    const t61 = t55 * A_21_above;
-    const t62 = A_11_above * A_23_above + t61;
-    const t63 = t59 + A_11_above * t57;
-    const t64 = t61 + A_11_above * A_33_above;
-    const t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64;
-    const t66 = A_12_above * A_23_above + t55 * A_22_above;
-    const t67 = A_12_above * A_33_above - t55 * t57;
-    const t68 = A_21_above * t57 + A_21_above * A_22_above;
-    const t69 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69;
-    const t71 = A_22_above * A_33_above + A_23_above * t57;
-    const t72 = Math.sqrt(t58 * (t70 + t71 * t71)) / t48 + t53;
-    o[0] = Math.sqrt(t47) / t48 + t53;
-    o[1] = t72;
+    const m_z = a_x * t7 + t1 * d_y;
+    const t8 = same ? t4 : t2;
+    const t9 = same ? t2 : t4;
+    const m_y = a_x * t9 + t1 * t8;
+    const t10 = over * (d_y * m_z + t8 * m_y);
+    const t11 = d_y * t9 - t7 * t8;
+    const n_y = over * (a_x * m_z - t8 * t11);
+    const t12 = over * (a_x * m_y + d_y * t11);
+    const nu = t10 * t10 + n_y * n_y + t12 * t12;
+    const in_line = nu <= t6;
+    const side = d_y * a_x < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const t13 = mu * nu;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
+    const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t1 * 0.5 - t10 * t15;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
+    const t21 = t16 - t20;
+    const t22 = n_y * t15 - d_y * 0.5;
+    const t23 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
+    const t24 = t22 + t23;
+    const t25 = t12 * t15 - t8 * 0.5;
+    const t26 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t25 - t26;
+    const A_21 = t1 - t21;
+    const t27 = A_21 * A_21;
+    const A_22 = c3_y - t24;
+    const A_23 = t2 + A_13;
+    const t28 = t21 * t21 + t24 * t24 + A_13 * A_13 + (t27 + A_22 * A_22 + A_23 * A_23);
+    const t29 = c3_y + t24;
+    const A_33 = t4 + A_13;
+    const t30 = t24 * A_21;
+    const t31 = t21 * A_22 - t30;
+    const t32 = A_13 * A_21;
+    const t33 = t21 * A_23 + t32;
+    const t34 = t30 + t21 * t29;
+    const t35 = t32 + t21 * A_33;
+    const t36 = t31 * t31 + t33 * t33 + t34 * t34 + t35 * t35;
+    const t37 = t24 * A_23 + A_13 * A_22;
+    const t38 = t24 * A_33 - A_13 * t29;
+    const t39 = A_21 * t29 + A_21 * A_22;
+    const t40 = A_21 * A_33 - A_21 * A_23;
+    const t41 = t36 + t37 * t37 + t38 * t38 + t39 * t39 + t40 * t40;
+    const t42 = A_22 * A_33 + A_23 * t29;
+    const t43 = (t28 + (t27 + t29 * t29 + A_33 * A_33)) * (t41 + t42 * t42);
+    const t44 = 3.0 * (t13 * h);
+    const t45 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t46 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t47 = t45 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t46;
+    const t48 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t48 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t49 = !t47 || unreachable ? NaN : 0;
+    const t50 = t16 + t20;
+    const t51 = t22 - t23;
+    const A_13_above = t25 + t26;
+    const square1_above = t50 * t50 + t51 * t51 + A_13_above * A_13_above;
+    const A_21_above = t1 - t50;
+    const t52 = A_21_above * A_21_above;
+    const A_22_above = c3_y - t51;
+    const A_23_above = t2 + A_13_above;
+    const square2_above = t52 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const t53 = c3_y + t51;
+    const A_33_above = t4 + A_13_above;
+    const t54 = square1_above + square2_above + (t52 + t53 * t53 + A_33_above * A_33_above);
+    const t55 = t51 * A_21_above;
+    const t56 = t50 * A_22_above - t55;
+    const t57 = A_13_above * A_21_above;
+    const t58 = t50 * A_23_above + t57;
+    const t59 = t55 + t50 * t53;
+    const t60 = t57 + t50 * A_33_above;
+    const t61 = t56 * t56 + t58 * t58 + t59 * t59 + t60 * t60;
+    const t62 = t51 * A_23_above + A_13_above * A_22_above;
+    const t63 = t51 * A_33_above - A_13_above * t53;
+    const t64 = A_21_above * t53 + A_21_above * A_22_above;
+    const t65 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const t66 = t61 + t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65;
+    const t67 = A_22_above * A_33_above + A_23_above * t53;
+    const t68 = Math.sqrt(t54 * (t66 + t67 * t67)) / t44 + t49;
+    o[0] = Math.sqrt(t43) / t44 + t49;
+    o[1] = t68;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -1327,12 +1255,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [],
-        least: 2.5849394142282115e-26,
-        most: 9.353610478917779e+49,
-    },
+    size: null,
 });
 
 /**
@@ -1374,82 +1297,76 @@ function _constraint(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const t1 = rho1 - rho2;
-    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t1 = f - e - (e * 0.5 - f * 0.5);
+    const t2 = rho1 - rho2;
     const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
-    const t3 = t2 * t2 + c3_y * c3_y;
-    const size_u = Math.sqrt(t1 * t1 + t3);
+    const t3 = t1 * t1 + c3_y * c3_y;
+    const u_u = t2 * t2 + t3;
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(t4 * t4 + t3);
+    const v_v = t4 * t4 + t3;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t5 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t5;
-    const same = size_u <= t5;
-    const D = same ? size_v : size_u;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? t4 : t1;
-    const t7 = all_same ? 0.0 : t6 / D;
-    const E_11 = all_same ? 1.0 : -(t2 / D);
-    const t8 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? -c3_y : c3_y;
-    const t10 = same ? t1 : t4;
-    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
-    const t12 = t2 - E_11 * t11;
-    const m_y = t9 + E_12 * t11;
-    const t13 = t10 + t7 * t11;
-    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
-    const t15 = t12 - E_11 * t14;
-    const n_y = m_y + E_12 * t14;
-    const t16 = t13 + t7 * t14;
-    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
-    const in_line = j <= t5;
-    const t17 = t9 * (t8 - t9) + t10 * (t6 - t10);
-    const t18 = in_line ? 0.0 : t17 / (2.0 * j);
-    const t19 = -t7 < 0 ? -1 : 1;
-    const t20 = E_11 * t19;
-    const t21 = in_line ? t20 : t16 / j;
-    const t22 = X * t7 - t18 * t21;
-    const rho = Math.sqrt(X * X + t18 * t18);
-    const t23 = l - rho;
-    const slack = Math.max(t23, 0.0);
-    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t24 = t7 - t19;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t19 / t24 : -(t15 / j);
-    const E_22 = in_line ? E_12 * t20 / t24 : n_y / j;
-    const t25 = h * (E_12 * E_21 - E_11 * E_22);
-    const t26 = t22 - t25;
-    const A_23 = t1 - t26;
-    const t27 = 0.75 * t26;
-    const t28 = X * E_12 - t18 * E_22;
-    const t29 = h * (E_11 * t21 - t7 * E_21);
-    const A_12 = t28 - t29;
-    const t30 = E_11 * X - E_21 * t18;
-    const t31 = h * (E_12 * t21 - t7 * E_22);
-    const A_11 = t30 + t31;
-    const A_33 = t4 - t26;
-    const t32 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5;
-    const t33 = (t2 + A_11) * (1.7320508075688772 * t26);
-    const t34 = t32 + A_33 * t33 * 0.25 - A_33 * t27 * (c3_y + A_12);
-    const t35 = A_23 * t27 * (c3_y - A_12) - (t34 + A_23 * t33 * 0.25);
-    const t36 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t37 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t38 = t36 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t37;
-    const t39 = Math.abs(in_line ? -t17 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t39 && -(size * _runtime.FEASIBILITY) <= t23);
-    const t40 = !t38 || unreachable ? NaN : 0;
-    const t41 = t22 + t25;
-    const A_23_above = t1 - t41;
-    const t42 = 0.75 * t41;
-    const A_12_above = t28 + t29;
-    const A_11_above = t30 - t31;
-    const A_33_above = t4 - t41;
-    const t43 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above;
-    const t44 = (t2 + A_11_above) * (1.7320508075688772 * t41);
-    const t45 = t43 * 0.5 + A_33_above * t44 * 0.25 - A_33_above * t42 * (c3_y + A_12_above);
-    const t46 = A_23_above * t42 * (c3_y - A_12_above) - (t45 + A_23_above * t44 * 0.25);
-    o[0] = t35 + t40;
-    o[1] = t46 + t40;
+    const t5 = size * size;
+    const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
+    const all_same = u_u + v_v <= t6;
+    const same = u_u <= t6;
+    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const over = 1.0 / mu;
+    const d_y = same ? c3_y : -c3_y;
+    const a_x = all_same ? 1.0 : -t1;
+    const t7 = same ? -c3_y : c3_y;
+    const m_z = a_x * t7 + t1 * d_y;
+    const t8 = same ? t4 : t2;
+    const t9 = same ? t2 : t4;
+    const m_y = a_x * t9 + t1 * t8;
+    const t10 = over * (d_y * m_z + t8 * m_y);
+    const t11 = d_y * t9 - t7 * t8;
+    const n_y = over * (a_x * m_z - t8 * t11);
+    const t12 = over * (a_x * m_y + d_y * t11);
+    const nu = t10 * t10 + n_y * n_y + t12 * t12;
+    const in_line = nu <= t6;
+    const side = d_y * a_x < 0 ? -1 : 1;
+    const last = d_y + a_x * side;
+    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
+    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
+    const t15 = t1 * 0.5 - t10 * t14;
+    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
+    const t17 = l * l - t16;
+    const slack = Math.max(t17, 0.0);
+    const t18 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
+    const t19 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
+    const t20 = t15 - t19;
+    const t21 = t12 * t14 - t8 * 0.5;
+    const t22 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t21 - t22;
+    const A_23 = t2 + A_13;
+    const A_33 = t4 + A_13;
+    const t23 = (t1 - t20) * (1.7320508075688772 * A_13);
+    const t24 = 1.7320508075688772 * t20 * A_23 * A_33 * 0.5 + A_33 * t23 * 0.25;
+    const t25 = n_y * t14 - d_y * 0.5;
+    const t26 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
+    const t27 = t25 + t26;
+    const t28 = 0.75 * A_13;
+    const t29 = t24 - A_33 * (c3_y - t27) * t28 + A_23 * t23 * 0.25;
+    const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t31 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t32 = t30 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t31;
+    const t33 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t33 && -(_runtime.FEASIBILITY * t18) <= t17);
+    const t34 = !t32 || unreachable ? NaN : 0;
+    const t35 = t15 + t19;
+    const A_13_above = t21 + t22;
+    const A_23_above = t2 + A_13_above;
+    const A_33_above = t4 + A_13_above;
+    const t36 = 1.7320508075688772 * t35 * A_23_above * A_33_above;
+    const t37 = (t1 - t35) * (1.7320508075688772 * A_13_above);
+    const t38 = t25 - t26;
+    const t39 = 0.75 * A_13_above;
+    const t40 = t36 * 0.5 + A_33_above * t37 * 0.25 - A_33_above * (c3_y - t38) * t39;
+    const t41 = t40 + A_23_above * t37 * 0.25 - A_23_above * t39 * (c3_y + t38);
+    o[0] = t29 - A_23 * t28 * (c3_y + t27) + t34;
+    o[1] = t41 + t34;
 }
 
 const _CONSTRAINT = _runtime.kernel({
@@ -1464,12 +1381,7 @@ const _CONSTRAINT = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: {
-        lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 3], [1, 3]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
+    size: null,
 });
 
 /**

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-#   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
-#   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-#   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
-#   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
-#   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
-#   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
-#   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
-#   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
+#   fk: 43 compare and select, 64 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
+#   skeleton: 42 compare and select, 179 add, 14 divide, 84 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 42 compare and select, 85 add, 8 divide, 108 multiply, 6 sincos, 1 sqrt
+#   jacobian: 42 compare and select, 115 add, 26 divide, 163 multiply, 6 sincos, 1 sqrt
+#   determinant: 42 compare and select, 81 add, 10 divide, 113 multiply, 6 sincos, 1 sqrt
+#   singularities: 42 compare and select, 87 add, 8 divide, 109 multiply, 6 sincos, 1 sqrt
+#   condition_number: 42 compare and select, 119 add, 10 divide, 160 multiply, 6 sincos, 3 sqrt
+#   constraint: 42 compare and select, 91 add, 8 divide, 146 multiply, 6 sincos, 1 sqrt
 #   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -151,8 +151,8 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     u_z = t1 - L * s2
@@ -169,105 +169,99 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del s_alpha1, t2
     t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    size_u = np.sqrt(u_z * u_z + t5 * t5 + t7 * t7)
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
+    size = f + e + L + l
+    t8 = size * size
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = L * c3
+    del c3
+    t11 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    del c_alpha3
+    d_x = _runtime.select(same, t11, t5)
     v_z = t1 - L * s3
     del s3
-    t8 = L * c3
-    del c3
-    t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
-    del c_alpha3
-    t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
-    del s_alpha3, t8
-    size_v = np.sqrt(v_z * v_z + t9 * t9 + t10 * t10)
-    size = f + e + L + l
-    t11 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t11
-    same = size_u <= t11
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t12 = 1.0 / D
-    t13 = _runtime.select(same, t10, t7)
-    t14 = _runtime.select(all_same, 0.0, t12 * t13)
-    t15 = _runtime.select(same, t5, t9)
-    t16 = _runtime.select(same, t9, t5)
-    del t5, t9
-    E_11 = _runtime.select(all_same, 1.0, t16 * t12)
-    t17 = _runtime.select(same, t7, t10)
-    del t10, t7
-    t18 = _runtime.select(same, u_z, v_z)
-    t19 = _runtime.select(same, v_z, u_z)
+    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    del s_alpha3, t10
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t13 = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t14 = _runtime.select(same, t7, t12)
+    del t12, t7
+    t15 = _runtime.select(same, t5, t11)
+    del t11, t5
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
     del same, u_z, v_z
-    E_13 = _runtime.select(all_same, 0.0, t12 * t19)
-    del t12
-    t20 = E_11 * t15 + t17 * t14 + t18 * E_13
-    t21 = t15 - E_11 * t20
-    t22 = t17 - t14 * t20
-    m_z = t18 - E_13 * t20
-    del t20
-    t23 = E_11 * t21 + t14 * t22 + E_13 * m_z
-    t24 = t21 - E_11 * t23
-    del t21
-    t25 = t22 - t14 * t23
-    del t22
-    n_z = m_z - E_13 * t23
-    del m_z, t23
-    j = np.sqrt(t24 * t24 + t25 * t25 + n_z * n_z)
-    in_line = j <= t11
-    t26 = _runtime.sign(E_13)
-    t27 = E_11 * t26
-    t28 = 1.0 / j
-    E_23 = _runtime.select(in_line, -t27, n_z * t28)
-    del n_z
-    t29 = 1.0 / (E_13 + t26)
-    E_22 = _runtime.select(in_line, -(t29 * (t14 * t27)), t25 * t28)
-    del t25, t27
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t30 = t15 * (t16 - t15) - t17 * (t17 - t13) - t18 * (t18 - t19)
-    del t13, t15, t16, t17, t18, t19
-    t31 = _runtime.select(in_line, 0.0, t30 / (2.0 * j))
-    del j
-    rho = np.sqrt(X * X + t31 * t31)
-    t32 = l - rho
-    slack = np.maximum(t32, 0.0)
-    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t11
-    t33 = (t14 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t26 * t29, t24 * t28)
-    del t24, t26, t28, t29
-    t34 = E_21 * t31 + (t3 - X * E_11)
-    del t3
-    t35 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t36 = t35 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t35
-    t37 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t36 & t37)
-    del t36, t37
-    t38 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(t13 * a_x)
+    t22 = t13 + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / (mu * nu))
+    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
+    t25 = d_x * 0.5 - (t3 - t19 * t24)
+    del d_x, t3
+    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
+    del side
+    t26 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t29 = w_x * h
+    del w_x
+    t30 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t31 = t30 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t30
-    t39 = t38 & (-(size * _runtime.FEASIBILITY) <= t32)
-    del size, t32, t38
-    unreachable = np.logical_not(t39)
-    del t39
-    t40 = _runtime.poison(invalid | unreachable)
-    t41 = h * (E_11 * E_23 - E_13 * E_21)
-    t42 = t31 * E_22 + (t6 - X * t14)
+    t32 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t31 & t32)
+    del t31, t32
+    t33 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del t23, t8
+    unreachable = np.logical_not(t33 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t33
+    t34 = _runtime.poison(invalid | unreachable)
+    t35 = t13 * 0.5 - (t6 + t21 * t24)
     del t6
-    t43 = h * (E_11 * E_22 - t14 * E_21)
-    del E_11, E_21, E_22, h, t14
-    t44 = t31 * E_23 + (t1 - X * E_13)
-    del E_13, E_23, X, t1, t31
-    t45 = _runtime.status(invalid, unreachable, in_line)
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    t36 = h * w_y
+    del w_y
+    t37 = d_z * 0.5 - (t1 + n_z * t24)
+    del d_z, n_z, t1, t24
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, t13, t19, t21, t22
+    t38 = h * w_z
+    del h, w_z
+    t39 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        -(t33 + t34) + t40,
-        t41 - t42 + t40,
-        -(t43 + t44) + t40,
-        t33 - t34 + t40,
-        -(t41 + t42) + t40,
-        t43 - t44 + t40,
-        t45,
-        t45,
+        t25 - t29 + t34,
+        t35 - t36 + t34,
+        t37 - t38 + t34,
+        t29 + t25 + t34,
+        t36 + t35 + t34,
+        t38 + t37 + t34,
+        t39,
+        t39,
     )
 
 
@@ -278,7 +272,6 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -330,8 +323,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = f * c_alpha1
     t2 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t3 = t2 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -365,10 +358,10 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t22 = t21 + s_alpha2 * t13
     del s_alpha2, t13
     t23 = t19 - (t20 - t22)
-    size_u = np.sqrt(u_z * u_z + t15 * t15 + t23 * t23)
-    size = f + e + L + l
-    t24 = size * _runtime.VANISHING
-    same = size_u <= t24
+    u_u = u_z * u_z + t15 * t15 + t23 * t23
+    t24 = L * s3
+    del s3
+    v_z = t5 - t24
     t25 = e * c_alpha3
     t26 = f * c_alpha3
     t27 = L * c3
@@ -376,59 +369,60 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t28 = t26 + c_alpha3 * t27
     del c_alpha3
     t29 = t10 - (t25 - t28)
-    t30 = _runtime.select(same, t15, t29)
-    t31 = L * s3
-    del s3
-    v_z = t5 - t31
-    t32 = e * s_alpha3
-    t33 = f * s_alpha3
-    t34 = t33 + s_alpha3 * t27
+    t30 = e * s_alpha3
+    t31 = f * s_alpha3
+    t32 = t31 + s_alpha3 * t27
     del s_alpha3, t27
-    t35 = t19 - (t32 - t34)
-    size_v = np.sqrt(v_z * v_z + t29 * t29 + t35 * t35)
-    all_same = size_u + size_v <= t24
-    t36 = _runtime.select(same, t29, t15)
+    t33 = t19 - (t30 - t32)
+    v_v = v_z * v_z + t29 * t29 + t33 * t33
+    size = f + e + L + l
+    t34 = size * size
+    t35 = _runtime.VANISHING * _runtime.VANISHING * t34
+    all_same = u_u + v_v <= t35
+    same = u_u <= t35
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t36 = _runtime.select(same, t33, t23)
+    d_x = _runtime.select(same, t29, t15)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t37 = _runtime.select(same, t23, t33)
+    del t23, t33
+    t38 = _runtime.select(same, t15, t29)
     del t15, t29
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t36 / D)
-    t37 = _runtime.select(same, t35, t23)
-    t38 = _runtime.select(all_same, 0.0, t37 / D)
-    t39 = _runtime.select(same, t23, t35)
-    del t23, t35
-    t40 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t40 / D)
-    t41 = _runtime.select(same, u_z, v_z)
+    t39 = a_x * t37 - t36 * t38
+    d_z = _runtime.select(same, v_z, u_z)
+    t40 = _runtime.select(same, u_z, v_z)
     del same, u_z, v_z
-    t42 = t30 * E_11 + t38 * t39 + E_13 * t41
-    t43 = t30 - E_11 * t42
-    t44 = t39 - t38 * t42
-    m_z = t41 - E_13 * t42
-    del t42
-    t45 = E_11 * t43 + t38 * t44 + E_13 * m_z
-    t46 = t43 - E_11 * t45
-    del t43
-    t47 = t44 - t38 * t45
-    del t44
-    n_z = m_z - E_13 * t45
-    del m_z, t45
-    j = np.sqrt(t46 * t46 + t47 * t47 + n_z * n_z)
-    in_line = j <= t24
-    left = t30 * (t30 - t36) - t39 * (t37 - t39) - t41 * (t40 - t41)
-    del t30, t36, t37, t39, t40, t41
-    t48 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t49 = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    del left
-    rho = np.sqrt(X * X + t49 * t49)
-    t50 = l - rho
-    t51 = t48 & (-(size * _runtime.FEASIBILITY) <= t50)
-    del size, t48
-    failed = np.logical_not(t3 & t4) | np.logical_not(t51)
-    del t3, t4, t51
-    t52 = _runtime.poison(failed)
-    del failed
+    t41 = a_x * t40 - t38 * d_z
+    t42 = over * (t36 * t39 + d_z * t41)
+    t43 = t36 * t40 - t37 * d_z
+    t44 = over * (a_x * t39 - d_z * t43)
+    del t39
+    n_z = over * (a_x * t41 + t36 * t43)
+    del over, t41, t43
+    nu = t42 * t42 + t44 * t44 + n_z * n_z
+    in_line = nu <= t35
+    del t35
+    t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40)
+    del t37, t38, t40
+    t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
+    del t34
+    t47 = l * size * 2.0
+    del size
+    side = _runtime.sign(t36 * a_x)
+    t48 = t36 + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t48 * t48), 1.0 / (mu * nu))
+    t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
+    del t45
+    t50 = _runtime.select(all_same, 0.0, nu * (t49 * t49) + mu * 0.25)
+    del all_same, mu, nu
+    t51 = l * l - t50
+    del t50
+    unreachable = np.logical_not(t46 & (-(_runtime.FEASIBILITY * t47) <= t51))
+    del t46
+    t52 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
+    del t3, t4, unreachable
     t53 = t1 + t52
     del t1
     t54 = t17 + t52
@@ -437,95 +431,93 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t56 = t9 + t52
     t57 = t18 + t52
     t58 = -t5 + t52
-    t59 = _runtime.sign(E_13)
-    t60 = E_13 + t59
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t59 / t60, t46 / j)
-    del t46
-    t61 = E_11 * X + t49 * E_21
-    t62 = E_11 * t59
-    del t59
-    E_23 = _runtime.select(in_line, -t62, n_z / j)
-    del n_z
-    E_22 = _runtime.select(in_line, -(t38 * t62 / t60), t47 / j)
-    del in_line, j, t47, t60, t62
-    slack = np.maximum(t50, 0.0)
-    del t50
-    h = _runtime.select(slack <= t24, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t24
-    t63 = (t38 * E_23 - E_13 * E_22) * h
-    t64 = t10 - (t61 - t63)
-    t65 = t7 - t64
-    t66 = t38 * X + t49 * E_22
-    t67 = h * (E_11 * E_23 - E_13 * E_21)
-    t68 = t19 - (t66 + t67)
-    t69 = t16 - t68
-    t70 = E_13 * X + t49 * E_23
-    del E_13, E_23, X, t49
-    t71 = h * (E_11 * E_22 - t38 * E_21)
-    del E_11, E_21, E_22, h, t38
-    t72 = t70 - t71 - t5 + t52
-    t73 = t16 * 0.5
-    t74 = t9 - t73 + t52
-    t75 = t7 * 0.5
-    t76 = t75 + t18 + t52
-    t77 = t73 + t9 + t52
+    t59 = t42 * t49 + d_x * 0.5
+    del d_x
+    w_x = _runtime.select(in_line, d_z * side, t36 * n_z - d_z * t44)
+    del side
+    slack = np.maximum(t51, 0.0)
+    del t51
+    h = _runtime.select(slack <= _runtime.VANISHING * t47, 0.0, np.sqrt(part * slack))
+    del part, slack, t47
+    t60 = w_x * h
+    del w_x
+    t61 = t10 - (t59 - t60)
+    t62 = t7 - t61
+    t63 = t44 * t49 - t36 * 0.5
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t42))
+    t64 = h * w_y
+    del w_y
+    t65 = t19 + (t63 + t64)
+    t66 = t16 - t65
+    t67 = n_z * t49 - d_z * 0.5
+    del d_z, n_z, t49
+    w_z = _runtime.select(in_line, -t48, a_x * t44 + t36 * t42)
+    del a_x, in_line, t36, t42, t44, t48
+    t68 = h * w_z
+    del h, w_z
+    t69 = -(t5 + (t67 + t68)) + t52
+    t70 = t16 * 0.5
+    t71 = t9 - t70 + t52
+    t72 = t7 * 0.5
+    t73 = t72 + t18 + t52
+    t74 = t70 + t9 + t52
     del t9
-    t78 = t18 - t75 + t52
+    t75 = t18 - t72 + t52
     del t18
-    t79 = t12 + t52
+    t76 = t12 + t52
     del t12
-    t80 = t21 + t52
+    t77 = t21 + t52
     del t21
-    t81 = t14 + t52
-    t82 = t22 + t52
-    t83 = -t6 + t52
+    t78 = t14 + t52
+    t79 = t22 + t52
+    t80 = -t6 + t52
     del t6
-    t84 = t11 - t64
-    t85 = t20 - t68
-    t86 = t20 * 0.5
-    t87 = t14 - t86 + t52
-    t88 = t11 * 0.5
-    t89 = t88 + t22 + t52
-    t90 = t86 + t14 + t52
+    t81 = t11 - t61
+    t82 = t20 - t65
+    t83 = t20 * 0.5
+    t84 = t14 - t83 + t52
+    t85 = t11 * 0.5
+    t86 = t85 + t22 + t52
+    t87 = t83 + t14 + t52
     del t14
-    t91 = t22 - t88 + t52
+    t88 = t22 - t85 + t52
     del t22
-    t92 = t26 + t52
+    t89 = t26 + t52
     del t26
-    t93 = t33 + t52
-    del t33
-    t94 = t28 + t52
-    t95 = t34 + t52
-    t96 = -t31 + t52
+    t90 = t31 + t52
     del t31
-    t97 = t25 - t64
-    t98 = t32 - t68
-    t99 = t32 * 0.5
-    t100 = t28 - t99 + t52
-    t101 = t25 * 0.5
-    t102 = t101 + t34 + t52
-    t103 = t99 + t28 + t52
+    t91 = t28 + t52
+    t92 = t32 + t52
+    t93 = -t24 + t52
+    del t24
+    t94 = t25 - t61
+    t95 = t30 - t65
+    t96 = t30 * 0.5
+    t97 = t28 - t96 + t52
+    t98 = t25 * 0.5
+    t99 = t98 + t32 + t52
+    t100 = t96 + t28 + t52
     del t28
-    t104 = t34 - t101 + t52
-    del t34
-    t105 = t10 - (t61 + t63)
-    del t10, t61, t63
-    t106 = t7 - t105
-    del t7
-    t107 = t19 - (t66 - t67)
-    del t19, t66, t67
-    t108 = t16 - t107
-    del t16
-    t109 = t70 + t71 - t5 + t52
-    del t5, t70, t71
-    t110 = t11 - t105
-    del t11
-    t111 = t20 - t107
-    del t20
-    t112 = t25 - t105
-    del t25
-    t113 = t32 - t107
+    t101 = t32 - t98 + t52
     del t32
+    t102 = t10 - (t59 + t60)
+    del t10, t59, t60
+    t103 = t7 - t102
+    del t7
+    t104 = t19 + (t63 - t64)
+    del t19, t63, t64
+    t105 = t16 - t104
+    del t16
+    t106 = -(t5 + (t67 - t68)) + t52
+    del t5, t67, t68
+    t107 = t11 - t102
+    del t11
+    t108 = t20 - t104
+    del t20
+    t109 = t25 - t102
+    del t25
+    t110 = t30 - t104
+    del t30
     return (
         t53,
         t54,
@@ -533,132 +525,132 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t56,
         t57,
         t58,
-        t65 + t52,
-        t69 + t52,
-        t72,
+        t62 + t52,
+        t66 + t52,
+        t69,
+        t71,
+        t73,
+        t58,
         t74,
+        t75,
+        t58,
+        t62 - t70 + t52,
+        t72 + t66 + t52,
+        t69,
+        t70 + t62 + t52,
+        t66 - t72 + t52,
+        t69,
         t76,
-        t58,
         t77,
+        t55,
         t78,
-        t58,
-        t65 - t73 + t52,
-        t75 + t69 + t52,
-        t72,
-        t73 + t65 + t52,
-        t69 - t75 + t52,
-        t72,
         t79,
         t80,
-        t55,
-        t81,
-        t82,
-        t83,
-        t84 + t52,
-        t85 + t52,
-        t72,
+        t81 + t52,
+        t82 + t52,
+        t69,
+        t84,
+        t86,
+        t80,
         t87,
+        t88,
+        t80,
+        t81 - t83 + t52,
+        t85 + t82 + t52,
+        t69,
+        t83 + t81 + t52,
+        t82 - t85 + t52,
+        t69,
         t89,
-        t83,
         t90,
+        t55,
         t91,
-        t83,
-        t84 - t86 + t52,
-        t88 + t85 + t52,
-        t72,
-        t86 + t84 + t52,
-        t85 - t88 + t52,
-        t72,
         t92,
         t93,
-        t55,
-        t94,
-        t95,
-        t96,
-        t97 + t52,
-        t98 + t52,
-        t72,
+        t94 + t52,
+        t95 + t52,
+        t69,
+        t97,
+        t99,
+        t93,
         t100,
-        t102,
-        t96,
-        t103,
-        t104,
-        t96,
-        t97 - t99 + t52,
-        t101 + t98 + t52,
-        t72,
-        t99 + t97 + t52,
-        t98 - t101 + t52,
-        t72,
-        -t64 + t52,
-        -t68 + t52,
-        t72,
+        t101,
+        t93,
+        t94 - t96 + t52,
+        t98 + t95 + t52,
+        t69,
+        t96 + t94 + t52,
+        t95 - t98 + t52,
+        t69,
+        -t61 + t52,
+        -t65 + t52,
+        t69,
         t53,
         t54,
         t55,
         t56,
         t57,
         t58,
-        t106 + t52,
-        t108 + t52,
-        t109,
+        t103 + t52,
+        t105 + t52,
+        t106,
+        t71,
+        t73,
+        t58,
         t74,
+        t75,
+        t58,
+        t103 - t70 + t52,
+        t72 + t105 + t52,
+        t106,
+        t70 + t103 + t52,
+        t105 - t72 + t52,
+        t106,
         t76,
-        t58,
         t77,
+        t55,
         t78,
-        t58,
-        t106 - t73 + t52,
-        t75 + t108 + t52,
-        t109,
-        t73 + t106 + t52,
-        t108 - t75 + t52,
-        t109,
         t79,
         t80,
-        t55,
-        t81,
-        t82,
-        t83,
-        t110 + t52,
-        t111 + t52,
-        t109,
+        t107 + t52,
+        t108 + t52,
+        t106,
+        t84,
+        t86,
+        t80,
         t87,
+        t88,
+        t80,
+        t107 - t83 + t52,
+        t85 + t108 + t52,
+        t106,
+        t83 + t107 + t52,
+        t108 - t85 + t52,
+        t106,
         t89,
-        t83,
         t90,
+        t55,
         t91,
-        t83,
-        t110 - t86 + t52,
-        t88 + t111 + t52,
-        t109,
-        t86 + t110 + t52,
-        t111 - t88 + t52,
-        t109,
         t92,
         t93,
-        t55,
-        t94,
-        t95,
-        t96,
-        t112 + t52,
-        t113 + t52,
-        t109,
+        t109 + t52,
+        t110 + t52,
+        t106,
+        t97,
+        t99,
+        t93,
         t100,
-        t102,
-        t96,
-        t103,
-        t104,
-        t96,
-        t112 - t99 + t52,
-        t101 + t113 + t52,
-        t109,
-        t99 + t112 + t52,
-        t113 - t101 + t52,
-        t109,
-        -t105 + t52,
-        -t107 + t52,
-        t109,
+        t101,
+        t93,
+        t109 - t96 + t52,
+        t98 + t110 + t52,
+        t106,
+        t96 + t109 + t52,
+        t110 - t98 + t52,
+        t106,
+        -t102 + t52,
+        -t104 + t52,
+        t106,
     )
 
 
@@ -669,7 +661,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -730,7 +721,7 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del s_alpha1, t2
     t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    size_u = np.sqrt(u_z * u_z + t5 * t5 + t7 * t7)
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
     v_z = t1 - L * s3
     del s3, t1
     t8 = L * c3
@@ -739,104 +730,103 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del c_alpha3, t3
     t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
     del s_alpha3, t6, t8
-    size_v = np.sqrt(v_z * v_z + t9 * t9 + t10 * t10)
+    v_v = v_z * v_z + t9 * t9 + t10 * t10
     size = f + e + L + l
-    t11 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t11
-    same = size_u <= t11
-    t12 = _runtime.select(same, t10, t7)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t13 = _runtime.select(all_same, 0.0, t12 / D)
-    t14 = _runtime.select(same, t5, t9)
-    t15 = _runtime.select(same, t9, t5)
-    E_11 = _runtime.select(all_same, 1.0, t15 / D)
-    t16 = _runtime.select(same, t7, t10)
-    t17 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t17 / D)
-    t18 = _runtime.select(same, u_z, v_z)
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
+    all_same = u_u + v_v <= t12
+    same = u_u <= t12
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t13 = _runtime.select(same, t10, t7)
+    d_x = _runtime.select(same, t9, t5)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t14 = _runtime.select(same, t7, t10)
+    t15 = _runtime.select(same, t5, t9)
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
     del same
-    t19 = E_11 * t14 + t13 * t16 + E_13 * t18
-    t20 = t14 - E_11 * t19
-    t21 = t16 - t13 * t19
-    m_z = t18 - E_13 * t19
-    del t19
-    t22 = E_11 * t20 + t13 * t21 + E_13 * m_z
-    t23 = t20 - E_11 * t22
-    del t20
-    t24 = t21 - t13 * t22
-    del t21
-    n_z = m_z - E_13 * t22
-    del m_z, t22
-    j = np.sqrt(t23 * t23 + t24 * t24 + n_z * n_z)
-    in_line = j <= t11
-    t25 = _runtime.sign(E_13)
-    t26 = E_11 * t25
-    E_23 = _runtime.select(in_line, -t26, n_z / j)
-    del n_z
-    t27 = E_13 + t25
-    E_22 = _runtime.select(in_line, -(t13 * t26 / t27), t24 / j)
-    del t24, t26
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t28 = t14 * (t15 - t14) + t16 * (t12 - t16) + t18 * (t17 - t18)
-    del t12, t14, t15, t16, t17, t18
-    t29 = _runtime.select(in_line, 0.0, t28 / (2.0 * j))
-    rho = np.sqrt(X * X + t29 * t29)
-    t30 = l - rho
-    slack = np.maximum(t30, 0.0)
-    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t11
-    t31 = (t13 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
-    del j, t23, t25, t27
-    t32 = E_11 * X - E_21 * t29
-    t33 = t31 - t32
-    t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t35 = t34 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t34
-    t36 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t37 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t28
-    t38 = t37 & (-(size * _runtime.FEASIBILITY) <= t30)
-    del size, t30, t37
-    failed = np.logical_not(t35 & t36) | np.logical_not(t38)
-    del t35, t36, t38
-    t39 = _runtime.poison(failed)
-    del failed
-    t40 = h * (E_11 * E_23 - E_13 * E_21)
-    t41 = X * t13 - t29 * E_22
-    A_12 = t40 + t41
-    t42 = h * (E_11 * E_22 - t13 * E_21)
-    del E_11, E_21, E_22, h, t13
-    t43 = X * E_13 - t29 * E_23
-    del E_13, E_23, X, t29
-    t44 = t42 - t43
-    A_11_above = t31 + t32
-    del t31, t32
-    t45 = t40 - t41
-    del t40, t41
-    A_13_above = t42 + t43
-    del t42, t43
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t12
+    del t12
+    side = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
+    t22 = t13 + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / (mu * nu))
+    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
+    t25 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    del all_same, mu, nu
+    t26 = l * l - t25
+    del t25
+    slack = np.maximum(t26, 0.0)
+    t27 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t27, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t28 = w_x * h
+    del w_x
+    t29 = t19 * t24 + d_x * 0.5
+    del d_x
+    t30 = t28 - t29
+    t31 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t32 = t31 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t31
+    t33 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t34 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del t11, t23
+    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t27) <= t26))
+    del t26, t27, t34
+    t35 = _runtime.poison(np.logical_not(t32 & t33) | unreachable)
+    del t32, t33, unreachable
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    t36 = h * w_y
+    del w_y
+    t37 = t21 * t24 - t13 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, in_line, t13, t19, t21, t22
+    t39 = h * w_z
+    del h, w_z
+    t40 = n_z * t24 - d_z * 0.5
+    del d_z, n_z, t24
+    t41 = t39 + t40
+    A_11_above = t28 + t29
+    del t28, t29
+    A_12_above = t36 - t37
+    del t36, t37
+    A_13_above = t39 - t40
+    del t39, t40
     return (
-        -t33 + t39,
-        A_12 + t39,
-        -t44 + t39,
-        -(t5 + t33) + t39,
-        A_12 - t7 + t39,
-        -(u_z + t44) + t39,
-        -(t9 + t33) + t39,
-        A_12 - t10 + t39,
-        -(v_z + t44) + t39,
-        A_11_above + t39,
-        -t45 + t39,
-        A_13_above + t39,
-        A_11_above - t5 + t39,
-        -(t7 + t45) + t39,
-        A_13_above - u_z + t39,
-        A_11_above - t9 + t39,
-        -(t10 + t45) + t39,
-        A_13_above - v_z + t39,
+        -t30 + t35,
+        -t38 + t35,
+        -t41 + t35,
+        -(t5 + t30) + t35,
+        -(t7 + t38) + t35,
+        -(u_z + t41) + t35,
+        -(t9 + t30) + t35,
+        -(t10 + t38) + t35,
+        -(v_z + t41) + t35,
+        A_11_above + t35,
+        A_12_above + t35,
+        A_13_above + t35,
+        A_11_above - t5 + t35,
+        A_12_above - t7 + t35,
+        A_13_above - u_z + t35,
+        A_11_above - t9 + t35,
+        A_12_above - t10 + t35,
+        A_13_above - v_z + t35,
     )
 
 
@@ -847,7 +837,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -906,7 +895,7 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    size_u = np.sqrt(u_z * u_z + t7 * t7 + t9 * t9)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     t10 = L * s3
     del s3
     v_z = t1 - t10
@@ -916,109 +905,108 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     del t5
     t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
     del t8
-    size_v = np.sqrt(v_z * v_z + t12 * t12 + t13 * t13)
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t14
-    same = size_u <= t14
-    t15 = _runtime.select(same, t13, t9)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t7, t12)
-    t18 = _runtime.select(same, t12, t7)
-    E_11 = _runtime.select(all_same, 1.0, t18 / D)
-    t19 = _runtime.select(same, t9, t13)
-    t20 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t20 / D)
-    t21 = _runtime.select(same, u_z, v_z)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    same = u_u <= t15
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
     del same
-    t22 = E_11 * t17 + t16 * t19 + E_13 * t21
-    t23 = t17 - E_11 * t22
-    t24 = t19 - t16 * t22
-    m_z = t21 - E_13 * t22
-    del t22
-    t25 = E_11 * t23 + t16 * t24 + E_13 * m_z
-    t26 = t23 - E_11 * t25
-    del t23
-    t27 = t24 - t16 * t25
-    del t24
-    n_z = m_z - E_13 * t25
-    del m_z, t25
-    j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
-    in_line = j <= t14
-    t28 = _runtime.sign(E_13)
-    t29 = E_11 * t28
-    E_23 = _runtime.select(in_line, -t29, n_z / j)
-    del n_z
-    t30 = E_13 + t28
-    E_22 = _runtime.select(in_line, -(t16 * t29 / t30), t27 / j)
-    del t27, t29
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21)
-    del t15, t17, t18, t19, t20, t21
-    t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
-    rho = np.sqrt(X * X + t32 * t32)
-    t33 = l - rho
-    slack = np.maximum(t33, 0.0)
-    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t14
-    t34 = (t16 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
-    del j, t26, t28, t30
-    t35 = E_11 * X - E_21 * t32
-    t36 = t34 - t35
-    t37 = s_alpha1 * t1
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    side = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
+    t25 = t16 + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / (mu * nu))
+    t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t27 = _runtime.select(in_line, 0.0, mu * part * t26 * 0.5)
+    t28 = _runtime.select(all_same, 0.0, nu * (t27 * t27) + mu * 0.25)
+    del all_same, mu, nu
+    t29 = l * l - t28
+    del t28
+    slack = np.maximum(t29, 0.0)
+    t30 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t31 = w_x * h
+    del w_x
+    t32 = t22 * t27 + d_x * 0.5
+    del d_x
+    t33 = t31 - t32
+    t34 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = h * (E_11 * E_23 - E_13 * E_21)
-    t39 = X * t16 - t32 * E_22
-    A_12 = t38 + t39
-    t40 = h * (E_11 * E_22 - t16 * E_21)
-    del E_11, E_21, E_22, h, t16
-    t41 = X * E_13 - t32 * E_23
-    del E_13, E_23, X, t32
-    t42 = t40 - t41
-    t43 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t44 = t43 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t43
-    t45 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t46 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t31
-    t47 = t46 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t46
-    failed = np.logical_not(t44 & t45) | np.logical_not(t47)
-    del t44, t45, t47
-    t48 = _runtime.poison(failed)
-    del failed
-    t49 = c_alpha2 * t3
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    t35 = h * w_y
+    del w_y
+    t36 = t24 * t27 - t16 * 0.5
+    t37 = t35 + t36
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t38 = h * w_z
+    del h, w_z
+    t39 = n_z * t27 - d_z * 0.5
+    del d_z, n_z, t27
+    t40 = t38 + t39
+    t41 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t42 = t41 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t41
+    t43 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t44 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t26
+    unreachable = np.logical_not(t44 & (-(_runtime.FEASIBILITY * t30) <= t29))
+    del t29, t30, t44
+    t45 = _runtime.poison(np.logical_not(t42 & t43) | unreachable)
+    del t42, t43, unreachable
+    t46 = c_alpha2 * t3
     del c_alpha2
-    t50 = s_alpha2 * t3
+    t47 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t49 * (t7 + t36) + t50 * (t9 - A_12) + t6 * (u_z + t42)
-    t51 = c_alpha3 * t10
+    B_22 = t46 * (t7 + t33) + t47 * (t9 + t37) + t6 * (u_z + t40)
+    t48 = c_alpha3 * t10
     del c_alpha3
-    t52 = s_alpha3 * t10
+    t49 = s_alpha3 * t10
     del s_alpha3, t10
-    B_33 = t51 * (t12 + t36) + t52 * (t13 - A_12) + t11 * (v_z + t42)
-    A_11_above = t34 + t35
-    del t34, t35
-    t53 = t38 - t39
+    B_33 = t48 * (t12 + t33) + t49 * (t13 + t37) + t11 * (v_z + t40)
+    A_11_above = t31 + t32
+    del t31, t32
+    A_12_above = t35 - t36
+    del t35, t36
+    t50 = t38 - t39
     del t38, t39
-    A_13_above = t40 + t41
-    del t40, t41
-    t54 = t2 * A_11_above - t37 * t53 + t4 * A_13_above
-    B_22_above = t49 * (t7 - A_11_above) + t50 * (t9 + t53) + t6 * (u_z - A_13_above)
-    del t49, t50, t6, t7, t9, u_z
-    B_33_above = t51 * (t12 - A_11_above) + t52 * (t13 + t53) + t11 * (v_z - A_13_above)
-    del A_11_above, A_13_above, t11, t12, t13, t51, t52, t53, v_z
+    t51 = t2 * A_11_above + t34 * A_12_above + t4 * t50
+    t52 = t46 * (t7 - A_11_above) + t47 * (t9 - A_12_above)
+    del t46, t47, t7, t9
+    t53 = t48 * (t12 - A_11_above) + t49 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t48, t49
     return (
-        t2 * t36 - t37 * A_12 + t4 * t42 + t48,
-        B_22 + t48,
-        B_33 + t48,
-        -t54 + t48,
-        B_22_above + t48,
-        B_33_above + t48,
+        t2 * t33 + t34 * t37 + t4 * t40 + t45,
+        B_22 + t45,
+        B_33 + t45,
+        -t51 + t45,
+        t52 + t6 * (u_z - t50) + t45,
+        t53 + t11 * (v_z - t50) + t45,
     )
 
 
@@ -1029,7 +1017,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1088,7 +1075,7 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    size_u = np.sqrt(u_z * u_z + t7 * t7 + t9 * t9)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     t10 = L * s3
     del s3
     v_z = t1 - t10
@@ -1098,159 +1085,160 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t5
     t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
     del t8
-    size_v = np.sqrt(v_z * v_z + t12 * t12 + t13 * t13)
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t14
-    same = size_u <= t14
-    t15 = _runtime.select(same, t13, t9)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t7, t12)
-    t18 = _runtime.select(same, t12, t7)
-    E_11 = _runtime.select(all_same, 1.0, t18 / D)
-    t19 = _runtime.select(same, t9, t13)
-    t20 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t20 / D)
-    t21 = _runtime.select(same, u_z, v_z)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    same = u_u <= t15
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
     del same
-    t22 = E_11 * t17 + t16 * t19 + E_13 * t21
-    t23 = t17 - E_11 * t22
-    t24 = t19 - t16 * t22
-    m_z = t21 - E_13 * t22
-    del t22
-    t25 = E_11 * t23 + t16 * t24 + E_13 * m_z
-    t26 = t23 - E_11 * t25
-    del t23
-    t27 = t24 - t16 * t25
-    del t24
-    n_z = m_z - E_13 * t25
-    del m_z, t25
-    j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
-    in_line = j <= t14
-    t28 = _runtime.sign(E_13)
-    t29 = E_11 * t28
-    E_23 = _runtime.select(in_line, -t29, n_z / j)
-    del n_z
-    t30 = E_13 + t28
-    E_22 = _runtime.select(in_line, -(t16 * t29 / t30), t27 / j)
-    del t27, t29
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del all_same
-    t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21)
-    del t15, t17, t18, t19, t20, t21
-    t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
-    rho = np.sqrt(X * X + t32 * t32)
-    t33 = l - rho
-    slack = np.maximum(t33, 0.0)
-    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t14
-    t34 = (t16 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
-    del t26, t28, t30
-    t35 = E_11 * X - E_21 * t32
-    t36 = t34 - t35
-    t37 = s_alpha1 * t1
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    side = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
+    t25 = t16 + a_x * side
+    del side
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = h * (E_11 * E_23 - E_13 * E_21)
-    t39 = X * t16 - t32 * E_22
-    A_12 = t38 + t39
-    t40 = h * (E_11 * E_22 - t16 * E_21)
-    del E_11, E_21, E_22, t16
-    t41 = X * E_13 - t32 * E_23
-    del E_13, E_23, X, t32
-    t42 = t40 - t41
-    t43 = t2 * t36 - t37 * A_12 + t4 * t42
-    t44 = t9 - A_12
-    t45 = v_z + t42
-    t46 = u_z + t42
-    t47 = t13 - A_12
-    Delta = D * j * h
-    del D, h, j
-    t48 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t49 = t48 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t48
-    t50 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t51 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t31
-    t52 = t51 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t51
-    failed = np.logical_not(t49 & t50) | np.logical_not(t52)
-    del t49, t50, t52
-    t53 = _runtime.poison(failed)
-    del failed
-    t54 = -(t43 * (t44 * t45 - t46 * t47) / Delta) + t53
-    t55 = c_alpha2 * t3
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = t2 * t34 + t35 * t38 + t4 * t41
+    t43 = t9 + t38
+    t44 = v_z + t41
+    t45 = u_z + t41
+    t46 = t13 + t38
+    Delta = t26 * h
+    del h, t26
+    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t47
+    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t50 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t50
+    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
+    del t48, t49, unreachable
+    t52 = -(t42 * (t43 * t44 - t45 * t46) / Delta) + t51
+    t53 = c_alpha2 * t3
     del c_alpha2
-    t56 = t7 + t36
-    t57 = s_alpha2 * t3
+    t54 = t7 + t34
+    t55 = s_alpha2 * t3
     del s_alpha2, t3
-    t58 = t55 * t56 + t57 * t44 + t6 * t46
-    t59 = -(t58 * (A_12 * t45 + t42 * t47) / Delta) + t53
-    t60 = c_alpha3 * t10
+    t56 = t53 * t54 + t55 * t43 + t6 * t45
+    t57 = c_alpha3 * t10
     del c_alpha3
-    t61 = t12 + t36
-    t62 = s_alpha3 * t10
+    t58 = t12 + t34
+    t59 = s_alpha3 * t10
     del s_alpha3, t10
-    t63 = t60 * t61 + t62 * t47 + t11 * t45
-    t64 = -(t58 * (t36 * t45 - t42 * t61) / Delta) + t53
-    t65 = -(t43 * (t47 * t56 - t44 * t61) / Delta) + t53
-    t66 = -(t63 * (t36 * t44 + A_12 * t56) / Delta) + t53
-    A_11_above = t34 + t35
-    del t34, t35
-    t67 = t38 - t39
-    del t38, t39
-    A_13_above = t40 + t41
-    del t40, t41
-    t68 = t2 * A_11_above - t37 * t67 + t4 * A_13_above
-    del t2, t37, t4
-    t69 = t9 + t67
+    t60 = t57 * t58 + t59 * t46 + t11 * t44
+    t61 = -(t60 * (t38 * t45 - t41 * t43) / Delta) + t51
+    t62 = -(t56 * (t34 * t44 - t41 * t58) / Delta) + t51
+    t63 = -(t42 * (t46 * t54 - t43 * t58) / Delta) + t51
+    t64 = -(t60 * (t34 * t43 - t38 * t54) / Delta) + t51
+    del t43
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t65 = t39 - t40
+    del t39, t40
+    t66 = t2 * A_11_above + t35 * A_12_above + t4 * t65
+    del t2, t35, t4
+    t67 = t9 - A_12_above
     del t9
-    t70 = v_z - A_13_above
+    t68 = v_z - t65
     del v_z
-    t71 = u_z - A_13_above
+    t69 = u_z - t65
     del u_z
-    t72 = t13 + t67
+    t70 = t13 - A_12_above
     del t13
-    t73 = -(t68 * (t69 * t70 - t71 * t72) / Delta) + t53
-    t74 = t7 - A_11_above
+    t71 = -(t66 * (t67 * t68 - t69 * t70) / Delta) + t51
+    t72 = t7 - A_11_above
     del t7
-    t75 = t55 * t74 + t57 * t69 + t6 * t71
-    del t55, t57, t6
-    t76 = -(t75 * (t67 * t70 + A_13_above * t72) / Delta)
-    t77 = t12 - A_11_above
+    t73 = t53 * t72 + t55 * t67 + t6 * t69
+    del t53, t55, t6
+    t74 = t73 * (A_12_above * t68 - t65 * t70) / Delta + t51
+    t75 = t12 - A_11_above
     del t12
-    t78 = t60 * t77 + t62 * t72 + t11 * t70
-    del t11, t60, t62
-    t79 = t78 * (t67 * t71 + A_13_above * t69) / Delta + t53
-    t80 = t75 * (A_11_above * t70 - A_13_above * t77) / Delta
-    t81 = t78 * (A_11_above * t71 - A_13_above * t74) / Delta
-    del A_13_above
-    t82 = -(t68 * (t72 * t74 - t69 * t77) / Delta) + t53
-    t83 = t75 * (A_11_above * t72 + t67 * t77) / Delta + t53
-    del t72, t75
-    t84 = -(t78 * (A_11_above * t69 + t67 * t74) / Delta)
-    del A_11_above, t67, t69, t78
+    t76 = t57 * t75 + t59 * t70 + t11 * t68
+    del t11, t57, t59
+    t77 = -(t76 * (A_12_above * t69 - t65 * t67) / Delta)
+    t78 = -(t73 * (A_11_above * t68 - t65 * t75) / Delta)
+    t79 = t76 * (A_11_above * t69 - t65 * t72) / Delta + t51
+    del t65
+    t80 = -(t66 * (t70 * t72 - t67 * t75) / Delta) + t51
+    t81 = t73 * (A_11_above * t70 - A_12_above * t75) / Delta
+    del t70, t73
+    t82 = t76 * (A_11_above * t67 - A_12_above * t72) / Delta
+    del A_11_above, A_12_above, t67, t76
     return (
-        t54,
-        t59,
-        t63 * (A_12 * t46 + t42 * t44) / Delta + t53,
-        t43 * (t45 * t56 - t46 * t61) / Delta + t53,
+        t52,
+        t56 * (t38 * t44 - t41 * t46) / Delta + t51,
+        t61,
+        t42 * (t44 * t54 - t45 * t58) / Delta + t51,
+        t62,
+        t60 * (t34 * t45 - t41 * t54) / Delta + t51,
+        t63,
+        t56 * (t34 * t46 - t38 * t58) / Delta + t51,
         t64,
-        t63 * (t36 * t46 - t42 * t56) / Delta + t53,
-        t65,
-        t58 * (t36 * t47 + A_12 * t61) / Delta + t53,
-        t66,
-        t73,
-        t76 + t53,
+        t71,
+        t74,
+        t77 + t51,
+        t66 * (t68 * t72 - t69 * t75) / Delta + t51,
+        t78 + t51,
         t79,
-        t68 * (t70 * t74 - t71 * t77) / Delta + t53,
-        -t80 + t53,
-        t81 + t53,
-        t82,
-        t83,
-        t84 + t53,
+        t80,
+        t81 + t51,
+        -t82 + t51,
     )
 
 
@@ -1261,7 +1249,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1321,7 +1308,7 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    size_u = np.sqrt(u_z * u_z + t7 * t7 + t9 * t9)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     t10 = L * s3
     del s3
     v_z = t1 - t10
@@ -1331,110 +1318,112 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t5
     t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
     del t8
-    size_v = np.sqrt(v_z * v_z + t12 * t12 + t13 * t13)
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t14
-    same = size_u <= t14
-    t15 = _runtime.select(same, t13, t9)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t7, t12)
-    t18 = _runtime.select(same, t12, t7)
-    E_11 = _runtime.select(all_same, 1.0, t18 / D)
-    t19 = _runtime.select(same, t9, t13)
-    t20 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t20 / D)
-    t21 = _runtime.select(same, u_z, v_z)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    same = u_u <= t15
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
     del same
-    t22 = E_11 * t17 + t16 * t19 + E_13 * t21
-    t23 = t17 - E_11 * t22
-    t24 = t19 - t16 * t22
-    m_z = t21 - E_13 * t22
-    del t22
-    t25 = E_11 * t23 + t16 * t24 + E_13 * m_z
-    t26 = t23 - E_11 * t25
-    del t23
-    t27 = t24 - t16 * t25
-    del t24
-    n_z = m_z - E_13 * t25
-    del m_z, t25
-    j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
-    in_line = j <= t14
-    t28 = _runtime.sign(E_13)
-    t29 = E_11 * t28
-    E_23 = _runtime.select(in_line, -t29, n_z / j)
-    del n_z
-    t30 = E_13 + t28
-    E_22 = _runtime.select(in_line, -(t16 * t29 / t30), t27 / j)
-    del t27, t29
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del all_same
-    t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21)
-    del t15, t17, t18, t19, t20, t21
-    t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
-    rho = np.sqrt(X * X + t32 * t32)
-    t33 = l - rho
-    slack = np.maximum(t33, 0.0)
-    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t14
-    t34 = (t16 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
-    del t26, t28, t30
-    t35 = E_11 * X - E_21 * t32
-    t36 = t34 - t35
-    t37 = s_alpha1 * t1
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    side = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
+    t25 = t16 + a_x * side
+    del side
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = h * (E_11 * E_23 - E_13 * E_21)
-    t39 = X * t16 - t32 * E_22
-    A_12 = t38 + t39
-    t40 = h * (E_11 * E_22 - t16 * E_21)
-    del E_11, E_21, E_22, t16
-    t41 = X * E_13 - t32 * E_23
-    del E_13, E_23, X, t32
-    t42 = t40 - t41
-    t43 = c_alpha2 * t3
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = c_alpha2 * t3
     del c_alpha2
-    t44 = s_alpha2 * t3
+    t43 = s_alpha2 * t3
     del s_alpha2, t3
-    t45 = t43 * (t7 + t36) + t44 * (t9 - A_12) + t6 * (u_z + t42)
-    t46 = c_alpha3 * t10
+    t44 = t42 * (t7 + t34) + t43 * (t9 + t38) + t6 * (u_z + t41)
+    t45 = c_alpha3 * t10
     del c_alpha3
-    t47 = s_alpha3 * t10
+    t46 = s_alpha3 * t10
     del s_alpha3, t10
-    t48 = t46 * (t12 + t36) + t47 * (t13 - A_12) + t11 * (v_z + t42)
-    t49 = (t2 * t36 - t37 * A_12 + t4 * t42) * t45 * t48
-    del A_12, t36, t42, t45, t48
-    Delta = D * j * h
-    del D, h, j
-    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t50
-    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t53 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t31
-    t54 = t53 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t53
-    failed = np.logical_not(t51 & t52) | np.logical_not(t54)
-    del t51, t52, t54
-    t55 = _runtime.poison(failed)
-    del failed
-    A_11_above = t34 + t35
-    del t34, t35
-    t56 = t38 - t39
-    del t38, t39
-    A_13_above = t40 + t41
-    del t40, t41
-    t57 = t2 * A_11_above - t37 * t56 + t4 * A_13_above
-    del t2, t37, t4
-    t58 = t43 * (t7 - A_11_above) + t44 * (t9 + t56) + t6 * (u_z - A_13_above)
-    del t43, t44, t6, t7, t9, u_z
-    t59 = t46 * (t12 - A_11_above) + t47 * (t13 + t56) + t11 * (v_z - A_13_above)
-    del A_11_above, A_13_above, t11, t12, t13, t46, t47, t56, v_z
+    t47 = t45 * (t12 + t34) + t46 * (t13 + t38) + t11 * (v_z + t41)
+    t48 = (t2 * t34 + t35 * t38 + t4 * t41) * t44 * t47
+    del t34, t38, t41, t44, t47
+    Delta = t26 * h
+    del h, t26
+    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t49
+    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t52 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t52
+    t53 = _runtime.poison(np.logical_not(t50 & t51) | unreachable)
+    del t50, t51, unreachable
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t54 = t39 - t40
+    del t39, t40
+    t55 = t2 * A_11_above + t35 * A_12_above + t4 * t54
+    del t2, t35, t4
+    t56 = t42 * (t7 - A_11_above) + t43 * (t9 - A_12_above)
+    del t42, t43, t7, t9
+    t57 = t45 * (t12 - A_11_above) + t46 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t45, t46
+    t58 = t55 * (t56 + t6 * (u_z - t54)) * (t57 + t11 * (v_z - t54))
+    del t11, t54, t55, t56, t57, t6, u_z, v_z
     return (
-        -(t49 / Delta) + t55,
-        -(t57 * t58 * t59 / Delta) + t55,
+        -(t48 / Delta) + t53,
+        -(t58 / Delta) + t53,
     )
 
 
@@ -1445,7 +1434,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1504,7 +1492,7 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    size_u = np.sqrt(u_z * u_z + t7 * t7 + t9 * t9)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     t10 = L * s3
     del s3
     v_z = t1 - t10
@@ -1514,113 +1502,113 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t5
     t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
     del t8
-    size_v = np.sqrt(v_z * v_z + t12 * t12 + t13 * t13)
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t14
-    same = size_u <= t14
-    t15 = _runtime.select(same, t13, t9)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t7, t12)
-    t18 = _runtime.select(same, t12, t7)
-    E_11 = _runtime.select(all_same, 1.0, t18 / D)
-    t19 = _runtime.select(same, t9, t13)
-    t20 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t20 / D)
-    t21 = _runtime.select(same, u_z, v_z)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    same = u_u <= t15
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
     del same
-    t22 = E_11 * t17 + t16 * t19 + E_13 * t21
-    t23 = t17 - E_11 * t22
-    t24 = t19 - t16 * t22
-    m_z = t21 - E_13 * t22
-    del t22
-    t25 = E_11 * t23 + t16 * t24 + E_13 * m_z
-    t26 = t23 - E_11 * t25
-    del t23
-    t27 = t24 - t16 * t25
-    del t24
-    n_z = m_z - E_13 * t25
-    del m_z, t25
-    j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
-    in_line = j <= t14
-    t28 = _runtime.sign(E_13)
-    t29 = E_11 * t28
-    E_23 = _runtime.select(in_line, -t29, n_z / j)
-    del n_z
-    t30 = E_13 + t28
-    E_22 = _runtime.select(in_line, -(t16 * t29 / t30), t27 / j)
-    del t27, t29
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del all_same
-    t31 = t17 * (t18 - t17) + t19 * (t15 - t19) + t21 * (t20 - t21)
-    del t15, t17, t18, t19, t20, t21
-    t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
-    rho = np.sqrt(X * X + t32 * t32)
-    t33 = l - rho
-    slack = np.maximum(t33, 0.0)
-    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t14
-    t34 = (t16 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
-    del t26, t28, t30
-    t35 = E_11 * X - E_21 * t32
-    t36 = t34 - t35
-    t37 = s_alpha1 * t1
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    side = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
+    t25 = t16 + a_x * side
+    del side
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = h * (E_11 * E_23 - E_13 * E_21)
-    t39 = X * t16 - t32 * E_22
-    A_12 = t38 + t39
-    t40 = h * (E_11 * E_22 - t16 * E_21)
-    del E_11, E_21, E_22, t16
-    t41 = X * E_13 - t32 * E_23
-    del E_13, E_23, X, t32
-    t42 = t40 - t41
-    t43 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t44 = t43 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t43
-    t45 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t46 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t31
-    t47 = t46 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t46
-    failed = np.logical_not(t44 & t45) | np.logical_not(t47)
-    del t44, t45, t47
-    t48 = _runtime.poison(failed)
-    del failed
-    t49 = c_alpha2 * t3
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t43 = t42 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t42
+    t44 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t45 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t45 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t45
+    t46 = _runtime.poison(np.logical_not(t43 & t44) | unreachable)
+    del t43, t44, unreachable
+    t47 = c_alpha2 * t3
     del c_alpha2
-    t50 = s_alpha2 * t3
+    t48 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t49 * (t7 + t36) + t50 * (t9 - A_12) + t6 * (u_z + t42)
-    t51 = c_alpha3 * t10
+    B_22 = t47 * (t7 + t34) + t48 * (t9 + t38) + t6 * (u_z + t41)
+    t49 = c_alpha3 * t10
     del c_alpha3
-    t52 = s_alpha3 * t10
+    t50 = s_alpha3 * t10
     del s_alpha3, t10
-    B_33 = t51 * (t12 + t36) + t52 * (t13 - A_12) + t11 * (v_z + t42)
-    Delta = D * j * h
-    del D, h, j
-    A_11_above = t34 + t35
-    del t34, t35
-    t53 = t38 - t39
-    del t38, t39
-    A_13_above = t40 + t41
-    del t40, t41
-    t54 = t2 * A_11_above - t37 * t53 + t4 * A_13_above
-    B_22_above = t49 * (t7 - A_11_above) + t50 * (t9 + t53) + t6 * (u_z - A_13_above)
-    del t49, t50, t6, t7, t9, u_z
-    B_33_above = t51 * (t12 - A_11_above) + t52 * (t13 + t53) + t11 * (v_z - A_13_above)
-    del A_11_above, A_13_above, t11, t12, t13, t51, t52, t53, v_z
+    B_33 = t49 * (t12 + t34) + t50 * (t13 + t38) + t11 * (v_z + t41)
+    Delta = t26 * h
+    del h, t26
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t51 = t39 - t40
+    del t39, t40
+    t52 = t2 * A_11_above + t35 * A_12_above + t4 * t51
+    t53 = t47 * (t7 - A_11_above) + t48 * (t9 - A_12_above)
+    del t47, t48, t7, t9
+    t54 = t49 * (t12 - A_11_above) + t50 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t49, t50
     return (
-        t2 * t36 - t37 * A_12 + t4 * t42 + t48,
-        B_22 + t48,
-        B_33 + t48,
-        -Delta + t48,
-        -t54 + t48,
-        B_22_above + t48,
-        B_33_above + t48,
-        Delta + t48,
+        t2 * t34 + t35 * t38 + t4 * t41 + t46,
+        B_22 + t46,
+        B_33 + t46,
+        -Delta + t46,
+        -t52 + t46,
+        t53 + t6 * (u_z - t51) + t46,
+        t54 + t11 * (v_z - t51) + t46,
+        Delta + t46,
     )
 
 
@@ -1631,7 +1619,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1691,7 +1678,7 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     del s_alpha1, t2
     t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    size_u = np.sqrt(u_z * u_z + t5 * t5 + t7 * t7)
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
     v_z = t1 - L * s3
     del s3, t1
     t8 = L * c3
@@ -1700,150 +1687,150 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     del c_alpha3, t3
     t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
     del s_alpha3, t6, t8
-    size_v = np.sqrt(v_z * v_z + t9 * t9 + t10 * t10)
+    v_v = v_z * v_z + t9 * t9 + t10 * t10
     size = f + e + L + l
-    t11 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t11
-    same = size_u <= t11
-    t12 = _runtime.select(same, t10, t7)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t13 = _runtime.select(all_same, 0.0, t12 / D)
-    t14 = _runtime.select(same, t5, t9)
-    t15 = _runtime.select(same, t9, t5)
-    E_11 = _runtime.select(all_same, 1.0, t15 / D)
-    t16 = _runtime.select(same, t7, t10)
-    t17 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t17 / D)
-    t18 = _runtime.select(same, u_z, v_z)
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
+    all_same = u_u + v_v <= t12
+    same = u_u <= t12
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t13 = _runtime.select(same, t10, t7)
+    d_x = _runtime.select(same, t9, t5)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t14 = _runtime.select(same, t7, t10)
+    t15 = _runtime.select(same, t5, t9)
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
     del same
-    t19 = E_11 * t14 + t13 * t16 + E_13 * t18
-    t20 = t14 - E_11 * t19
-    t21 = t16 - t13 * t19
-    m_z = t18 - E_13 * t19
-    del t19
-    t22 = E_11 * t20 + t13 * t21 + E_13 * m_z
-    t23 = t20 - E_11 * t22
-    del t20
-    t24 = t21 - t13 * t22
-    del t21
-    n_z = m_z - E_13 * t22
-    del m_z, t22
-    j = np.sqrt(t23 * t23 + t24 * t24 + n_z * n_z)
-    in_line = j <= t11
-    t25 = _runtime.sign(E_13)
-    t26 = E_11 * t25
-    E_23 = _runtime.select(in_line, -t26, n_z / j)
-    del n_z
-    t27 = E_13 + t25
-    E_22 = _runtime.select(in_line, -(t13 * t26 / t27), t24 / j)
-    del t24, t26
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del all_same
-    t28 = t14 * (t15 - t14) + t16 * (t12 - t16) + t18 * (t17 - t18)
-    del t12, t14, t15, t16, t17, t18
-    t29 = _runtime.select(in_line, 0.0, t28 / (2.0 * j))
-    rho = np.sqrt(X * X + t29 * t29)
-    t30 = l - rho
-    slack = np.maximum(t30, 0.0)
-    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t11
-    t31 = (t13 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
-    del t23, t25, t27
-    t32 = E_11 * X - E_21 * t29
-    t33 = t31 - t32
-    t34 = h * (E_11 * E_23 - E_13 * E_21)
-    t35 = X * t13 - t29 * E_22
-    A_12 = t34 + t35
-    t36 = h * (E_11 * E_22 - t13 * E_21)
-    del E_11, E_21, E_22, t13
-    t37 = X * E_13 - t29 * E_23
-    del E_13, E_23, X, t29
-    t38 = t36 - t37
-    t39 = t5 + t33
-    t40 = t7 - A_12
-    t41 = u_z + t38
-    t42 = t33 * t33 + A_12 * A_12 + t38 * t38 + (t39 * t39 + t40 * t40 + t41 * t41)
-    t43 = t9 + t33
-    t44 = t10 - A_12
-    t45 = v_z + t38
-    t46 = t33 * t40 + A_12 * t39
-    t47 = t33 * t41 - t38 * t39
-    t48 = t33 * t44 + A_12 * t43
-    t49 = t33 * t45 - t38 * t43
-    del t33
-    t50 = t46 * t46 + t47 * t47 + t48 * t48 + t49 * t49
-    del t46, t47, t48, t49
-    t51 = A_12 * t41 + t38 * t40
-    t52 = A_12 * t45 + t38 * t44
-    del A_12, t38
-    t53 = t39 * t44 - t40 * t43
-    t54 = t39 * t45 - t41 * t43
-    del t39
-    t55 = t50 + t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54
-    del t50, t51, t52, t53, t54
-    t56 = t40 * t45 - t41 * t44
-    del t40, t41
-    t57 = (t42 + (t43 * t43 + t44 * t44 + t45 * t45)) * (t55 + t56 * t56)
-    del t42, t43, t44, t45, t55, t56
-    t58 = 3.0 * (D * j * h)
-    del D, h, j
-    t59 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t60 = t59 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t59
-    t61 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t62 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t28
-    t63 = t62 & (-(size * _runtime.FEASIBILITY) <= t30)
-    del size, t30, t62
-    failed = np.logical_not(t60 & t61) | np.logical_not(t63)
-    del t60, t61, t63
-    t64 = _runtime.poison(failed)
-    del failed
-    A_11_above = t31 + t32
-    del t31, t32
-    t65 = t34 - t35
-    del t34, t35
-    A_13_above = t36 + t37
-    del t36, t37
-    square1_above = A_11_above * A_11_above + t65 * t65 + A_13_above * A_13_above
-    t66 = t5 - A_11_above
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t12
+    del t12
+    side = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
+    t22 = t13 + a_x * side
+    del side
+    t23 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / t23)
+    t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
+    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t29 = w_x * h
+    del w_x
+    t30 = t19 * t25 + d_x * 0.5
+    del d_x
+    t31 = t29 - t30
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    t32 = h * w_y
+    del w_y
+    t33 = t21 * t25 - t13 * 0.5
+    t34 = t32 + t33
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, t13, t19, t21, t22
+    t35 = h * w_z
+    del w_z
+    t36 = n_z * t25 - d_z * 0.5
+    del d_z, n_z, t25
+    t37 = t35 + t36
+    t38 = t5 + t31
+    t39 = t7 + t34
+    t40 = u_z + t37
+    t41 = t31 * t31 + t34 * t34 + t37 * t37 + (t38 * t38 + t39 * t39 + t40 * t40)
+    t42 = t9 + t31
+    t43 = t10 + t34
+    t44 = v_z + t37
+    t45 = t31 * t39 - t34 * t38
+    t46 = t31 * t40 - t37 * t38
+    t47 = t31 * t43 - t34 * t42
+    t48 = t31 * t44 - t37 * t42
+    del t31
+    t49 = t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48
+    del t45, t46, t47, t48
+    t50 = t34 * t40 - t37 * t39
+    t51 = t34 * t44 - t37 * t43
+    del t34, t37
+    t52 = t38 * t43 - t39 * t42
+    t53 = t38 * t44 - t40 * t42
+    del t38
+    t54 = t49 + t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53
+    del t49, t50, t51, t52, t53
+    t55 = t39 * t44 - t40 * t43
+    del t39, t40
+    t56 = (t41 + (t42 * t42 + t43 * t43 + t44 * t44)) * (t54 + t55 * t55)
+    del t41, t42, t43, t44, t54, t55
+    t57 = 3.0 * (t23 * h)
+    del h, t23
+    t58 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t59 = t58 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t58
+    t60 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t61 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del in_line, t11, t24
+    unreachable = np.logical_not(t61 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t61
+    t62 = _runtime.poison(np.logical_not(t59 & t60) | unreachable)
+    del t59, t60, unreachable
+    A_11_above = t29 + t30
+    del t29, t30
+    A_12_above = t32 - t33
+    del t32, t33
+    t63 = A_11_above * A_11_above + A_12_above * A_12_above
+    t64 = t35 - t36
+    del t35, t36
+    t65 = t5 - A_11_above
     del t5
-    t67 = t7 + t65
+    t66 = t7 - A_12_above
     del t7
-    t68 = u_z - A_13_above
+    t67 = u_z - t64
     del u_z
-    t69 = square1_above + (t66 * t66 + t67 * t67 + t68 * t68)
-    del square1_above
-    t70 = t9 - A_11_above
+    t68 = t63 + t64 * t64 + (t65 * t65 + t66 * t66 + t67 * t67)
+    del t63
+    t69 = t9 - A_11_above
     del t9
-    t71 = t10 + t65
+    t70 = t10 - A_12_above
     del t10
-    t72 = v_z - A_13_above
+    t71 = v_z - t64
     del v_z
-    t73 = A_11_above * t67 + t65 * t66
-    t74 = A_11_above * t68 - A_13_above * t66
-    t75 = A_11_above * t71 + t65 * t70
-    t76 = A_11_above * t72 - A_13_above * t70
+    t72 = A_11_above * t66 - A_12_above * t65
+    t73 = A_11_above * t67 - t64 * t65
+    t74 = A_11_above * t70 - A_12_above * t69
+    t75 = A_11_above * t71 - t64 * t69
     del A_11_above
-    t77 = t73 * t73 + t74 * t74 + t75 * t75 + t76 * t76
-    del t73, t74, t75, t76
-    t78 = t65 * t68 + A_13_above * t67
-    t79 = t65 * t72 + A_13_above * t71
-    del A_13_above, t65
-    t80 = t66 * t71 - t67 * t70
-    t81 = t66 * t72 - t68 * t70
-    del t66
-    t82 = t77 + t78 * t78 + t79 * t79 + t80 * t80 + t81 * t81
-    del t77, t78, t79, t80, t81
-    t83 = t67 * t72 - t68 * t71
-    del t67, t68
-    t84 = (t69 + (t70 * t70 + t71 * t71 + t72 * t72)) * (t82 + t83 * t83)
-    del t69, t70, t71, t72, t82, t83
+    t76 = t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75
+    del t72, t73, t74, t75
+    t77 = A_12_above * t67 - t64 * t66
+    t78 = A_12_above * t71 - t64 * t70
+    del A_12_above, t64
+    t79 = t65 * t70 - t66 * t69
+    t80 = t65 * t71 - t67 * t69
+    del t65
+    t81 = t76 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80
+    del t76, t77, t78, t79, t80
+    t82 = t66 * t71 - t67 * t70
+    del t66, t67
+    t83 = (t68 + (t69 * t69 + t70 * t70 + t71 * t71)) * (t81 + t82 * t82)
+    del t68, t69, t70, t71, t81, t82
     return (
-        np.sqrt(t57) / t58 + t64,
-        np.sqrt(t84) / t58 + t64,
+        np.sqrt(t56) / t57 + t62,
+        np.sqrt(t83) / t57 + t62,
     )
 
 
@@ -1854,7 +1841,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1914,7 +1900,7 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t3
     t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
     del t5
-    size_u = np.sqrt(u_z * u_z + t6 * t6 + t8 * t8)
+    u_u = u_z * u_z + t6 * t6 + t8 * t8
     v_z = t2 - L * s3
     del s3, t2
     t9 = L * c3
@@ -1923,149 +1909,148 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t4
     t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
     del t7, t9
-    size_v = np.sqrt(v_z * v_z + t10 * t10 + t11 * t11)
+    v_v = v_z * v_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t12 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t12
-    same = size_u <= t12
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t13 = _runtime.select(same, t6, t10)
-    t14 = _runtime.select(same, t10, t6)
-    E_11 = _runtime.select(all_same, 1.0, t14 / D)
-    t15 = _runtime.select(same, t11, t8)
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t8, t11)
-    t18 = _runtime.select(same, v_z, u_z)
-    E_13 = _runtime.select(all_same, 0.0, t18 / D)
-    del D, all_same
-    t19 = _runtime.select(same, u_z, v_z)
+    t12 = size * size
+    t13 = _runtime.VANISHING * _runtime.VANISHING * t12
+    all_same = u_u + v_v <= t13
+    same = u_u <= t13
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t14 = _runtime.select(same, t11, t8)
+    d_x = _runtime.select(same, t10, t6)
+    a_x = _runtime.select(all_same, 1.0, d_x)
+    t15 = _runtime.select(same, t8, t11)
+    t16 = _runtime.select(same, t6, t10)
+    t17 = a_x * t15 - t14 * t16
+    d_z = _runtime.select(same, v_z, u_z)
+    t18 = _runtime.select(same, u_z, v_z)
     del same
-    t20 = E_11 * t13 + t16 * t17 + E_13 * t19
-    t21 = t13 - E_11 * t20
-    t22 = t17 - t16 * t20
-    m_z = t19 - E_13 * t20
-    del t20
-    t23 = E_11 * t21 + t16 * t22 + E_13 * m_z
-    t24 = t21 - E_11 * t23
-    del t21
-    t25 = t22 - t16 * t23
-    del t22
-    n_z = m_z - E_13 * t23
-    del m_z, t23
-    j = np.sqrt(t24 * t24 + t25 * t25 + n_z * n_z)
-    in_line = j <= t12
-    t26 = t13 * (t14 - t13) + t17 * (t15 - t17) + t19 * (t18 - t19)
-    del t13, t14, t15, t17, t18, t19
-    t27 = _runtime.select(in_line, 0.0, t26 / (2.0 * j))
-    rho = np.sqrt(X * X + t27 * t27)
-    t28 = l - rho
-    slack = np.maximum(t28, 0.0)
-    h = _runtime.select(slack <= t12, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t12
-    t29 = _runtime.sign(E_13)
-    t30 = E_11 * t29
-    t31 = E_13 + t29
-    E_22 = _runtime.select(in_line, -(t16 * t30 / t31), t25 / j)
-    del t25
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t29 / t31, t24 / j)
-    del t24, t29, t31
-    t32 = h * (E_11 * E_22 - t16 * E_21)
-    E_23 = _runtime.select(in_line, -t30, n_z / j)
-    del j, n_z, t30
-    t33 = X * E_13 - t27 * E_23
-    t34 = t32 - t33
-    t35 = s_alpha3 * t34
-    t36 = t1 * t35
-    t37 = u_z + t34
-    t38 = h * (E_11 * E_23 - E_13 * E_21)
-    t39 = X * t16 - t27 * E_22
-    A_12 = t38 + t39
-    t40 = t37 * (t11 - A_12)
-    t41 = c_alpha3 * t1
-    t42 = (t16 * E_23 - E_13 * E_22) * h
-    del E_13, E_22, E_23, h, t16
-    t43 = E_11 * X - E_21 * t27
-    del E_11, E_21, X, t27
-    t44 = t42 - t43
-    t45 = v_z + t34
-    t46 = t37 * t45
-    t47 = t44 * t46
-    t48 = c_alpha1 * c_alpha2
+    t19 = a_x * t18 - t16 * d_z
+    t20 = over * (t14 * t17 + d_z * t19)
+    t21 = t14 * t18 - t15 * d_z
+    t22 = over * (a_x * t17 - d_z * t21)
+    del t17
+    n_z = over * (a_x * t19 + t14 * t21)
+    del over, t19, t21
+    nu = t20 * t20 + t22 * t22 + n_z * n_z
+    in_line = nu <= t13
+    del t13
+    side = _runtime.sign(t14 * a_x)
+    t23 = t14 + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t23 * t23), 1.0 / (mu * nu))
+    t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
+    del t15, t16, t18
+    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
+    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
+    del part, slack
+    w_z = _runtime.select(in_line, -t23, a_x * t22 + t14 * t20)
+    del t23
+    t29 = h * w_z
+    del w_z
+    t30 = n_z * t25 - d_z * 0.5
+    t31 = t29 + t30
+    t32 = s_alpha3 * t31
+    t33 = t1 * t32
+    t34 = u_z + t31
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t20))
+    del a_x
+    t35 = h * w_y
+    del w_y
+    t36 = t22 * t25 - t14 * 0.5
+    t37 = t35 + t36
+    t38 = t34 * (t11 + t37)
+    t39 = c_alpha3 * t1
+    w_x = _runtime.select(in_line, d_z * side, t14 * n_z - d_z * t22)
+    del d_z, n_z, side, t14, t22
+    t40 = w_x * h
+    del h, w_x
+    t41 = t20 * t25 + d_x * 0.5
+    del d_x, t20, t25
+    t42 = t40 - t41
+    t43 = v_z + t31
+    t44 = t34 * t43
+    t45 = t42 * t44
+    t46 = c_alpha1 * c_alpha2
     del c_alpha1
-    t49 = s_alpha3 * t48
-    t50 = s_alpha1 * s_alpha2
+    t47 = s_alpha3 * t46
+    t48 = s_alpha1 * s_alpha2
     del s_alpha2
-    t51 = c_alpha3 * t50
-    t52 = t46 * A_12
-    del t46
-    t53 = s_alpha1 * c_alpha2
+    t49 = c_alpha3 * t48
+    t50 = t44 * t37
+    del t44
+    t51 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
-    t54 = s_alpha3 * t53
-    t55 = t41 * t47 - t49 * t47 - t51 * t52 + t54 * t52
-    del t47, t52
-    t56 = c_alpha3 * t34
-    del t34
-    t57 = t53 * t56
-    t58 = t45 * (t6 + t44)
-    t59 = t45 * (t8 - A_12)
-    del A_12, t45
-    t60 = t55 - t57 * t58 + t48 * t58 * t35 - t50 * t56 * t59
-    del t55, t58
-    t61 = t37 * (t10 + t44)
-    del t37, t44
-    t62 = t60 + t59 * t36 + t57 * t61 - t1 * t56 * t61 + t53 * t35 * t40
-    del t35, t56, t57, t59, t60, t61
-    t63 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t64 = t63 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t63
-    t65 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t66 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t26
-    t67 = t66 & (-(size * _runtime.FEASIBILITY) <= t28)
-    del size, t28, t66
-    failed = np.logical_not(t64 & t65) | np.logical_not(t67)
-    del t64, t65, t67
-    t68 = _runtime.poison(failed)
-    del failed
-    A_11_above = t42 + t43
-    del t42, t43
-    A_13_above = t32 + t33
-    del t32, t33
-    t69 = u_z - A_13_above
+    t52 = s_alpha3 * t51
+    t53 = t39 * t45 - t47 * t45 + t49 * t50 - t52 * t50
+    del t45, t50
+    t54 = c_alpha3 * t31
+    del t31
+    t55 = t51 * t54
+    t56 = t43 * (t6 + t42)
+    t57 = t43 * (t8 + t37)
+    del t37, t43
+    t58 = t53 - t55 * t56 + t46 * t56 * t32 - t48 * t54 * t57
+    del t53, t56
+    t59 = t34 * (t10 + t42)
+    del t34, t42
+    t60 = t58 + t57 * t33 + t55 * t59 - t1 * t54 * t59 + t51 * t32 * t38
+    del t32, t54, t55, t57, t58, t59
+    t61 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t62 = t61 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t61
+    t63 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t64 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t12 * _runtime.FEASIBILITY
+    del in_line, t12, t24
+    unreachable = np.logical_not(t64 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t64
+    t65 = _runtime.poison(np.logical_not(t62 & t63) | unreachable)
+    del t62, t63, unreachable
+    A_11_above = t40 + t41
+    del t40, t41
+    t66 = t29 - t30
+    del t29, t30
+    t67 = u_z - t66
     del u_z
-    t70 = v_z - A_13_above
+    t68 = v_z - t66
     del v_z
-    t71 = t69 * t70
-    t72 = A_11_above * t71
-    t73 = t38 - t39
-    del t38, t39
-    t74 = t71 * t73
-    del t71
-    t75 = t41 * t72 - t49 * t72 - t51 * t74 + t54 * t74
-    del t41, t49, t51, t54, t72, t74
-    t76 = c_alpha3 * A_13_above
+    t69 = t67 * t68
+    t70 = A_11_above * t69
+    A_12_above = t35 - t36
+    del t35, t36
+    t71 = t69 * A_12_above
+    del t69
+    t72 = t39 * t70 - t47 * t70 + t49 * t71 - t52 * t71
+    del t39, t47, t49, t52, t70, t71
+    t73 = c_alpha3 * t66
     del c_alpha3
-    t77 = t53 * t76
-    t78 = t70 * (t6 - A_11_above)
+    t74 = t51 * t73
+    t75 = t68 * (t6 - A_11_above)
     del t6
-    t79 = s_alpha3 * A_13_above
-    del A_13_above, s_alpha3
-    t80 = t70 * (t8 + t73)
-    del t70, t8
-    t81 = t75 - t77 * t78 + t48 * t78 * t79 - t50 * t76 * t80
-    del t48, t50, t75, t78
-    t82 = t1 * t79
-    t83 = t69 * (t10 - A_11_above)
+    t76 = s_alpha3 * t66
+    del s_alpha3, t66
+    t77 = t68 * (t8 - A_12_above)
+    del t68, t8
+    t78 = t72 - t74 * t75 + t46 * t75 * t76 - t48 * t73 * t77
+    del t46, t48, t72, t75
+    t79 = t1 * t76
+    t80 = t67 * (t10 - A_11_above)
     del A_11_above, t10
-    t84 = t69 * (t11 + t73)
-    del t11, t69, t73
-    t85 = t81 + t80 * t82 + t77 * t83 - t1 * t76 * t83 + t53 * t79 * t84
-    del t1, t53, t76, t77, t79, t80, t81, t83
+    t81 = t67 * (t11 - A_12_above)
+    del A_12_above, t11, t67
+    t82 = t78 + t77 * t79 + t74 * t80 - t1 * t73 * t80 + t51 * t76 * t81
+    del t1, t51, t73, t74, t76, t77, t78, t80
     return (
-        t36 * t40 - t62 + t68,
-        t85 - t82 * t84 + t68,
+        t33 * t38 - t60 + t65,
+        t82 - t79 * t81 + t65,
     )
 
 
@@ -2076,7 +2061,6 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-#   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
-#   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
-#   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
-#   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
-#   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
-#   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
-#   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
-#   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
+#   fk: 42 compare and select, 50 add, 12 divide, 59 multiply, 1 sqrt
+#   skeleton: 41 compare and select, 124 add, 14 divide, 59 multiply, 1 sqrt
+#   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 59 multiply, 1 sqrt
+#   jacobian_serial: 39 compare and select, 44 add, 10 divide, 50 multiply, 1 sqrt
+#   jacobian: 41 compare and select, 88 add, 30 divide, 110 multiply, 1 sqrt
+#   determinant: 39 compare and select, 40 add, 12 divide, 55 multiply, 1 sqrt
+#   singularities: 39 compare and select, 46 add, 10 divide, 51 multiply, 1 sqrt
+#   condition_number: 41 compare and select, 104 add, 14 divide, 129 multiply, 3 sqrt
+#   constraint: 41 compare and select, 62 add, 18 divide, 83 multiply, 1 sqrt
 #   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -135,102 +135,94 @@ _DEFAULT = Parameters()
 
 
 def _fk(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
     c1_x = f - e
-    t1 = c1_x - (e * 0.5 - f * 0.5)
-    t2 = rho1 - rho2
+    t2 = c1_x - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t1 * t1 + c3_y * c3_y
-    size_u = np.sqrt(t2 * t2 + t3)
+    t3 = t2 * t2 + c3_y * c3_y
+    u_u = t1 * t1 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t6 = 1.0 / D
-    E_11 = _runtime.select(all_same, 1.0, -(t1 * t6))
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, c3_y, -c3_y)
+    a_x = _runtime.select(all_same, 1.0, -t2)
     t7 = _runtime.select(same, -c3_y, c3_y)
-    t8 = _runtime.select(same, c3_y, -c3_y)
     del c3_y
-    E_12 = _runtime.select(all_same, 0.0, t6 * t8)
-    t9 = _runtime.select(same, t2, t4)
-    t10 = _runtime.select(same, t4, t2)
-    del same, t2, t4
-    t11 = _runtime.select(all_same, 0.0, t6 * t10)
+    m_z = a_x * t7 + t2 * d_y
+    t8 = _runtime.select(same, t4, t1)
+    t9 = _runtime.select(same, t1, t4)
+    del same, t1, t4
+    m_y = a_x * t9 + t2 * t8
+    t10 = over * (d_y * m_z + t8 * m_y)
+    t11 = d_y * t9 - t7 * t8
+    n_y = over * (a_x * m_z - t8 * t11)
+    del m_z
+    t12 = over * (a_x * m_y + d_y * t11)
+    del m_y, over, t11
+    nu = t10 * t10 + n_y * n_y + t12 * t12
+    in_line = nu <= t6
     del t6
-    t12 = t1 * E_11 - t7 * E_12 - t9 * t11
-    t13 = t1 - E_11 * t12
-    del t1
-    m_y = t7 + E_12 * t12
-    t14 = t9 + t11 * t12
-    del t12
-    t15 = E_11 * t13 - E_12 * m_y - t11 * t14
-    t16 = t13 - E_11 * t15
-    del t13
-    n_y = m_y + E_12 * t15
-    del m_y
-    t17 = t14 + t11 * t15
-    del t14, t15
-    j = np.sqrt(t16 * t16 + n_y * n_y + t17 * t17)
-    in_line = j <= t5
-    t18 = _runtime.sign(-t11)
-    t19 = 1.0 / (t11 - t18)
-    t20 = 1.0 / j
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 * t19, -(t16 * t20))
+    side = _runtime.sign(d_y * a_x)
+    t13 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    last = d_y + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
+    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    del t7, t9
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu
+    t17 = l * l - t16
     del t16
-    left = t7 * (t7 - t8) + t9 * (t9 - t10)
-    del t10, t7, t8, t9
-    t21 = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    del j
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t22 = E_21 * t21 + (c1_x + E_11 * X)
-    del c1_x
-    rho = np.sqrt(X * X + t21 * t21)
-    t23 = l - rho
-    slack = np.maximum(t23, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t24 = E_11 * t18
-    del t18
-    t25 = _runtime.select(in_line, t24, t17 * t20)
-    del t17
-    E_22 = _runtime.select(in_line, t19 * (E_12 * t24), n_y * t20)
-    del n_y, t19, t20, t24
-    t26 = h * (E_12 * t25 - t11 * E_22)
-    t27 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t29 = t27 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t28
-    del t27, t28
-    invalid = np.logical_not(t29)
-    del t29
-    t30 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del left
-    t31 = t30 & (-(size * _runtime.FEASIBILITY) <= t23)
-    del size, t23, t30
-    unreachable = np.logical_not(t31)
-    del t31
-    t32 = _runtime.poison(invalid | unreachable)
-    t33 = E_12 * X + t21 * E_22
-    t34 = h * (E_11 * t25 - t11 * E_21)
-    t35 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t36 = t21 * t25 - (rho1 - t11 * X)
-    del X, t11, t21, t25
-    t37 = _runtime.status(invalid, unreachable, in_line)
+    slack = np.maximum(t17, 0.0)
+    t18 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t18, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t19 = t13 * h
+    del t13
+    t20 = t2 * 0.5 - (c1_x + t10 * t15)
+    del c1_x, t2
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
+    del t21, t22
+    invalid = np.logical_not(t23)
+    del t23
+    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t14, t5
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t18) <= t17))
+    del t17, t18, t24
+    t25 = _runtime.poison(invalid | unreachable)
+    t26 = n_y * t15 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
+    t27 = h * w_y
+    del w_y
+    t28 = t8 * 0.5 - (rho1 + t12 * t15)
+    del t12, t15, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
+    del a_x, d_y, last, n_y, t10
+    t29 = h * w_z
+    del h, w_z
+    t30 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t22 + t26 + t32,
-        t33 - t34 + t32,
-        t35 - t36 + t32,
-        t22 - t26 + t32,
-        t33 + t34 + t32,
-        -(t36 + t35) + t32,
-        t37,
-        t37,
+        t19 - t20 + t25,
+        -(t26 + t27) + t25,
+        -(t28 + t29) + t25,
+        -(t20 + t19) + t25,
+        t27 - t26 + t25,
+        t29 - t28 + t25,
+        t30,
+        t30,
     )
 
 
@@ -241,7 +233,6 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -293,273 +284,273 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t2 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t3 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t2
     del t1, t2
+    t4 = rho1 - rho2
     c1_x = f - e
-    t4 = e * 0.5
-    t5 = f * 0.5
-    t6 = c1_x - (t4 - t5)
-    t7 = rho1 - rho2
+    t5 = e * 0.5
+    t6 = f * 0.5
+    t7 = c1_x - (t5 - t6)
     t8 = e * 1.7320508075688772
     t9 = t8 * 0.5
     t10 = f * 1.7320508075688772 * 0.5
     c3_y = t9 - t10
-    t11 = t6 * t6 + c3_y * c3_y
-    size_u = np.sqrt(t7 * t7 + t11)
+    t11 = t7 * t7 + c3_y * c3_y
+    u_u = t4 * t4 + t11
     t12 = rho1 - rho3
-    size_v = np.sqrt(t12 * t12 + t11)
+    v_v = t12 * t12 + t11
     del t11
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t13 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t13
-    same = size_u <= t13
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(t6 / D))
-    t14 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t14 / D)
+    t13 = size * size
+    t14 = _runtime.VANISHING * _runtime.VANISHING * t13
+    all_same = u_u + v_v <= t14
+    same = u_u <= t14
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, c3_y, -c3_y)
+    a_x = _runtime.select(all_same, 1.0, -t7)
     t15 = _runtime.select(same, -c3_y, c3_y)
     del c3_y
-    t16 = _runtime.select(same, t12, t7)
-    t17 = _runtime.select(all_same, 0.0, t16 / D)
-    t18 = _runtime.select(same, t7, t12)
-    del same, t12, t7
-    t19 = t6 * E_11 - E_12 * t15 - t17 * t18
-    t20 = t6 - E_11 * t19
-    del t6
-    m_y = t15 + E_12 * t19
-    t21 = t18 + t17 * t19
-    del t19
-    t22 = E_11 * t20 - E_12 * m_y - t17 * t21
-    t23 = t20 - E_11 * t22
-    del t20
-    n_y = m_y + E_12 * t22
-    del m_y
-    t24 = t21 + t17 * t22
-    del t21, t22
-    j = np.sqrt(t23 * t23 + n_y * n_y + t24 * t24)
-    in_line = j <= t13
-    t25 = t15 * (t14 - t15) + t18 * (t16 - t18)
-    del t14, t15, t16, t18
-    t26 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t27 = _runtime.select(in_line, 0.0, t25 / (2.0 * j))
+    m_z = a_x * t15 + t7 * d_y
+    t16 = _runtime.select(same, t12, t4)
+    t17 = _runtime.select(same, t4, t12)
+    del same, t12, t4
+    m_y = a_x * t17 + t7 * t16
+    t18 = over * (d_y * m_z + t16 * m_y)
+    t19 = d_y * t17 - t15 * t16
+    n_y = over * (a_x * m_z - t16 * t19)
+    del m_z
+    t20 = over * (a_x * m_y + d_y * t19)
+    del m_y, over, t19
+    nu = t18 * t18 + n_y * n_y + t20 * t20
+    in_line = nu <= t14
+    del t14
+    t21 = t15 * (d_y - t15) + t17 * (t16 - t17)
+    del t15, t17
+    t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
+    del t13
+    t23 = l * size * 2.0
+    del size
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t16 * t16) + last * last), 1.0 / (mu * nu))
+    t24 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
+    del t21
+    t25 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    del all_same, mu, nu
+    t26 = l * l - t25
     del t25
-    rho = np.sqrt(X * X + t27 * t27)
-    t28 = l - rho
-    t29 = t26 & (-(size * _runtime.FEASIBILITY) <= t28)
-    del size, t26
-    t30 = _runtime.poison(np.logical_not(t3) | np.logical_not(t29))
-    del t29, t3
-    t31 = f + t30
-    t32 = 0.0 + t30
-    t33 = rho1 + t30
-    t34 = e + c1_x
-    t35 = _runtime.sign(-t17)
-    t36 = t17 - t35
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t35 / t36, -(t23 / j))
-    del t23
-    t37 = E_11 * X - t27 * E_21
-    slack = np.maximum(t28, 0.0)
-    del t28
-    h = _runtime.select(slack <= t13, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t13
-    t38 = E_11 * t35
-    del t35
-    t39 = _runtime.select(in_line, t38, t24 / j)
-    del t24
-    E_22 = _runtime.select(in_line, E_12 * t38 / t36, n_y / j)
-    del in_line, j, n_y, t36, t38
-    t40 = h * (E_12 * t39 - t17 * E_22)
-    A_11 = t37 + t40
-    t41 = t34 + A_11 + t30
-    t42 = E_12 * X - t27 * E_22
-    t43 = h * (E_11 * t39 - t17 * E_21)
-    A_12 = t42 - t43
-    t44 = A_12 + t30
-    t45 = t17 * X - t27 * t39
-    del X, t17, t27, t39
-    t46 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t47 = rho1 - (t45 - t46) + t30
-    t48 = t4 + t30
-    t49 = -t4 + t30
-    t50 = -t5 + t30
-    t51 = t10 + t30
-    t52 = rho2 + t30
-    t53 = c1_x - t4
-    t54 = t53 + A_11
-    t55 = t54 + t30
-    t56 = t8 * 0.25
+    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t23) <= t26))
+    del t22
+    t27 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
+    t28 = f + t27
+    t29 = 0.0 + t27
+    t30 = rho1 + t27
+    t31 = e + c1_x
+    t32 = t7 * 0.5 - t18 * t24
+    del t7
+    t33 = _runtime.select(in_line, t16 * side, d_y * t20 - t16 * n_y)
+    del side
+    slack = np.maximum(t26, 0.0)
+    del t26
+    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    del part, slack, t23
+    t34 = t33 * h
+    del t33
+    t35 = t32 - t34
+    t36 = t31 - t35 + t27
+    t37 = n_y * t24 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t16, a_x * t20 + t16 * t18)
+    t38 = h * w_y
+    del w_y
+    t39 = t37 + t38
+    t40 = -t39 + t27
+    t41 = t20 * t24 - t16 * 0.5
+    del t16, t20, t24
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t18)
+    del a_x, d_y, in_line, last, n_y, t18
+    t42 = h * w_z
+    del h, w_z
+    t43 = rho1 + (t41 - t42) + t27
+    t44 = t5 + t27
+    t45 = -t5 + t27
+    t46 = -t6 + t27
+    t47 = t10 + t27
+    t48 = rho2 + t27
+    t49 = c1_x - t5
+    t50 = t49 - t35
+    t51 = t50 + t27
+    t52 = t8 * 0.25
     del t8
-    t57 = -(t5 + t56) + t30
-    t58 = e * 0.25
-    t59 = t10 - t58
-    t60 = t59 + t30
-    t61 = t56 - t5 + t30
-    del t5
-    t62 = t10 + t58
-    t63 = t62 + t30
-    t64 = t54 - t56 + t30
-    t65 = t9 - t58
-    t66 = t56 + t54 + t30
+    t53 = -(t6 + t52) + t27
+    t54 = e * 0.25
+    t55 = t10 - t54
+    t56 = t55 + t27
+    t57 = t52 - t6 + t27
+    del t6
+    t58 = t10 + t54
+    t59 = t58 + t27
+    t60 = t50 - t52 + t27
+    t61 = t9 - t54
+    t62 = t52 + t50 + t27
+    del t50
+    t63 = t9 + t54
     del t54
-    t67 = t9 + t58
-    del t58
-    t68 = -t10 + t30
+    t64 = -t10 + t27
     del t10
-    t69 = rho3 + t30
-    t70 = -t62 + t30
-    del t62
-    t71 = -t59 + t30
-    del t59
-    A_11_above = t37 - t40
-    del t37, t40
-    t72 = t34 + A_11_above + t30
-    del t34
-    A_12_above = t42 + t43
-    del t42, t43
-    t73 = A_12_above + t30
-    t74 = rho1 - (t45 + t46) + t30
-    del t45, t46
-    t75 = t53 + A_11_above
-    del t53
-    t76 = t75 + t30
-    t77 = t75 - t56 + t30
-    t78 = t56 + t75 + t30
-    del t56, t75
+    t65 = rho3 + t27
+    t66 = -t58 + t27
+    del t58
+    t67 = -t55 + t27
+    del t55
+    t68 = t32 + t34
+    del t32, t34
+    t69 = t31 - t68 + t27
+    del t31
+    t70 = t37 - t38
+    del t37, t38
+    t71 = -t70 + t27
+    t72 = rho1 + (t41 + t42) + t27
+    del t41, t42
+    t73 = t49 - t68
+    del t49
+    t74 = t73 + t27
+    t75 = t73 - t52 + t27
+    t76 = t52 + t73 + t27
+    del t52, t73
     return (
-        t31,
-        t32,
-        t32,
-        t31,
-        t32,
-        t33,
-        t41,
+        t28,
+        t29,
+        t29,
+        t28,
+        t29,
+        t30,
+        t36,
+        t40,
+        t43,
+        t28,
         t44,
+        t30,
+        t28,
+        t45,
+        t30,
+        t36,
+        t5 - t39 + t27,
+        t43,
+        t36,
+        -(t5 + t39) + t27,
+        t43,
+        t46,
         t47,
-        t31,
+        t29,
+        t46,
+        t47,
         t48,
-        t33,
-        t31,
-        t49,
-        t33,
-        t41,
-        t4 + A_12 + t30,
-        t47,
-        t41,
-        A_12 - t4 + t30,
-        t47,
-        t50,
         t51,
-        t32,
-        t50,
-        t51,
-        t52,
-        t55,
-        t9 + A_12 + t30,
-        t47,
+        t9 - t39 + t27,
+        t43,
+        t53,
+        t56,
+        t48,
         t57,
+        t59,
+        t48,
         t60,
-        t52,
-        t61,
-        t63,
-        t52,
+        t61 - t39 + t27,
+        t43,
+        t62,
+        t63 - t39 + t27,
+        t43,
+        t46,
         t64,
-        t65 + A_12 + t30,
-        t47,
-        t66,
-        t67 + A_12 + t30,
-        t47,
-        t50,
-        t68,
-        t32,
-        t50,
-        t68,
-        t69,
-        t55,
-        A_12 - t9 + t30,
-        t47,
-        t61,
-        t70,
-        t69,
+        t29,
+        t46,
+        t64,
+        t65,
+        t51,
+        -(t9 + t39) + t27,
+        t43,
         t57,
-        t71,
-        t69,
         t66,
-        A_12 - t67 + t30,
-        t47,
-        t64,
-        A_12 - t65 + t30,
-        t47,
-        c1_x + A_11 + t30,
+        t65,
+        t53,
+        t67,
+        t65,
+        t62,
+        -(t63 + t39) + t27,
+        t43,
+        t60,
+        -(t61 + t39) + t27,
+        t43,
+        c1_x - t35 + t27,
+        t40,
+        t43,
+        t28,
+        t29,
+        t29,
+        t28,
+        t29,
+        t30,
+        t69,
+        t71,
+        t72,
+        t28,
         t44,
+        t30,
+        t28,
+        t45,
+        t30,
+        t69,
+        t5 - t70 + t27,
+        t72,
+        t69,
+        -(t5 + t70) + t27,
+        t72,
+        t46,
         t47,
-        t31,
-        t32,
-        t32,
-        t31,
-        t32,
-        t33,
-        t72,
-        t73,
-        t74,
-        t31,
+        t29,
+        t46,
+        t47,
         t48,
-        t33,
-        t31,
-        t49,
-        t33,
+        t74,
+        t9 - t70 + t27,
         t72,
-        t4 + A_12_above + t30,
-        t74,
+        t53,
+        t56,
+        t48,
+        t57,
+        t59,
+        t48,
+        t75,
+        t61 - t70 + t27,
         t72,
-        A_12_above - t4 + t30,
-        t74,
-        t50,
-        t51,
-        t32,
-        t50,
-        t51,
-        t52,
         t76,
-        t9 + A_12_above + t30,
+        t63 - t70 + t27,
+        t72,
+        t46,
+        t64,
+        t29,
+        t46,
+        t64,
+        t65,
         t74,
+        -(t9 + t70) + t27,
+        t72,
         t57,
-        t60,
-        t52,
-        t61,
-        t63,
-        t52,
-        t77,
-        t65 + A_12_above + t30,
-        t74,
-        t78,
-        t67 + A_12_above + t30,
-        t74,
-        t50,
-        t68,
-        t32,
-        t50,
-        t68,
-        t69,
+        t66,
+        t65,
+        t53,
+        t67,
+        t65,
         t76,
-        A_12_above - t9 + t30,
-        t74,
-        t61,
-        t70,
-        t69,
-        t57,
+        -(t63 + t70) + t27,
+        t72,
+        t75,
+        -(t61 + t70) + t27,
+        t72,
+        c1_x - t68 + t27,
         t71,
-        t69,
-        t78,
-        A_12_above - t67 + t30,
-        t74,
-        t77,
-        A_12_above - t65 + t30,
-        t74,
-        c1_x + A_11_above + t30,
-        t73,
-        t74,
+        t72,
     )
 
 
@@ -570,7 +561,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -609,111 +599,110 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 
 def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho2
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    t3 = t1 * t1 + c3_y * c3_y
+    u_u = t2 * t2 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t6 / D)
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, c3_y, -c3_y)
+    a_x = _runtime.select(all_same, 1.0, -t1)
     t7 = _runtime.select(same, -c3_y, c3_y)
-    t8 = _runtime.select(same, t4, t1)
-    t9 = _runtime.select(all_same, 0.0, t8 / D)
-    del D, all_same
-    t10 = _runtime.select(same, t1, t4)
+    m_z = a_x * t7 + t1 * d_y
+    t8 = _runtime.select(same, t4, t2)
+    t9 = _runtime.select(same, t2, t4)
     del same
-    t11 = t2 * E_11 - E_12 * t7 - t9 * t10
-    t12 = t2 - E_11 * t11
-    m_y = t7 + E_12 * t11
-    t13 = t10 + t9 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t9 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
-    del m_y
-    t16 = t13 + t9 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t9)
-    t18 = t9 - t17
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
-    del t15
-    t19 = t7 * (t6 - t7) + t10 * (t8 - t10)
-    del t10, t6, t7, t8
-    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
-    t21 = E_11 * X - E_21 * t20
-    rho = np.sqrt(X * X + t20 * t20)
-    t22 = l - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t23 = E_11 * t17
+    m_y = a_x * t9 + t1 * t8
+    t10 = over * (d_y * m_z + t8 * m_y)
+    t11 = d_y * t9 - t7 * t8
+    n_y = over * (a_x * m_z - t8 * t11)
+    del m_z
+    t12 = over * (a_x * m_y + d_y * t11)
+    del m_y, over, t11
+    nu = t10 * t10 + n_y * n_y + t12 * t12
+    in_line = nu <= t6
+    del t6
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
+    t13 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    del t7, t9
+    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
+    t15 = t1 * 0.5 - t10 * t14
+    t16 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    del side
+    t17 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
+    del all_same, mu, nu
+    t18 = l * l - t17
     del t17
-    t24 = _runtime.select(in_line, t23, t16 / j)
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t20 = t16 * h
     del t16
-    E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
-    del j, n_y, t18, t23
-    t25 = h * (E_12 * t24 - t9 * E_22)
-    A_11 = t21 + t25
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t19
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
-    del size, t22, t29
-    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
-    del t28, t30
-    t32 = X * E_12 - t20 * E_22
-    t33 = h * (E_11 * t24 - t9 * E_21)
-    A_12 = t32 - t33
-    t34 = X * t9 - t20 * t24
-    del X, t20, t24, t9
-    t35 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t36 = t34 - t35
-    t37 = t2 + A_11 + t31
-    A_11_above = t21 - t25
-    del t21, t25
-    A_12_above = t32 + t33
-    del t32, t33
-    t38 = t34 + t35
-    del t34, t35
-    t39 = t2 + A_11_above + t31
-    del t2
+    t21 = t15 - t20
+    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
+    del t22, t23
+    t25 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t13, t5
+    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t25
+    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
+    del t24, unreachable
+    t27 = n_y * t14 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
+    t28 = h * w_y
+    del w_y
+    t29 = t27 + t28
+    t30 = t12 * t14 - t8 * 0.5
+    del t12, t14, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
+    del a_x, d_y, in_line, last, n_y, t10
+    t31 = h * w_z
+    del h, w_z
+    A_13 = t30 - t31
+    t32 = t1 - t21 + t26
+    t33 = t15 + t20
+    del t15, t20
+    t34 = t27 - t28
+    del t27, t28
+    A_13_above = t30 + t31
+    del t30, t31
+    t35 = t1 - t33 + t26
+    del t1
     return (
-        A_11 + t31,
-        A_12 + t31,
-        -t36 + t31,
-        t37,
-        c3_y + A_12 + t31,
-        t1 - t36 + t31,
-        t37,
-        A_12 - c3_y + t31,
-        t4 - t36 + t31,
-        A_11_above + t31,
-        A_12_above + t31,
-        -t38 + t31,
-        t39,
-        c3_y + A_12_above + t31,
-        t1 - t38 + t31,
-        t39,
-        A_12_above - c3_y + t31,
-        t4 - t38 + t31,
+        -t21 + t26,
+        -t29 + t26,
+        A_13 + t26,
+        t32,
+        c3_y - t29 + t26,
+        t2 + A_13 + t26,
+        t32,
+        -(c3_y + t29) + t26,
+        t4 + A_13 + t26,
+        -t33 + t26,
+        -t34 + t26,
+        A_13_above + t26,
+        t35,
+        c3_y - t34 + t26,
+        t2 + A_13_above + t26,
+        t35,
+        -(c3_y + t34) + t26,
+        t4 + A_13_above + t26,
     )
 
 
@@ -724,7 +713,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -766,83 +754,76 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     t2 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    u_u = t1 * t1 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    t6 = _runtime.select(same, t4, t1)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t7 = _runtime.select(all_same, 0.0, t6 / D)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    t8 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    del D, all_same
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    a_x = _runtime.select(all_same, 1.0, -t2)
+    t7 = _runtime.select(same, t1, t4)
+    t8 = _runtime.select(same, t4, t1)
+    m_y = a_x * t7 + t2 * t8
+    d_y = _runtime.select(same, c3_y, -c3_y)
     t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    t10 = _runtime.select(same, t1, t4)
-    del same
-    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
-    t12 = t2 - E_11 * t11
+    del c3_y, same
+    t10 = t7 * d_y - t8 * t9
+    t11 = over * (a_x * m_y + d_y * t10)
+    m_z = a_x * t9 + t2 * d_y
     del t2
-    m_y = t9 + E_12 * t11
-    t13 = t10 + t7 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
+    t12 = over * (d_y * m_z + t8 * m_y)
     del m_y
-    t16 = t13 + t7 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t7)
-    t18 = E_11 * t17
-    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
-    del t10, t6, t8, t9
-    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
-    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
+    n_y = over * (a_x * m_z - t8 * t10)
+    del m_z, over, t10
+    nu = t12 * t12 + n_y * n_y + t11 * t11
+    in_line = nu <= t6
+    del t6
+    last = d_y + a_x * _runtime.sign(a_x * d_y)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
+    t13 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    del t7, t9
+    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
+    t15 = t11 * t14 - t8 * 0.5
+    del t11, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
+    del a_x, d_y, last, n_y, t12
+    t16 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
+    del all_same, mu, nu, t14
+    t17 = l * l - t16
     del t16
-    rho = np.sqrt(X * X + t20 * t20)
-    del X, t20
-    t22 = l - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t23 = t7 - t17
-    del t7
-    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
-    del t15, t17
-    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
-    del j, n_y, t18, t23
-    t24 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t25 = t21 - t24
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t19
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
-    del size, t22, t29
-    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
-    del t28, t30
-    t32 = t21 + t24
-    del t21, t24
+    slack = np.maximum(t17, 0.0)
+    t18 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t18, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t19 = w_z * h
+    del h, w_z
+    A_13 = t15 - t19
+    t20 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t22 = t20 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t21
+    del t20, t21
+    t23 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t13, t5
+    unreachable = np.logical_not(t23 & (-(_runtime.FEASIBILITY * t18) <= t17))
+    del t17, t18, t23
+    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
+    del t22, unreachable
+    A_13_above = t15 + t19
+    del t15, t19
     return (
-        -t25 + t31,
-        t1 - t25 + t31,
-        t4 - t25 + t31,
-        -t32 + t31,
-        t1 - t32 + t31,
-        t4 - t32 + t31,
+        A_13 + t24,
+        t1 + A_13 + t24,
+        t4 + A_13 + t24,
+        A_13_above + t24,
+        t1 + A_13_above + t24,
+        t4 + A_13_above + t24,
     )
 
 
@@ -853,7 +834,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -895,143 +875,145 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t2 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    u_u = t1 * t1 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    t6 = _runtime.select(same, t4, t1)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t7 = _runtime.select(all_same, 0.0, t6 / D)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    t8 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    del all_same
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    a_x = _runtime.select(all_same, 1.0, -t2)
+    t7 = _runtime.select(same, t1, t4)
+    t8 = _runtime.select(same, t4, t1)
+    m_y = a_x * t7 + t2 * t8
+    d_y = _runtime.select(same, c3_y, -c3_y)
     t9 = _runtime.select(same, -c3_y, c3_y)
-    t10 = _runtime.select(same, t1, t4)
     del same
-    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
-    t12 = t2 - E_11 * t11
-    m_y = t9 + E_12 * t11
-    t13 = t10 + t7 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
+    t10 = t7 * d_y - t8 * t9
+    t11 = over * (a_x * m_y + d_y * t10)
+    m_z = a_x * t9 + t2 * d_y
+    t12 = over * (d_y * m_z + t8 * m_y)
     del m_y
-    t16 = t13 + t7 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t7)
-    t18 = E_11 * t17
-    t19 = _runtime.select(in_line, t18, t16 / j)
-    del t16
-    t20 = t9 * (t8 - t9) + t10 * (t6 - t10)
-    del t10, t6, t8, t9
-    t21 = _runtime.select(in_line, 0.0, t20 / (2.0 * j))
-    t22 = t7 * X - t19 * t21
-    rho = np.sqrt(X * X + t21 * t21)
-    t23 = l - rho
-    slack = np.maximum(t23, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t24 = t7 - t17
-    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t24, -(t15 / j))
-    del t15, t17
-    E_22 = _runtime.select(in_line, E_12 * t18 / t24, n_y / j)
-    del n_y, t18, t24
-    t25 = h * (E_12 * E_21 - E_11 * E_22)
-    t26 = t22 - t25
-    t27 = X * E_12 - t21 * E_22
-    t28 = h * (E_11 * t19 - t7 * E_21)
-    A_12 = t27 - t28
-    A_22 = c3_y + A_12
-    A_33 = t4 - t26
-    A_23 = t1 - t26
-    t29 = c3_y - A_12
-    Delta = D * j * h
-    del D, j
-    t30 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t31 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t32 = t30 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t31
-    del t30, t31
-    t33 = np.abs(_runtime.select(in_line, -t20, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t20
-    t34 = t33 & (-(size * _runtime.FEASIBILITY) <= t23)
-    del size, t23, t33
-    t35 = _runtime.poison(np.logical_not(t32) | np.logical_not(t34))
-    del t32, t34
-    t36 = t26 * (A_22 * A_33 + A_23 * t29) / Delta + t35
-    t37 = A_23 * (A_12 * A_33 - t26 * t29) / Delta + t35
-    t38 = -(A_33 * (A_12 * A_23 + t26 * A_22) / Delta) + t35
-    t39 = X * E_11 - t21 * E_21
-    del E_11, E_21, X, t21
-    t40 = h * (E_12 * t19 - t7 * E_22)
-    del E_12, E_22, h, t19, t7
-    A_11 = t39 + t40
-    A_21 = t2 + A_11
-    t41 = -(t26 * (A_33 * A_21 - A_23 * A_21) / Delta) + t35
-    t42 = t26 * A_21
-    t43 = -(t26 * (t29 * A_21 + A_22 * A_21) / Delta) + t35
-    del t26
-    t44 = A_12 * A_21
-    del A_12, A_21
-    t45 = t22 + t25
-    del t22, t25
-    A_12_above = t27 + t28
-    del t27, t28
-    A_22_above = c3_y + A_12_above
-    A_33_above = t4 - t45
+    n_y = over * (a_x * m_z - t8 * t10)
+    del m_z, over, t10
+    nu = t12 * t12 + n_y * n_y + t11 * t11
+    in_line = nu <= t6
+    del t6
+    side = _runtime.sign(a_x * d_y)
+    last = d_y + a_x * side
+    t13 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
+    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    del t7, t9
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t11 * t15 - t8 * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
+    del last
+    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t20 = w_z * h
+    del w_z
+    A_13 = t16 - t20
+    t21 = n_y * t15 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t8, a_x * t11 + t8 * t12)
+    del a_x
+    t22 = h * w_y
+    del w_y
+    t23 = t21 + t22
+    A_22 = c3_y - t23
+    A_33 = t4 + A_13
+    A_23 = t1 + A_13
+    t24 = c3_y + t23
+    Delta = t13 * h
+    del t13
+    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
+    del t25, t26
+    t28 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t14, t5
+    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t28
+    t29 = _runtime.poison(np.logical_not(t27) | unreachable)
+    del t27, unreachable
+    t30 = -(A_13 * (A_22 * A_33 + A_23 * t24) / Delta) + t29
+    t31 = -(A_23 * (t23 * A_33 - A_13 * t24) / Delta) + t29
+    t32 = A_33 * (t23 * A_23 + A_13 * A_22) / Delta + t29
+    t33 = t2 * 0.5 - t12 * t15
+    del t12, t15
+    t34 = _runtime.select(in_line, t8 * side, d_y * t11 - t8 * n_y)
+    del d_y, in_line, n_y, side, t11, t8
+    t35 = h * t34
+    del h, t34
+    t36 = t33 - t35
+    A_21 = t2 - t36
+    t37 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t29
+    t38 = A_13 * A_21
+    t39 = A_13 * (t24 * A_21 + A_22 * A_21) / Delta + t29
+    del A_13
+    t40 = t23 * A_21
+    del A_21, t23
+    A_13_above = t16 + t20
+    del t16, t20
+    t41 = t21 - t22
+    del t21, t22
+    A_22_above = c3_y - t41
+    A_33_above = t4 + A_13_above
     del t4
-    A_23_above = t1 - t45
+    A_23_above = t1 + A_13_above
     del t1
-    t46 = c3_y - A_12_above
+    t42 = c3_y + t41
     del c3_y
-    t47 = t45 * (A_22_above * A_33_above + A_23_above * t46)
-    t48 = A_23_above * (A_12_above * A_33_above - t45 * t46)
-    t49 = A_33_above * (A_12_above * A_23_above + t45 * A_22_above)
-    A_11_above = t39 - t40
-    del t39, t40
-    A_21_above = t2 + A_11_above
+    t43 = A_13_above * (A_22_above * A_33_above + A_23_above * t42)
+    t44 = A_23_above * (t41 * A_33_above - A_13_above * t42)
+    t45 = A_33_above * (t41 * A_23_above + A_13_above * A_22_above)
+    t46 = t33 + t35
+    del t33, t35
+    A_21_above = t2 - t46
     del t2
-    t50 = A_33_above * A_21_above - A_23_above * A_21_above
-    t51 = t45 * A_21_above
-    t52 = A_23_above * (A_33_above * A_11_above + t51) / Delta
-    t53 = A_33_above * (t51 + A_23_above * A_11_above) / Delta
-    del t51
-    t54 = t45 * (t46 * A_21_above + A_22_above * A_21_above)
-    t55 = A_12_above * A_21_above
-    del A_12_above, A_21_above
-    t56 = A_23_above * (t46 * A_11_above + t55) / Delta
-    del A_23_above, t46
-    t57 = A_33_above * (t55 - A_22_above * A_11_above) / Delta
-    del A_11_above, A_22_above, A_33_above, t55
+    t47 = A_33_above * A_21_above - A_23_above * A_21_above
+    t48 = A_13_above * A_21_above
+    t49 = A_23_above * (A_33_above * t46 + t48) / Delta
+    t50 = A_33_above * (t48 + A_23_above * t46) / Delta
+    del t48
+    t51 = A_13_above * (t42 * A_21_above + A_22_above * A_21_above)
+    t52 = t41 * A_21_above
+    del A_21_above, t41
+    t53 = -(A_23_above * (t42 * t46 + t52) / Delta) + t29
+    del A_23_above, t42
+    t54 = A_33_above * (t52 - A_22_above * t46) / Delta
+    del A_22_above, A_33_above, t46, t52
     return (
-        t36,
+        t30,
+        t31,
+        t32,
         t37,
-        t38,
-        t41,
-        -(A_23 * (A_33 * A_11 + t42) / Delta) + t35,
-        A_33 * (t42 + A_23 * A_11) / Delta + t35,
-        t43,
-        -(A_23 * (t29 * A_11 + t44) / Delta) + t35,
-        A_33 * (t44 - A_22 * A_11) / Delta + t35,
-        -(t47 / Delta) + t35,
-        -(t48 / Delta) + t35,
-        t49 / Delta + t35,
-        t45 * t50 / Delta + t35,
-        t52 + t35,
-        -t53 + t35,
-        t54 / Delta + t35,
-        t56 + t35,
-        -t57 + t35,
+        A_23 * (A_33 * t36 + t38) / Delta + t29,
+        -(A_33 * (t38 + A_23 * t36) / Delta) + t29,
+        t39,
+        A_23 * (t24 * t36 + t40) / Delta + t29,
+        -(A_33 * (t40 - A_22 * t36) / Delta) + t29,
+        t43 / Delta + t29,
+        t44 / Delta + t29,
+        -(t45 / Delta) + t29,
+        -(A_13_above * t47 / Delta) + t29,
+        -t49 + t29,
+        t50 + t29,
+        -(t51 / Delta) + t29,
+        t53,
+        t54 + t29,
     )
 
 
@@ -1042,7 +1024,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1085,83 +1066,79 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     t2 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    u_u = t1 * t1 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    t6 = _runtime.select(same, t4, t1)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t7 = _runtime.select(all_same, 0.0, t6 / D)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    t8 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    del all_same
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    a_x = _runtime.select(all_same, 1.0, -t2)
+    t7 = _runtime.select(same, t1, t4)
+    t8 = _runtime.select(same, t4, t1)
+    m_y = a_x * t7 + t2 * t8
+    d_y = _runtime.select(same, c3_y, -c3_y)
     t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    t10 = _runtime.select(same, t1, t4)
-    del same
-    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
-    t12 = t2 - E_11 * t11
+    del c3_y, same
+    t10 = t7 * d_y - t8 * t9
+    t11 = over * (a_x * m_y + d_y * t10)
+    m_z = a_x * t9 + t2 * d_y
     del t2
-    m_y = t9 + E_12 * t11
-    t13 = t10 + t7 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
+    t12 = over * (d_y * m_z + t8 * m_y)
     del m_y
-    t16 = t13 + t7 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t7)
-    t18 = E_11 * t17
-    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
-    del t10, t6, t8, t9
-    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
-    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
-    del t16
-    rho = np.sqrt(X * X + t20 * t20)
-    del X, t20
-    t22 = l - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t23 = t7 - t17
-    del t7
-    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
-    del t15, t17
-    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
-    del n_y, t18, t23
-    t24 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t25 = t21 - t24
-    Delta = D * j * h
-    del D, h, j
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t19
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
-    del size, t22, t29
-    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
-    del t28, t30
-    t32 = t21 + t24
-    del t21, t24
-    t33 = -(t32 * (t1 - t32) * (t4 - t32) / Delta) + t31
-    del t32
+    n_y = over * (a_x * m_z - t8 * t10)
+    del m_z, over, t10
+    nu = t12 * t12 + n_y * n_y + t11 * t11
+    in_line = nu <= t6
+    del t6
+    last = d_y + a_x * _runtime.sign(a_x * d_y)
+    t13 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
+    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    del t7, t9
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t11 * t15 - t8 * 0.5
+    del t11, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
+    del a_x, d_y, last, n_y, t12
+    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu, t15
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t20 = w_z * h
+    del w_z
+    A_13 = t16 - t20
+    Delta = t13 * h
+    del h, t13
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
+    del t21, t22
+    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t14, t5
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t24
+    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
+    del t23, unreachable
+    t26 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t25
+    del A_13
+    A_13_above = t16 + t20
+    del t16, t20
+    t27 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
+    del A_13_above, t1, t4
     return (
-        t25 * (t1 - t25) * (t4 - t25) / Delta + t31,
-        t33,
+        t26,
+        t27 / Delta + t25,
     )
 
 
@@ -1172,7 +1149,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1214,87 +1190,81 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     t2 = f - e - (e * 0.5 - f * 0.5)
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    u_u = t1 * t1 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    t6 = _runtime.select(same, t4, t1)
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t7 = _runtime.select(all_same, 0.0, t6 / D)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    t8 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    del all_same
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    a_x = _runtime.select(all_same, 1.0, -t2)
+    t7 = _runtime.select(same, t1, t4)
+    t8 = _runtime.select(same, t4, t1)
+    m_y = a_x * t7 + t2 * t8
+    d_y = _runtime.select(same, c3_y, -c3_y)
     t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    t10 = _runtime.select(same, t1, t4)
-    del same
-    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
-    t12 = t2 - E_11 * t11
+    del c3_y, same
+    t10 = t7 * d_y - t8 * t9
+    t11 = over * (a_x * m_y + d_y * t10)
+    m_z = a_x * t9 + t2 * d_y
     del t2
-    m_y = t9 + E_12 * t11
-    t13 = t10 + t7 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
+    t12 = over * (d_y * m_z + t8 * m_y)
     del m_y
-    t16 = t13 + t7 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t7)
-    t18 = E_11 * t17
-    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
-    del t10, t6, t8, t9
-    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
-    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
-    del t16
-    rho = np.sqrt(X * X + t20 * t20)
-    del X, t20
-    t22 = l - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t23 = t7 - t17
-    del t7
-    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
-    del t15, t17
-    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
-    del n_y, t18, t23
-    t24 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t25 = t21 - t24
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t19
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
-    del size, t22, t29
-    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
-    del t28, t30
-    Delta = D * j * h
-    del D, h, j
-    t32 = t21 + t24
-    del t21, t24
+    n_y = over * (a_x * m_z - t8 * t10)
+    del m_z, over, t10
+    nu = t12 * t12 + n_y * n_y + t11 * t11
+    in_line = nu <= t6
+    del t6
+    last = d_y + a_x * _runtime.sign(a_x * d_y)
+    t13 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
+    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    del t7, t9
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t11 * t15 - t8 * 0.5
+    del t11, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
+    del a_x, d_y, last, n_y, t12
+    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu, t15
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t20 = w_z * h
+    del w_z
+    A_13 = t16 - t20
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
+    del t21, t22
+    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t14, t5
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t24
+    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
+    del t23, unreachable
+    Delta = t13 * h
+    del h, t13
+    A_13_above = t16 + t20
+    del t16, t20
     return (
-        -t25 + t31,
-        t1 - t25 + t31,
-        t4 - t25 + t31,
-        -Delta + t31,
-        -t32 + t31,
-        t1 - t32 + t31,
-        t4 - t32 + t31,
-        Delta + t31,
+        A_13 + t25,
+        t1 + A_13 + t25,
+        t4 + A_13 + t25,
+        -Delta + t25,
+        A_13_above + t25,
+        t1 + A_13_above + t25,
+        t4 + A_13_above + t25,
+        Delta + t25,
     )
 
 
@@ -1305,7 +1275,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1343,157 +1312,157 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 
 def _condition_number(rho1, rho2, rho3, f, e, l):
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho2
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    t3 = t1 * t1 + c3_y * c3_y
+    u_u = t2 * t2 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t6 / D)
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, c3_y, -c3_y)
+    a_x = _runtime.select(all_same, 1.0, -t1)
     t7 = _runtime.select(same, -c3_y, c3_y)
-    t8 = _runtime.select(same, t4, t1)
-    t9 = _runtime.select(all_same, 0.0, t8 / D)
-    del all_same
-    t10 = _runtime.select(same, t1, t4)
+    m_z = a_x * t7 + t1 * d_y
+    t8 = _runtime.select(same, t4, t2)
+    t9 = _runtime.select(same, t2, t4)
     del same
-    t11 = t2 * E_11 - E_12 * t7 - t9 * t10
-    t12 = t2 - E_11 * t11
-    m_y = t7 + E_12 * t11
-    t13 = t10 + t9 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t9 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
-    del m_y
-    t16 = t13 + t9 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = _runtime.sign(-t9)
-    t18 = t9 - t17
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
-    del t15
-    t19 = t7 * (t6 - t7) + t10 * (t8 - t10)
-    del t10, t6, t7, t8
-    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
-    t21 = E_11 * X - E_21 * t20
-    rho = np.sqrt(X * X + t20 * t20)
-    t22 = l - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t23 = E_11 * t17
+    m_y = a_x * t9 + t1 * t8
+    t10 = over * (d_y * m_z + t8 * m_y)
+    t11 = d_y * t9 - t7 * t8
+    n_y = over * (a_x * m_z - t8 * t11)
+    del m_z
+    t12 = over * (a_x * m_y + d_y * t11)
+    del m_y, over, t11
+    nu = t10 * t10 + n_y * n_y + t12 * t12
+    in_line = nu <= t6
+    del t6
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    t13 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
+    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    del t7, t9
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t1 * 0.5 - t10 * t15
+    t17 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    del side
+    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t21 = t17 * h
     del t17
-    t24 = _runtime.select(in_line, t23, t16 / j)
-    del t16
-    E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
-    del n_y, t18, t23
-    t25 = h * (E_12 * t24 - t9 * E_22)
-    A_11 = t21 + t25
-    t26 = X * E_12 - t20 * E_22
-    t27 = h * (E_11 * t24 - t9 * E_21)
-    A_12 = t26 - t27
-    t28 = X * t9 - t20 * t24
-    del X, t20, t24, t9
-    t29 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t30 = t28 - t29
-    A_21 = t2 + A_11
-    t31 = A_21 * A_21
-    A_22 = c3_y + A_12
-    A_23 = t1 - t30
-    t32 = A_11 * A_11 + A_12 * A_12 + t30 * t30 + (t31 + A_22 * A_22 + A_23 * A_23)
-    t33 = c3_y - A_12
-    A_33 = t4 - t30
-    t34 = A_12 * A_21
-    t35 = A_11 * A_22 - t34
-    t36 = t30 * A_21
-    t37 = A_11 * A_23 + t36
-    t38 = t34 + A_11 * t33
-    del t34
-    t39 = t36 + A_11 * A_33
-    del A_11, t36
-    t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39
-    del t35, t37, t38, t39
-    t41 = A_12 * A_23 + t30 * A_22
-    t42 = A_12 * A_33 - t30 * t33
-    del A_12, t30
-    t43 = A_21 * t33 + A_21 * A_22
-    t44 = A_21 * A_33 - A_21 * A_23
+    t22 = t16 - t21
+    t23 = n_y * t15 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
+    t24 = h * w_y
+    del w_y
+    t25 = t23 + t24
+    t26 = t12 * t15 - t8 * 0.5
+    del t12, t15, t8
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
+    del a_x, d_y, last, n_y, t10
+    t27 = h * w_z
+    del w_z
+    A_13 = t26 - t27
+    A_21 = t1 - t22
+    t28 = A_21 * A_21
+    A_22 = c3_y - t25
+    A_23 = t2 + A_13
+    t29 = t22 * t22 + t25 * t25 + A_13 * A_13 + (t28 + A_22 * A_22 + A_23 * A_23)
+    t30 = c3_y + t25
+    A_33 = t4 + A_13
+    t31 = t25 * A_21
+    t32 = t22 * A_22 - t31
+    t33 = A_13 * A_21
+    t34 = t22 * A_23 + t33
+    t35 = t31 + t22 * t30
+    del t31
+    t36 = t33 + t22 * A_33
+    del t22, t33
+    t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36
+    del t32, t34, t35, t36
+    t38 = t25 * A_23 + A_13 * A_22
+    t39 = t25 * A_33 - A_13 * t30
+    del A_13, t25
+    t40 = A_21 * t30 + A_21 * A_22
+    t41 = A_21 * A_33 - A_21 * A_23
     del A_21
-    t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44
-    del t40, t41, t42, t43, t44
-    t46 = A_22 * A_33 + A_23 * t33
+    t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41
+    del t37, t38, t39, t40, t41
+    t43 = A_22 * A_33 + A_23 * t30
     del A_22, A_23
-    t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46)
-    del A_33, t31, t32, t33, t45, t46
-    t48 = 3.0 * (D * j * h)
-    del D, h, j
-    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t50 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t51 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t50
-    del t49, t50
-    t52 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t19
-    t53 = t52 & (-(size * _runtime.FEASIBILITY) <= t22)
-    del size, t22, t52
-    t54 = _runtime.poison(np.logical_not(t51) | np.logical_not(t53))
-    del t51, t53
-    A_11_above = t21 - t25
-    del t21, t25
-    A_12_above = t26 + t27
+    t44 = (t29 + (t28 + t30 * t30 + A_33 * A_33)) * (t42 + t43 * t43)
+    del A_33, t28, t29, t30, t42, t43
+    t45 = 3.0 * (t13 * h)
+    del h, t13
+    t46 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t47 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t48 = t46 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t47
+    del t46, t47
+    t49 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t14, t5
+    unreachable = np.logical_not(t49 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t49
+    t50 = _runtime.poison(np.logical_not(t48) | unreachable)
+    del t48, unreachable
+    t51 = t16 + t21
+    del t16, t21
+    t52 = t23 - t24
+    del t23, t24
+    A_13_above = t26 + t27
     del t26, t27
-    t55 = A_11_above * A_11_above + A_12_above * A_12_above
-    t56 = t28 + t29
-    del t28, t29
-    A_21_above = t2 + A_11_above
-    del t2
-    t57 = A_21_above * A_21_above
-    A_22_above = c3_y + A_12_above
-    A_23_above = t1 - t56
+    square1_above = t51 * t51 + t52 * t52 + A_13_above * A_13_above
+    A_21_above = t1 - t51
     del t1
-    square2_above = t57 + A_22_above * A_22_above + A_23_above * A_23_above
-    t58 = c3_y - A_12_above
+    t53 = A_21_above * A_21_above
+    A_22_above = c3_y - t52
+    A_23_above = t2 + A_13_above
+    del t2
+    square2_above = t53 + A_22_above * A_22_above + A_23_above * A_23_above
+    t54 = c3_y + t52
     del c3_y
-    A_33_above = t4 - t56
+    A_33_above = t4 + A_13_above
     del t4
-    t59 = t55 + t56 * t56 + square2_above + (t57 + t58 * t58 + A_33_above * A_33_above)
-    del square2_above, t55, t57
-    t60 = A_12_above * A_21_above
-    t61 = A_11_above * A_22_above - t60
-    t62 = t56 * A_21_above
-    t63 = A_11_above * A_23_above + t62
-    t64 = t60 + A_11_above * t58
-    del t60
-    t65 = t62 + A_11_above * A_33_above
-    del A_11_above, t62
-    t66 = t61 * t61 + t63 * t63 + t64 * t64 + t65 * t65
-    del t61, t63, t64, t65
-    t67 = A_12_above * A_23_above + t56 * A_22_above
-    t68 = A_12_above * A_33_above - t56 * t58
-    del A_12_above, t56
-    t69 = A_21_above * t58 + A_21_above * A_22_above
-    t70 = A_21_above * A_33_above - A_21_above * A_23_above
+    t55 = square1_above + square2_above + (t53 + t54 * t54 + A_33_above * A_33_above)
+    del square1_above, square2_above, t53
+    t56 = t52 * A_21_above
+    t57 = t51 * A_22_above - t56
+    t58 = A_13_above * A_21_above
+    t59 = t51 * A_23_above + t58
+    t60 = t56 + t51 * t54
+    del t56
+    t61 = t58 + t51 * A_33_above
+    del t51, t58
+    t62 = t57 * t57 + t59 * t59 + t60 * t60 + t61 * t61
+    del t57, t59, t60, t61
+    t63 = t52 * A_23_above + A_13_above * A_22_above
+    t64 = t52 * A_33_above - A_13_above * t54
+    del A_13_above, t52
+    t65 = A_21_above * t54 + A_21_above * A_22_above
+    t66 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
-    t71 = t66 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
-    del t66, t67, t68, t69, t70
-    t72 = A_22_above * A_33_above + A_23_above * t58
-    del A_22_above, A_23_above, A_33_above, t58
+    t67 = t62 + t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66
+    del t62, t63, t64, t65, t66
+    t68 = A_22_above * A_33_above + A_23_above * t54
+    del A_22_above, A_23_above, A_33_above, t54
     return (
-        np.sqrt(t47) / t48 + t54,
-        np.sqrt(t59 * (t71 + t72 * t72)) / t48 + t54,
+        np.sqrt(t44) / t45 + t50,
+        np.sqrt(t55 * (t67 + t68 * t68)) / t45 + t50,
     )
 
 
@@ -1504,7 +1473,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1543,113 +1511,114 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 
 def _constraint(rho1, rho2, rho3, f, e, l):
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho2
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
-    size_u = np.sqrt(t1 * t1 + t3)
+    t3 = t1 * t1 + c3_y * c3_y
+    u_u = t2 * t2 + t3
     t4 = rho1 - rho3
-    size_v = np.sqrt(t4 * t4 + t3)
+    v_v = t4 * t4 + t3
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t5
-    same = size_u <= t5
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, t4, t1)
-    t7 = _runtime.select(all_same, 0.0, t6 / D)
-    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
-    t8 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    del D, all_same
-    t9 = _runtime.select(same, -c3_y, c3_y)
-    t10 = _runtime.select(same, t1, t4)
+    t5 = size * size
+    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
+    all_same = u_u + v_v <= t6
+    same = u_u <= t6
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, c3_y, -c3_y)
+    a_x = _runtime.select(all_same, 1.0, -t1)
+    t7 = _runtime.select(same, -c3_y, c3_y)
+    m_z = a_x * t7 + t1 * d_y
+    t8 = _runtime.select(same, t4, t2)
+    t9 = _runtime.select(same, t2, t4)
     del same
-    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
-    t12 = t2 - E_11 * t11
-    m_y = t9 + E_12 * t11
-    t13 = t10 + t7 * t11
-    del t11
-    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
-    t15 = t12 - E_11 * t14
-    del t12
-    n_y = m_y + E_12 * t14
-    del m_y
-    t16 = t13 + t7 * t14
-    del t13, t14
-    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
-    in_line = j <= t5
-    t17 = t9 * (t8 - t9) + t10 * (t6 - t10)
-    del t10, t6, t8, t9
-    t18 = _runtime.select(in_line, 0.0, t17 / (2.0 * j))
-    t19 = _runtime.sign(-t7)
-    t20 = E_11 * t19
-    t21 = _runtime.select(in_line, t20, t16 / j)
+    m_y = a_x * t9 + t1 * t8
+    t10 = over * (d_y * m_z + t8 * m_y)
+    t11 = d_y * t9 - t7 * t8
+    n_y = over * (a_x * m_z - t8 * t11)
+    del m_z
+    t12 = over * (a_x * m_y + d_y * t11)
+    del m_y, over, t11
+    nu = t10 * t10 + n_y * n_y + t12 * t12
+    in_line = nu <= t6
+    del t6
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
+    t13 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    del t7, t9
+    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
+    t15 = t1 * 0.5 - t10 * t14
+    t16 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    del side
+    t17 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
+    del all_same, mu, nu
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t20 = t16 * h
     del t16
-    t22 = X * t7 - t18 * t21
-    rho = np.sqrt(X * X + t18 * t18)
-    t23 = l - rho
-    slack = np.maximum(t23, 0.0)
-    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t5
-    t24 = t7 - t19
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t19 / t24, -(t15 / j))
-    del t15, t19
-    E_22 = _runtime.select(in_line, E_12 * t20 / t24, n_y / j)
-    del j, n_y, t20, t24
-    t25 = h * (E_12 * E_21 - E_11 * E_22)
-    t26 = t22 - t25
-    A_23 = t1 - t26
-    t27 = 0.75 * t26
-    t28 = X * E_12 - t18 * E_22
-    t29 = h * (E_11 * t21 - t7 * E_21)
-    A_12 = t28 - t29
-    t30 = E_11 * X - E_21 * t18
-    del E_11, E_21, X, t18
-    t31 = h * (E_12 * t21 - t7 * E_22)
-    del E_12, E_22, h, t21, t7
-    A_11 = t30 + t31
-    A_33 = t4 - t26
-    t32 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5
-    t33 = (t2 + A_11) * (1.7320508075688772 * t26)
-    del A_11, t26
-    t34 = t32 + A_33 * t33 * 0.25 - A_33 * t27 * (c3_y + A_12)
-    del A_33, t32
-    t35 = A_23 * t27 * (c3_y - A_12) - (t34 + A_23 * t33 * 0.25)
-    del A_12, A_23, t27, t33, t34
-    t36 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t37 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t38 = t36 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t37
-    del t36, t37
-    t39 = np.abs(_runtime.select(in_line, -t17, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t17
-    t40 = t39 & (-(size * _runtime.FEASIBILITY) <= t23)
-    del size, t23, t39
-    t41 = _runtime.poison(np.logical_not(t38) | np.logical_not(t40))
-    del t38, t40
-    t42 = t22 + t25
-    del t22, t25
-    A_23_above = t1 - t42
-    del t1
-    t43 = 0.75 * t42
-    A_12_above = t28 + t29
-    del t28, t29
-    A_11_above = t30 - t31
-    del t30, t31
-    A_33_above = t4 - t42
+    t21 = t15 - t20
+    t22 = t12 * t14 - t8 * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
+    del last
+    t23 = h * w_z
+    del w_z
+    A_13 = t22 - t23
+    A_23 = t2 + A_13
+    A_33 = t4 + A_13
+    t24 = (t1 - t21) * (1.7320508075688772 * A_13)
+    t25 = 1.7320508075688772 * t21 * A_23 * A_33 * 0.5 + A_33 * t24 * 0.25
+    del t21
+    t26 = n_y * t14 - d_y * 0.5
+    del d_y, n_y, t14
+    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
+    del a_x, t10, t12, t8
+    t27 = h * w_y
+    del h, w_y
+    t28 = t26 + t27
+    t29 = 0.75 * A_13
+    del A_13
+    t30 = t25 - A_33 * (c3_y - t28) * t29 + A_23 * t24 * 0.25
+    del A_33, t24, t25
+    t31 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t32 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t33 = t31 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t32
+    del t31, t32
+    t34 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t13, t5
+    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t34
+    t35 = _runtime.poison(np.logical_not(t33) | unreachable)
+    del t33, unreachable
+    t36 = t15 + t20
+    del t15, t20
+    A_13_above = t22 + t23
+    del t22, t23
+    A_23_above = t2 + A_13_above
+    del t2
+    A_33_above = t4 + A_13_above
     del t4
-    t44 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above
-    t45 = (t2 + A_11_above) * (1.7320508075688772 * t42)
-    del A_11_above, t2, t42
-    t46 = t44 * 0.5 + A_33_above * t45 * 0.25 - A_33_above * t43 * (c3_y + A_12_above)
-    del A_33_above, t44
-    t47 = A_23_above * t43 * (c3_y - A_12_above) - (t46 + A_23_above * t45 * 0.25)
-    del A_12_above, A_23_above, c3_y, t43, t45, t46
+    t37 = 1.7320508075688772 * t36 * A_23_above * A_33_above
+    t38 = (t1 - t36) * (1.7320508075688772 * A_13_above)
+    del t1, t36
+    t39 = t26 - t27
+    del t26, t27
+    t40 = 0.75 * A_13_above
+    del A_13_above
+    t41 = t37 * 0.5 + A_33_above * t38 * 0.25 - A_33_above * (c3_y - t39) * t40
+    del A_33_above, t37
+    t42 = t41 + A_23_above * t38 * 0.25 - A_23_above * t40 * (c3_y + t39)
+    del A_23_above, t38, t39, t40, t41
     return (
-        t35 + t41,
-        t47 + t41,
+        t30 - A_23 * t29 * (c3_y + t28) + t35,
+        t42 + t35,
     )
 
 
@@ -1660,7 +1629,6 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 

@@ -2,29 +2,29 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
-#   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
-#   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
-#   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
-#   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
-#   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
-#     multiply, 5 sqrt
-#   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
-#   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
-#     5 sqrt
-#   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
-#   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
-#   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
-#   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
+#   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+#   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
+#   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+#   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
+#   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+#   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
+#     multiply, 1 sqrt
+#   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+#   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
+#     1 sqrt
+#   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+#   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
+#   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+#   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
 #     sqrt
-#   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
-#   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
+#   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+#   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
 #     sqrt
-#   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
-#   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
-#     7 sqrt
-#   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
-#   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+#   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+#   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
+#     3 sqrt
+#   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+#   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 #     sqrt
 #   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
@@ -141,159 +141,140 @@ _DEFAULT = Parameters()
 
 def _fk(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t3 = 1.0 / D
-    del D
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 * t3))
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t5 * t3)
-    t6 = _runtime.select(same, 0.0, rho3)
-    t7 = _runtime.select(same, rho3, 0.0)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    E_13 = _runtime.select(all_same, 0.0, t7 * t3)
-    del all_same, t3
-    t8 = rho1 * E_11 - t4 * E_12 - t6 * E_13
-    t9 = rho1 - E_11 * t8
-    m_y = t4 + E_12 * t8
-    m_z = t6 + E_13 * t8
-    del t8
-    t10 = E_11 * t9 - E_12 * m_y - E_13 * m_z
-    t11 = t9 - E_11 * t10
-    del t9
-    n_y = m_y + E_12 * t10
-    del m_y
-    n_z = m_z + E_13 * t10
-    del m_z, t10
-    j = np.sqrt(t11 * t11 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t12 = t4 * (t5 - t4) + t6 * (t7 - t6)
-    del t4, t5, t6, t7
-    t13 = _runtime.select(in_line, 0.0, t12 / (2.0 * j))
-    rho = np.sqrt(X * X + t13 * t13)
-    t14 = L - rho
-    slack = np.maximum(t14, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t15 = _runtime.sign(E_13)
-    t16 = E_11 * t15
-    t17 = 1.0 / j
-    del j
-    E_23 = _runtime.select(in_line, -t16, n_z * t17)
-    del n_z
-    t18 = 1.0 / (E_13 + t15)
-    E_22 = _runtime.select(in_line, -(t18 * (E_12 * t16)), n_y * t17)
-    del n_y, t16
-    t19 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t15 * t18, -(t11 * t17))
-    del t11, t15, t17, t18
-    t20 = E_21 * t13 - (rho1 + X * E_11)
-    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
-    del t21
-    t22 = np.abs(_runtime.select(in_line, -t12, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del t12
-    t23 = t22 & (-(size * _runtime.FEASIBILITY) <= t14)
-    del size, t14, t22
-    unreachable = np.logical_not(t23)
-    del t23
-    t24 = _runtime.poison(invalid | unreachable)
-    t25 = X * E_12 - t13 * E_22
-    t26 = h * (E_11 * E_23 - E_13 * E_21)
-    t27 = X * E_13 - t13 * E_23
-    del E_13, E_23, X, t13
-    t28 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t29 = _runtime.status(invalid, unreachable, in_line)
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
+    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
+    del all_same, mu, nu
+    t11 = L * L - t10
+    del t10
+    slack = np.maximum(t11, 0.0)
+    t12 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t13 = w_x * h
+    del w_x
+    t14 = rho1 * 0.5 - (rho1 + t7 * t9)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
+    del t15
+    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t2, t8
+    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
+    del t11, t12, t16
+    t17 = _runtime.poison(invalid | unreachable)
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t18 = w_y * h
+    del w_y
+    t19 = n_y * t9 - d_y * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, last, n_y, t7
+    t20 = w_z * h
+    del h, w_z
+    t21 = n_z * t9 - d_z * 0.5
+    del d_z, n_z, t9
+    t22 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t19 - t20 + t24,
-        t25 - t26 + t24,
-        t27 - t28 + t24,
-        -(t19 + t20) + t24,
-        t26 + t25 + t24,
-        t28 + t27 + t24,
-        t29,
-        t29,
+        t13 - t14 + t17,
+        t18 - t19 + t17,
+        t20 - t21 + t17,
+        -(t13 + t14) + t17,
+        -(t18 + t19) + t17,
+        -(t20 + t21) + t17,
+        t22,
+        t22,
     )
 
 
 def _fk_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    t2 = 1.0 / size_u
-    E_12 = rho2 * t2
-    t3 = rho3 * rho3
-    t4 = rho1 * t2
-    del t2
-    t5 = rho1 * t4
-    t6 = rho1 - t4 * t5
-    t7 = t5 * E_12
-    del t5
-    t8 = t4 * t6 - E_12 * t7
-    t9 = t6 - t4 * t8
-    del t6
-    t10 = t7 + E_12 * t8
-    del t7, t8
-    j = np.sqrt(t3 + t9 * t9 + t10 * t10)
-    t11 = 1.0 / j
-    E_23 = rho3 * t11
-    X = size_u * 0.5
-    t12 = t3 / (2.0 * j)
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t14 = E_12 * E_23 * h
-    t15 = t9 * t11
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    m_z = rho1 * rho2
+    t2 = over * (rho2 * m_z)
+    t3 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t2 * t2 + t3 * t3 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t4 = rho3 * rho3
+    t5 = u_u * t4 * part * 0.5
+    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
+    slack = np.maximum(t6, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t7 = rho2 * n_z * h
+    t8 = t2 * t5 - (rho1 - rho1 * 0.5)
+    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
     del t9
-    t16 = t15 * t12 - (rho1 - X * t4)
-    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
-    del t17
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t18 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t19 = t18 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del t13, t18
-    unreachable = np.logical_not(t19)
-    del t19
-    t20 = _runtime.poison(invalid | unreachable)
-    t21 = h * (t4 * E_23)
-    t22 = t10 * t11
-    del t10, t11
-    t23 = X * E_12 - t12 * t22
-    del X
-    t24 = t12 * E_23
-    del E_23, t12
-    t25 = h * (t4 * t22 + E_12 * t15)
-    del E_12, h, t15, t22, t4
-    t26 = _runtime.status(invalid, unreachable, np.False_)
-    del invalid, unreachable
-    t27 = size * _runtime.VANISHING
+    t10 = size * size
+    t11 = L * size * 2.0
     del size
-    t28 = (size_u <= t27) | (size_u + np.sqrt(t1 + t3) <= t27)
-    del size_u, t1, t3
+    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
+    del t6
+    unreachable = np.logical_not(t12)
+    del t12
+    t13 = _runtime.poison(invalid | unreachable)
+    t14 = rho1 * n_z * h
+    t15 = t3 * t5 - rho2 * 0.5
+    t16 = n_z * t5
+    del n_z, t5
+    t17 = (rho1 * t3 + rho2 * t2) * h
+    del h, t2, t3
+    t18 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t19 = _runtime.VANISHING * _runtime.VANISHING * t10
+    del t10
+    t20 = (u_u <= t19) | (u_u + (t1 + t4) <= t19) | (nu <= t19)
+    del nu, t1, t19, t4, u_u
     return (
-        t14 - t16 + t20,
-        t21 + t23 + t20,
-        t24 + t25 + t20,
-        -(t14 + t16) + t20,
-        t23 - t21 + t20,
-        t24 - t25 + t20,
-        t26,
-        t26,
-        t28 | (j <= t27) | (slack <= t27),
+        t7 - t8 + t13,
+        t14 - t15 + t13,
+        t16 + t17 + t13,
+        -(t7 + t8) + t13,
+        -(t14 + t15) + t13,
+        t16 - t17 + t13,
+        t18,
+        t18,
+        t20 | (slack <= _runtime.VANISHING * t11),
     )
 
 
@@ -305,7 +286,6 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_fk_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -357,208 +337,209 @@ def _skeleton(rho1, rho2, rho3, L):
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t1)
     del t1
     t2 = rho1 * rho1
-    size_u = np.sqrt(t2 + rho2 * rho2)
-    size_v = np.sqrt(t2 + rho3 * rho3)
+    u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     del t2
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t3 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t3
-    same = size_u <= t3
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t4 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t4 / D)
+    t3 = size * size
+    t4 = _runtime.VANISHING * _runtime.VANISHING * t3
+    all_same = u_u + v_v <= t4
+    same = u_u <= t4
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t5 = _runtime.select(same, rho2, 0.0)
-    t6 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t6 / D)
-    t7 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t6 = _runtime.select(same, 0.0, rho3)
     del same
-    t8 = rho1 * E_11 - E_12 * t5 - E_13 * t7
-    t9 = rho1 - E_11 * t8
-    m_y = t5 + E_12 * t8
-    m_z = t7 + E_13 * t8
-    del t8
-    t10 = E_11 * t9 - E_12 * m_y - E_13 * m_z
-    t11 = t9 - E_11 * t10
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = over * (d_y * m_z + d_z * t7)
+    m_x = d_y * t6 - d_z * t5
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t7 + d_y * m_x)
+    del m_x, over, t7
+    nu = t8 * t8 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    del t4
+    t9 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    del t5, t6
+    t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
+    del t3
+    t11 = L * size * 2.0
+    del size
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    t12 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
     del t9
-    n_y = m_y + E_12 * t10
-    del m_y
-    n_z = m_z + E_13 * t10
-    del m_z, t10
-    j = np.sqrt(t11 * t11 + n_y * n_y + n_z * n_z)
-    in_line = j <= t3
-    t12 = t5 * (t4 - t5) + t7 * (t6 - t7)
-    del t4, t5, t6, t7
-    t13 = np.abs(_runtime.select(in_line, -t12, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t14 = _runtime.select(in_line, 0.0, t12 / (j * 2.0))
-    del t12
-    rho = np.sqrt(X * X + t14 * t14)
-    t15 = L - rho
-    t16 = t13 & (-(size * _runtime.FEASIBILITY) <= t15)
-    del size, t13
-    t17 = _runtime.poison(invalid | np.logical_not(t16))
-    del invalid, t16
-    t18 = 0.0 + t17
-    t19 = rho1 + t17
-    t20 = L * 0.0625
-    t21 = t20 + t17
-    t22 = -t20 + t17
-    slack = np.maximum(t15, 0.0)
-    del t15
-    h = _runtime.select(slack <= t3, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t3
-    t23 = _runtime.sign(E_13)
-    t24 = E_11 * t23
-    E_23 = _runtime.select(in_line, -t24, n_z / j)
-    del n_z
-    t25 = E_13 + t23
-    E_22 = _runtime.select(in_line, -(E_12 * t24 / t25), n_y / j)
-    del n_y, t24
-    t26 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t23 / t25, -(t11 / j))
-    del in_line, j, t11, t23, t25
-    t27 = E_11 * X - E_21 * t14
-    t28 = rho1 + (t26 + t27)
-    t29 = t28 + t17
-    t30 = (E_11 * E_23 - E_13 * E_21) * h
-    t31 = E_12 * X - t14 * E_22
-    t32 = t30 - t31
-    t33 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t34 = E_13 * X - E_23 * t14
-    del E_13, E_23, X, t14
-    t35 = t33 - t34
-    t36 = -t35 + t17
-    t37 = rho2 + t17
-    t38 = -t32 + t17
-    t39 = rho3 + t17
-    t40 = rho1 - (t26 - t27)
-    del t26, t27
-    t41 = t40 + t17
-    A_12_inner = t30 + t31
-    del t30, t31
-    A_13_inner = t33 + t34
-    del t33, t34
-    t42 = A_13_inner + t17
-    t43 = A_12_inner + t17
+    t13 = _runtime.select(all_same, 0.0, nu * (t12 * t12) + mu * 0.25)
+    del all_same, mu, nu
+    t14 = L * L - t13
+    del t13
+    unreachable = np.logical_not(t10 & (-(_runtime.FEASIBILITY * t11) <= t14))
+    del t10
+    t15 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    t16 = 0.0 + t15
+    t17 = rho1 + t15
+    t18 = L * 0.0625
+    t19 = t18 + t15
+    t20 = -t18 + t15
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    del side
+    slack = np.maximum(t14, 0.0)
+    del t14
+    h = _runtime.select(slack <= _runtime.VANISHING * t11, 0.0, np.sqrt(part * slack))
+    del part, slack, t11
+    t21 = w_x * h
+    del w_x
+    t22 = t8 * t12 - rho1 * 0.5
+    t23 = rho1 + (t21 + t22)
+    t24 = t23 + t15
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t8))
+    t25 = w_y * h
+    del w_y
+    t26 = n_y * t12 - d_y * 0.5
+    A_12 = t25 - t26
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t8)
+    del a_x, d_y, in_line, last, n_y, t8
+    t27 = w_z * h
+    del h, w_z
+    t28 = n_z * t12 - d_z * 0.5
+    del d_z, n_z, t12
+    A_13 = t27 - t28
+    t29 = A_13 + t15
+    t30 = rho2 + t15
+    t31 = A_12 + t15
+    t32 = rho3 + t15
+    t33 = rho1 - (t21 - t22)
+    del t21, t22
+    t34 = t33 + t15
+    t35 = t25 + t26
+    del t25, t26
+    t36 = t27 + t28
+    del t27, t28
+    t37 = -t36 + t15
+    t38 = -t35 + t15
     return (
-        t18,
-        t18,
-        t18,
+        t16,
+        t16,
+        t16,
+        t17,
+        t16,
+        t16,
+        t17,
         t19,
-        t18,
-        t18,
-        t19,
-        t21,
-        t18,
-        t19,
-        t22,
-        t18,
+        t16,
+        t17,
+        t20,
+        t16,
+        t24,
+        t18 + A_12 + t15,
         t29,
-        t20 - t32 + t17,
-        t36,
+        t24,
+        A_12 - t18 + t15,
         t29,
-        -(t20 + t32) + t17,
-        t36,
-        t18,
-        t18,
-        t18,
-        t18,
-        t37,
-        t18,
-        t18,
-        t37,
-        t21,
-        t18,
-        t37,
-        t22,
-        t29,
-        t38,
-        t20 - t35 + t17,
-        t29,
-        t38,
-        -(t20 + t35) + t17,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t39,
-        t21,
-        t18,
-        t39,
-        t22,
-        t18,
-        t39,
-        t20 + t28 + t17,
-        t38,
-        t36,
-        t28 - t20 + t17,
-        t38,
-        t36,
-        t29,
-        t38,
-        t36,
-        t18,
-        t18,
-        t18,
+        t16,
+        t16,
+        t16,
+        t16,
+        t30,
+        t16,
+        t16,
+        t30,
         t19,
-        t18,
-        t18,
+        t16,
+        t30,
+        t20,
+        t24,
+        t31,
+        t18 + A_13 + t15,
+        t24,
+        t31,
+        A_13 - t18 + t15,
+        t16,
+        t16,
+        t16,
+        t16,
+        t16,
+        t32,
         t19,
-        t21,
-        t18,
+        t16,
+        t32,
+        t20,
+        t16,
+        t32,
+        t18 + t23 + t15,
+        t31,
+        t29,
+        t23 - t18 + t15,
+        t31,
+        t29,
+        t24,
+        t31,
+        t29,
+        t16,
+        t16,
+        t16,
+        t17,
+        t16,
+        t16,
+        t17,
         t19,
-        t22,
-        t18,
-        t41,
-        t20 + A_12_inner + t17,
-        t42,
-        t41,
-        A_12_inner - t20 + t17,
-        t42,
-        t18,
-        t18,
-        t18,
-        t18,
+        t16,
+        t17,
+        t20,
+        t16,
+        t34,
+        t18 - t35 + t15,
         t37,
-        t18,
-        t18,
+        t34,
+        -(t18 + t35) + t15,
         t37,
-        t21,
-        t18,
+        t16,
+        t16,
+        t16,
+        t16,
+        t30,
+        t16,
+        t16,
+        t30,
+        t19,
+        t16,
+        t30,
+        t20,
+        t34,
+        t38,
+        t18 - t36 + t15,
+        t34,
+        t38,
+        -(t18 + t36) + t15,
+        t16,
+        t16,
+        t16,
+        t16,
+        t16,
+        t32,
+        t19,
+        t16,
+        t32,
+        t20,
+        t16,
+        t32,
+        t18 + t33 + t15,
+        t38,
         t37,
-        t22,
-        t41,
-        t43,
-        t20 + A_13_inner + t17,
-        t41,
-        t43,
-        A_13_inner - t20 + t17,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t39,
-        t21,
-        t18,
-        t39,
-        t22,
-        t18,
-        t39,
-        t20 + t40 + t17,
-        t43,
-        t42,
-        t40 - t20 + t17,
-        t43,
-        t42,
-        t41,
-        t43,
-        t42,
+        t33 - t18 + t15,
+        t38,
+        t37,
+        t34,
+        t38,
+        t37,
     )
 
 
@@ -568,190 +549,180 @@ def _skeleton_common(rho1, rho2, rho3, L):
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t1)
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t3 = rho1 * rho1
-    size_u = np.sqrt(t3 + rho2 * rho2)
-    X = size_u * 0.5
-    t4 = rho3 * rho3
-    t5 = rho1 / size_u
-    t6 = rho1 * t5
-    t7 = rho1 - t5 * t6
-    E_12 = rho2 / size_u
-    t8 = t6 * E_12
-    del t6
-    t9 = t5 * t7 - E_12 * t8
-    t10 = t7 - t5 * t9
-    del t7
-    t11 = t8 + E_12 * t9
-    del t8, t9
-    j = np.sqrt(t4 + t10 * t10 + t11 * t11)
-    t12 = t4 / (2.0 * j)
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    unreachable = np.logical_not(t2 & (-(size * _runtime.FEASIBILITY) <= t13))
-    del t2
-    t14 = _runtime.poison(invalid | unreachable)
-    del invalid, unreachable
-    t15 = 0.0 + t14
-    t16 = rho1 + t14
-    t17 = L * 0.0625
-    t18 = t17 + t14
-    t19 = -t17 + t14
-    E_23 = rho3 / j
-    slack = np.maximum(t13, 0.0)
-    del t13
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t20 = E_12 * E_23 * h
-    t21 = t10 / j
-    del t10
-    t22 = t5 * X + t12 * t21
-    t23 = rho1 + (t20 - t22)
-    t24 = t23 + t14
-    t25 = t5 * E_23 * h
-    t26 = t11 / j
-    del t11
-    t27 = E_12 * X - t12 * t26
-    del X
-    A_12 = t25 + t27
-    t28 = t12 * E_23
-    del E_23, t12
-    t29 = (t5 * t26 + E_12 * t21) * h
-    del E_12, h, t21, t26, t5
-    A_13 = t28 + t29
-    t30 = A_13 + t14
-    t31 = rho2 + t14
-    t32 = A_12 + t14
-    t33 = rho3 + t14
-    t34 = rho1 - (t20 + t22)
-    del t20, t22
-    t35 = t34 + t14
-    t36 = t25 - t27
-    del t25, t27
-    A_13_inner = t28 - t29
-    del t28, t29
-    t37 = A_13_inner + t14
-    t38 = -t36 + t14
-    t39 = size * _runtime.VANISHING
+    t2 = size * size
+    t3 = L * size * 2.0
     del size
-    t40 = (size_u <= t39) | (size_u + np.sqrt(t3 + t4) <= t39)
-    del size_u, t3, t4
+    t4 = rho1 * rho1
+    u_u = t4 + rho2 * rho2
+    over = 1.0 / u_u
+    m_z = rho1 * rho2
+    t5 = over * (rho2 * m_z)
+    t6 = over * (rho1 * m_z)
+    del m_z
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    del over
+    nu = t5 * t5 + t6 * t6 + n_z * n_z
+    t7 = rho3 * rho3
+    part = 1.0 / (u_u * nu)
+    t8 = u_u * t7 * part * 0.5
+    t9 = L * L - (nu * (t8 * t8) + u_u * 0.25)
+    t10 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t9)
+    t11 = _runtime.poison(invalid | np.logical_not(t10))
+    del invalid, t10
+    t12 = 0.0 + t11
+    t13 = rho1 + t11
+    t14 = L * 0.0625
+    t15 = t14 + t11
+    t16 = -t14 + t11
+    slack = np.maximum(t9, 0.0)
+    del t9
+    h = np.sqrt(part * slack)
+    del part
+    t17 = rho2 * n_z * h
+    t18 = rho1 * 0.5 + t5 * t8
+    t19 = rho1 + (t17 - t18)
+    t20 = t19 + t11
+    t21 = rho1 * n_z * h
+    t22 = t6 * t8 - rho2 * 0.5
+    A_12 = t21 - t22
+    t23 = n_z * t8
+    del n_z, t8
+    t24 = (rho1 * t6 + rho2 * t5) * h
+    del h, t5, t6
+    A_13 = t23 + t24
+    t25 = A_13 + t11
+    t26 = rho2 + t11
+    t27 = A_12 + t11
+    t28 = rho3 + t11
+    t29 = rho1 - (t17 + t18)
+    del t17, t18
+    t30 = t29 + t11
+    t31 = t21 + t22
+    del t21, t22
+    A_13_inner = t23 - t24
+    del t23, t24
+    t32 = A_13_inner + t11
+    t33 = -t31 + t11
+    t34 = _runtime.VANISHING * _runtime.VANISHING * t2
+    del t2
+    t35 = (u_u <= t34) | (u_u + (t4 + t7) <= t34) | (nu <= t34)
+    del nu, t34, t4, t7, u_u
     return (
+        t12,
+        t12,
+        t12,
+        t13,
+        t12,
+        t12,
+        t13,
         t15,
-        t15,
-        t15,
+        t12,
+        t13,
         t16,
+        t12,
+        t20,
+        t14 + A_12 + t11,
+        t25,
+        t20,
+        A_12 - t14 + t11,
+        t25,
+        t12,
+        t12,
+        t12,
+        t12,
+        t26,
+        t12,
+        t12,
+        t26,
         t15,
-        t15,
+        t12,
+        t26,
         t16,
-        t18,
+        t20,
+        t27,
+        t14 + A_13 + t11,
+        t20,
+        t27,
+        A_13 - t14 + t11,
+        t12,
+        t12,
+        t12,
+        t12,
+        t12,
+        t28,
         t15,
+        t12,
+        t28,
         t16,
-        t19,
+        t12,
+        t28,
+        t14 + t19 + t11,
+        t27,
+        t25,
+        t19 - t14 + t11,
+        t27,
+        t25,
+        t20,
+        t27,
+        t25,
+        t12,
+        t12,
+        t12,
+        t13,
+        t12,
+        t12,
+        t13,
         t15,
-        t24,
-        t17 + A_12 + t14,
+        t12,
+        t13,
+        t16,
+        t12,
         t30,
-        t24,
-        A_12 - t17 + t14,
-        t30,
-        t15,
-        t15,
-        t15,
-        t15,
-        t31,
-        t15,
-        t15,
-        t31,
-        t18,
-        t15,
-        t31,
-        t19,
-        t24,
-        t32,
-        t17 + A_13 + t14,
-        t24,
-        t32,
-        A_13 - t17 + t14,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
-        t33,
-        t18,
-        t15,
-        t33,
-        t19,
-        t15,
-        t33,
-        t17 + t23 + t14,
+        t14 - t31 + t11,
         t32,
         t30,
-        t23 - t17 + t14,
+        -(t14 + t31) + t11,
         t32,
-        t30,
-        t24,
-        t32,
-        t30,
+        t12,
+        t12,
+        t12,
+        t12,
+        t26,
+        t12,
+        t12,
+        t26,
         t15,
-        t15,
-        t15,
+        t12,
+        t26,
         t16,
+        t30,
+        t33,
+        t14 + A_13_inner + t11,
+        t30,
+        t33,
+        A_13_inner - t14 + t11,
+        t12,
+        t12,
+        t12,
+        t12,
+        t12,
+        t28,
         t15,
-        t15,
+        t12,
+        t28,
         t16,
-        t18,
-        t15,
-        t16,
-        t19,
-        t15,
-        t35,
-        t17 - t36 + t14,
-        t37,
-        t35,
-        -(t17 + t36) + t14,
-        t37,
-        t15,
-        t15,
-        t15,
-        t15,
-        t31,
-        t15,
-        t15,
-        t31,
-        t18,
-        t15,
-        t31,
-        t19,
-        t35,
-        t38,
-        t17 + A_13_inner + t14,
-        t35,
-        t38,
-        A_13_inner - t17 + t14,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
+        t12,
+        t28,
+        t14 + t29 + t11,
         t33,
-        t18,
-        t15,
+        t32,
+        t29 - t14 + t11,
         t33,
-        t19,
-        t15,
+        t32,
+        t30,
         t33,
-        t17 + t34 + t14,
-        t38,
-        t37,
-        t34 - t17 + t14,
-        t38,
-        t37,
-        t35,
-        t38,
-        t37,
-        t40 | (j <= t39) | (slack <= t39),
+        t32,
+        t35 | (slack <= _runtime.VANISHING * t3),
     )
 
 
@@ -763,7 +734,6 @@ _SKELETON = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_skeleton_common,
-    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -803,196 +773,186 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _jacobian_parallel(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del D, all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del j, t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    A_11 = t17 + t18
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t19)
-    del t19
-    t20 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t21 = t20 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t20
-    t22 = _runtime.poison(invalid | np.logical_not(t21))
-    del invalid, t21
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    t24 = E_12 * X - t12 * E_22
-    t25 = t23 - t24
-    t26 = -t25 + t22
-    t27 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t28 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
-    t29 = t27 - t28
-    t30 = -t29 + t22
-    t31 = rho1 + A_11 + t22
-    t32 = t17 - t18
-    del t17, t18
-    A_12_inner = t23 + t24
-    del t23, t24
-    t33 = A_12_inner + t22
-    A_13_inner = t27 + t28
-    del t27, t28
-    t34 = A_13_inner + t22
-    t35 = rho1 - t32 + t22
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
+    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
+    del all_same, mu, nu
+    t11 = L * L - t10
+    del t10
+    slack = np.maximum(t11, 0.0)
+    t12 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t13 = w_x * h
+    del w_x
+    t14 = t7 * t9 - rho1 * 0.5
+    A_11 = t13 + t14
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
+    del t15
+    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t2, t8
+    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
+    del t11, t12, t16
+    t17 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t18 = w_y * h
+    del w_y
+    t19 = n_y * t9 - d_y * 0.5
+    A_12 = t18 - t19
+    t20 = A_12 + t17
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, in_line, last, n_y, t7
+    t21 = w_z * h
+    del h, w_z
+    t22 = n_z * t9 - d_z * 0.5
+    del d_z, n_z, t9
+    A_13 = t21 - t22
+    t23 = A_13 + t17
+    t24 = rho1 + A_11 + t17
+    t25 = t13 - t14
+    del t13, t14
+    t26 = t18 + t19
+    del t18, t19
+    t27 = -t26 + t17
+    t28 = t21 + t22
+    del t21, t22
+    t29 = -t28 + t17
+    t30 = rho1 - t25 + t17
     return (
-        A_11 + t22,
-        t26,
+        A_11 + t17,
+        t20,
+        t23,
+        t24,
+        A_12 - rho2 + t17,
+        t23,
+        t24,
+        t20,
+        A_13 - rho3 + t17,
+        -t25 + t17,
+        t27,
+        t29,
         t30,
-        t31,
-        -(rho2 + t25) + t22,
+        -(rho2 + t26) + t17,
+        t29,
         t30,
-        t31,
-        t26,
-        -(rho3 + t29) + t22,
-        -t32 + t22,
-        t33,
-        t34,
-        t35,
-        A_12_inner - rho2 + t22,
-        t34,
-        t35,
-        t33,
-        A_13_inner - rho3 + t22,
+        t27,
+        -(rho3 + t28) + t17,
     )
 
 
 def _jacobian_parallel_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    E_12 = rho2 / size_u
-    t2 = rho3 * rho3
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t2 + t8 * t8 + t9 * t9)
-    E_23 = rho3 / j
-    X = size_u * 0.5
-    t10 = t2 / (2.0 * j)
-    rho = np.sqrt(X * X + t10 * t10)
-    t11 = L - rho
-    slack = np.maximum(t11, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t12 = E_12 * E_23 * h
-    t13 = t8 / j
-    del t8
-    t14 = t3 * X + t13 * t10
-    A_11 = t12 - t14
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
-    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t16 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t17 = t16 & (-(size * _runtime.FEASIBILITY) <= t11)
-    del t11, t16
-    t18 = _runtime.poison(invalid | np.logical_not(t17))
-    del invalid, t17
-    t19 = t3 * E_23 * h
-    t20 = t9 / j
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    m_z = rho1 * rho2
+    t2 = over * (rho2 * m_z)
+    t3 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t2 * t2 + t3 * t3 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t4 = rho3 * rho3
+    t5 = u_u * t4 * part * 0.5
+    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
+    slack = np.maximum(t6, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t7 = rho2 * n_z * h
+    t8 = rho1 * 0.5 + t2 * t5
+    A_11 = t7 - t8
+    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
     del t9
-    t21 = X * E_12 - t10 * t20
-    del X
-    A_12 = t19 + t21
-    t22 = A_12 + t18
-    t23 = t10 * E_23
-    del E_23, t10
-    t24 = (t3 * t20 + E_12 * t13) * h
-    del E_12, h, t13, t20, t3
-    A_13 = t23 + t24
-    t25 = A_13 + t18
-    t26 = rho1 + A_11 + t18
-    t27 = t12 + t14
-    del t12, t14
-    t28 = t19 - t21
-    del t19, t21
-    t29 = -t28 + t18
-    A_13_inner = t23 - t24
-    del t23, t24
-    t30 = A_13_inner + t18
-    t31 = rho1 - t27 + t18
-    t32 = size * _runtime.VANISHING
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t10 = size * size
+    t11 = L * size * 2.0
     del size
-    t33 = (size_u <= t32) | (size_u + np.sqrt(t1 + t2) <= t32)
-    del size_u, t1, t2
+    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
+    del t6
+    t13 = _runtime.poison(invalid | np.logical_not(t12))
+    del invalid, t12
+    t14 = rho1 * n_z * h
+    t15 = t3 * t5 - rho2 * 0.5
+    A_12 = t14 - t15
+    t16 = A_12 + t13
+    t17 = n_z * t5
+    del n_z, t5
+    t18 = (rho1 * t3 + rho2 * t2) * h
+    del h, t2, t3
+    A_13 = t17 + t18
+    t19 = A_13 + t13
+    t20 = rho1 + A_11 + t13
+    t21 = t7 + t8
+    del t7, t8
+    t22 = t14 + t15
+    del t14, t15
+    t23 = -t22 + t13
+    A_13_inner = t17 - t18
+    del t17, t18
+    t24 = A_13_inner + t13
+    t25 = rho1 - t21 + t13
+    t26 = _runtime.VANISHING * _runtime.VANISHING * t10
+    del t10
+    t27 = (u_u <= t26) | (u_u + (t1 + t4) <= t26) | (nu <= t26)
+    del nu, t1, t26, t4, u_u
     return (
-        A_11 + t18,
-        t22,
+        A_11 + t13,
+        t16,
+        t19,
+        t20,
+        A_12 - rho2 + t13,
+        t19,
+        t20,
+        t16,
+        A_13 - rho3 + t13,
+        -t21 + t13,
+        t23,
+        t24,
         t25,
-        t26,
-        A_12 - rho2 + t18,
+        -(rho2 + t22) + t13,
+        t24,
         t25,
-        t26,
-        t22,
-        A_13 - rho3 + t18,
-        -t27 + t18,
-        t29,
-        t30,
-        t31,
-        -(rho2 + t28) + t18,
-        t30,
-        t31,
-        t29,
-        A_13_inner - rho3 + t18,
-        t33 | (j <= t32) | (slack <= t32),
+        t23,
+        A_13_inner - rho3 + t13,
+        t27 | (slack <= _runtime.VANISHING * t11),
     )
 
 
@@ -1004,7 +964,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_parallel_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1043,142 +1002,132 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
 def _jacobian_serial(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del D, all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del j, t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t19)
-    del t19
-    t20 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t21 = t20 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t20
-    t22 = _runtime.poison(invalid | np.logical_not(t21))
-    del invalid, t21
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    t24 = E_12 * X - t12 * E_22
-    t25 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, h
-    t26 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
+    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
+    del all_same, mu, nu
+    t11 = L * L - t10
+    del t10
+    slack = np.maximum(t11, 0.0)
+    t12 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t13 = w_x * h
+    del w_x
+    t14 = t7 * t9 - rho1 * 0.5
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
+    del t15
+    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t2, t8
+    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
+    del t11, t12, t16
+    t17 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t18 = w_y * h
+    del w_y
+    t19 = n_y * t9 - d_y * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, in_line, last, n_y, t7
+    t20 = w_z * h
+    del h, w_z
+    t21 = n_z * t9 - d_z * 0.5
+    del d_z, n_z, t9
     return (
-        t17 + t18 + t22,
-        -(rho2 + (t23 - t24)) + t22,
-        -(rho3 + (t25 - t26)) + t22,
-        t18 - t17 + t22,
-        t23 + t24 - rho2 + t22,
-        t25 + t26 - rho3 + t22,
+        t13 + t14 + t17,
+        t18 - t19 - rho2 + t17,
+        t20 - t21 - rho3 + t17,
+        t14 - t13 + t17,
+        -(rho2 + (t18 + t19)) + t17,
+        -(rho3 + (t20 + t21)) + t17,
     )
 
 
 def _jacobian_serial_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    E_12 = rho2 / size_u
-    t2 = rho3 * rho3
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t2 + t8 * t8 + t9 * t9)
-    E_23 = rho3 / j
-    X = size_u * 0.5
-    t10 = t2 / (2.0 * j)
-    rho = np.sqrt(X * X + t10 * t10)
-    t11 = L - rho
-    slack = np.maximum(t11, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t12 = E_12 * E_23 * h
-    t13 = t8 / j
-    del t8
-    t14 = t3 * X + t13 * t10
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
-    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t16 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t17 = t16 & (-(size * _runtime.FEASIBILITY) <= t11)
-    del t11, t16
-    t18 = _runtime.poison(invalid | np.logical_not(t17))
-    del invalid, t17
-    t19 = t3 * E_23 * h
-    t20 = t9 / j
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    m_z = rho1 * rho2
+    t2 = over * (rho2 * m_z)
+    t3 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t2 * t2 + t3 * t3 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t4 = rho3 * rho3
+    t5 = u_u * t4 * part * 0.5
+    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
+    slack = np.maximum(t6, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t7 = rho2 * n_z * h
+    t8 = rho1 * 0.5 + t2 * t5
+    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
     del t9
-    t21 = X * E_12 - t10 * t20
-    del X
-    t22 = t10 * E_23
-    del E_23, t10
-    t23 = (t3 * t20 + E_12 * t13) * h
-    del E_12, h, t13, t20, t3
-    t24 = size * _runtime.VANISHING
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t10 = size * size
+    t11 = L * size * 2.0
     del size
-    t25 = (size_u <= t24) | (size_u + np.sqrt(t1 + t2) <= t24)
-    del size_u, t1, t2
+    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
+    del t6
+    t13 = _runtime.poison(invalid | np.logical_not(t12))
+    del invalid, t12
+    t14 = rho1 * n_z * h
+    t15 = t3 * t5 - rho2 * 0.5
+    t16 = n_z * t5
+    del n_z, t5
+    t17 = (rho1 * t3 + rho2 * t2) * h
+    del h, t2, t3
+    t18 = _runtime.VANISHING * _runtime.VANISHING * t10
+    del t10
+    t19 = (u_u <= t18) | (u_u + (t1 + t4) <= t18) | (nu <= t18)
+    del nu, t1, t18, t4, u_u
     return (
-        t12 - t14 + t18,
-        t19 + t21 - rho2 + t18,
-        t22 + t23 - rho3 + t18,
-        -(t12 + t14) + t18,
-        -(rho2 + (t19 - t21)) + t18,
-        t22 - t23 - rho3 + t18,
-        t25 | (j <= t24) | (slack <= t24),
+        t7 - t8 + t13,
+        t14 - t15 - rho2 + t13,
+        t16 + t17 - rho3 + t13,
+        -(t7 + t8) + t13,
+        -(rho2 + (t14 + t15)) + t13,
+        t16 - t17 - rho3 + t13,
+        t19 | (slack <= _runtime.VANISHING * t11),
     )
 
 
@@ -1190,7 +1139,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_serial_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1229,214 +1177,209 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
 def _jacobian(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    A_11 = t17 + t18
-    t19 = (E_11 * E_23 - E_13 * E_21) * h
-    t20 = E_12 * X - t12 * E_22
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    t8 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
+    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
+    del all_same, mu, nu
+    t12 = L * L - t11
+    del t11
+    slack = np.maximum(t12, 0.0)
+    t13 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t14 = w_x * h
+    del w_x
+    t15 = t7 * t10 - rho1 * 0.5
+    A_11 = t14 + t15
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t16 = w_y * h
+    del w_y
+    t17 = n_y * t10 - d_y * 0.5
+    t18 = t16 - t17
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, last, n_y, t7
+    t19 = w_z * h
+    del w_z
+    t20 = n_z * t10 - d_z * 0.5
+    del d_z, n_z, t10
     t21 = t19 - t20
-    t22 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t23 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
-    t24 = t22 - t23
-    t25 = t21 * t24
-    t26 = rho2 + t21
-    t27 = rho3 + t24
-    Delta = D * j * h
-    del D, h, j
-    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t28)
-    del t28
-    t29 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t29
-    t31 = _runtime.poison(invalid | np.logical_not(t30))
-    del invalid, t30
+    t22 = t18 * t21
+    t23 = rho2 - t18
+    t24 = rho3 - t21
+    Delta = t8 * h
+    del h, t8
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t25)
+    del t25
+    t26 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t2, t9
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t13) <= t12))
+    del t12, t13, t26
+    t27 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
     A_21 = rho1 + A_11
-    t32 = t24 * A_21
-    t33 = t21 * A_21
-    t34 = t17 - t18
-    del t17, t18
-    A_12_inner = t19 + t20
+    t28 = t21 * A_21
+    t29 = t18 * A_21
+    t30 = t14 - t15
+    del t14, t15
+    t31 = t16 + t17
+    del t16, t17
+    t32 = t19 + t20
     del t19, t20
-    A_13_inner = t22 + t23
-    del t22, t23
-    t35 = A_12_inner * A_13_inner
-    t36 = rho2 - A_12_inner
-    t37 = rho3 - A_13_inner
-    A_21_inner = rho1 - t34
-    t38 = A_13_inner * A_21_inner
-    t39 = A_12_inner * A_21_inner
+    t33 = t31 * t32
+    t34 = rho2 + t31
+    t35 = rho3 + t32
+    A_21_inner = rho1 - t30
+    t36 = t32 * A_21_inner
+    t37 = -(t30 * (t36 - t35 * A_21_inner) / Delta) + t27
+    t38 = t31 * A_21_inner
+    t39 = -(t30 * (t38 - t34 * A_21_inner) / Delta) + t27
+    del A_21_inner
     return (
-        -(A_11 * (t25 - t26 * t27) / Delta) + t31,
-        -(t26 * (t25 - t21 * t27) / Delta) + t31,
-        -(t27 * (t25 - t24 * t26) / Delta) + t31,
-        -(A_11 * (t32 - t27 * A_21) / Delta) + t31,
-        -(t26 * (t32 - A_11 * t27) / Delta) + t31,
-        t27 * (t32 - A_11 * t24) / Delta + t31,
-        -(A_11 * (t33 - t26 * A_21) / Delta) + t31,
-        t26 * (t33 - A_11 * t21) / Delta + t31,
-        -(t27 * (t33 - A_11 * t26) / Delta) + t31,
-        -(t34 * (t35 - t36 * t37) / Delta) + t31,
-        t36 * (t35 + A_12_inner * t37) / Delta + t31,
-        t37 * (t35 + A_13_inner * t36) / Delta + t31,
-        t34 * (t38 + t37 * A_21_inner) / Delta + t31,
-        -(t36 * (t38 - t34 * t37) / Delta) + t31,
-        t37 * (t38 + t34 * A_13_inner) / Delta + t31,
-        t34 * (t39 + t36 * A_21_inner) / Delta + t31,
-        t36 * (t39 + t34 * A_12_inner) / Delta + t31,
-        -(t37 * (t39 - t34 * t36) / Delta) + t31,
+        -(A_11 * (t22 - t23 * t24) / Delta) + t27,
+        -(t23 * (t22 + t18 * t24) / Delta) + t27,
+        -(t24 * (t22 + t21 * t23) / Delta) + t27,
+        A_11 * (t28 + t24 * A_21) / Delta + t27,
+        t23 * (t28 + A_11 * t24) / Delta + t27,
+        -(t24 * (t28 - A_11 * t21) / Delta) + t27,
+        A_11 * (t29 + t23 * A_21) / Delta + t27,
+        -(t23 * (t29 - A_11 * t18) / Delta) + t27,
+        t24 * (t29 + A_11 * t23) / Delta + t27,
+        -(t30 * (t33 - t34 * t35) / Delta) + t27,
+        t34 * (t33 - t31 * t35) / Delta + t27,
+        t35 * (t33 - t32 * t34) / Delta + t27,
+        t37,
+        t34 * (t36 + t30 * t35) / Delta + t27,
+        -(t35 * (t36 + t30 * t32) / Delta) + t27,
+        t39,
+        -(t34 * (t38 + t30 * t31) / Delta) + t27,
+        t35 * (t38 + t30 * t34) / Delta + t27,
     )
 
 
 def _jacobian_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    E_12 = rho2 / size_u
-    t2 = rho3 * rho3
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t2 + t8 * t8 + t9 * t9)
-    E_23 = rho3 / j
-    X = size_u * 0.5
-    t10 = t2 / (2.0 * j)
-    rho = np.sqrt(X * X + t10 * t10)
-    t11 = L - rho
-    slack = np.maximum(t11, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t12 = E_12 * E_23 * h
-    t13 = t8 / j
-    del t8
-    t14 = t3 * X + t13 * t10
-    A_11 = t12 - t14
-    t15 = t10 * E_23
-    t16 = t9 / j
-    del t9
-    t17 = (t3 * t16 + E_12 * t13) * h
-    del t13
-    A_13 = t15 + t17
-    t18 = t3 * E_23 * h
-    del E_23, t3
-    t19 = X * E_12 - t10 * t16
-    del E_12, X, t10, t16
-    A_12 = t18 + t19
-    t20 = A_13 * A_12
-    t21 = rho3 - A_13
-    t22 = rho2 - A_12
-    Delta = size_u * j * h
-    del h
-    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t23)
-    del t23
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    m_z = rho1 * rho2
+    t2 = over * (rho2 * m_z)
+    t3 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t2 * t2 + t3 * t3 + n_z * n_z
+    t4 = u_u * nu
+    part = 1.0 / t4
+    t5 = rho3 * rho3
+    t6 = u_u * t5 * part * 0.5
+    t7 = L * L - (nu * (t6 * t6) + u_u * 0.25)
+    slack = np.maximum(t7, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t8 = rho2 * n_z * h
+    t9 = rho1 * 0.5 + t2 * t6
+    A_11 = t8 - t9
+    t10 = n_z * t6
+    t11 = (rho1 * t3 + rho2 * t2) * h
+    del t2
+    t12 = t10 + t11
+    t13 = rho1 * n_z * h
+    del n_z
+    t14 = t3 * t6 - rho2 * 0.5
+    del t3, t6
+    t15 = t13 - t14
+    t16 = t12 * t15
+    t17 = rho3 - t12
+    t18 = rho2 - t15
+    Delta = t4 * h
+    del h, t4
+    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t19)
+    del t19
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t24 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t25 = t24 & (-(size * _runtime.FEASIBILITY) <= t11)
-    del t11, t24
-    t26 = _runtime.poison(invalid | np.logical_not(t25))
-    del invalid, t25
-    A_21 = rho1 + A_11
-    t27 = A_13 * A_21
-    t28 = A_12 * A_21
-    t29 = t12 + t14
-    del t12, t14
-    A_13_inner = t15 - t17
-    del t15, t17
-    t30 = t18 - t19
-    del t18, t19
-    t31 = A_13_inner * t30
-    t32 = rho3 - A_13_inner
-    t33 = rho2 + t30
-    t34 = -(t32 * (t31 - A_13_inner * t33) / Delta) + t26
-    A_21_inner = rho1 - t29
-    t35 = A_13_inner * A_21_inner
-    t36 = t30 * A_21_inner
-    t37 = -(t29 * (t36 - t33 * A_21_inner) / Delta) + t26
-    t38 = size * _runtime.VANISHING
+    t20 = size * size
+    t21 = L * size * 2.0
     del size
-    t39 = (size_u <= t38) | (size_u + np.sqrt(t1 + t2) <= t38)
-    del size_u, t1, t2
+    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t7)
+    del t7
+    t23 = _runtime.poison(invalid | np.logical_not(t22))
+    del invalid, t22
+    A_21 = rho1 + A_11
+    t24 = t12 * A_21
+    t25 = t15 * A_21
+    t26 = t8 + t9
+    del t8, t9
+    t27 = t10 - t11
+    del t10, t11
+    t28 = t13 + t14
+    del t13, t14
+    t29 = t27 * t28
+    t30 = rho3 - t27
+    t31 = rho2 + t28
+    A_21_inner = rho1 - t26
+    t32 = t27 * A_21_inner
+    t33 = t28 * A_21_inner
+    t34 = -(t26 * (t33 - t31 * A_21_inner) / Delta) + t23
+    t35 = _runtime.VANISHING * _runtime.VANISHING * t20
+    del t20
+    t36 = (u_u <= t35) | (u_u + (t1 + t5) <= t35) | (nu <= t35)
+    del nu, t1, t35, t5, u_u
     return (
-        -(A_11 * (t20 - t21 * t22) / Delta) + t26,
-        -(t22 * (t20 + t21 * A_12) / Delta) + t26,
-        -(t21 * (t20 + A_13 * t22) / Delta) + t26,
-        A_11 * (t27 + t21 * A_21) / Delta + t26,
-        t22 * (t27 + t21 * A_11) / Delta + t26,
-        -(t21 * (t27 - A_13 * A_11) / Delta) + t26,
-        A_11 * (t28 + t22 * A_21) / Delta + t26,
-        -(t22 * (t28 - A_11 * A_12) / Delta) + t26,
-        t21 * (t28 + A_11 * t22) / Delta + t26,
-        t29 * (t31 + t32 * t33) / Delta + t26,
-        -(t33 * (t31 + t32 * t30) / Delta) + t26,
+        -(A_11 * (t16 - t17 * t18) / Delta) + t23,
+        -(t18 * (t16 + t17 * t15) / Delta) + t23,
+        -(t17 * (t16 + t12 * t18) / Delta) + t23,
+        A_11 * (t24 + t17 * A_21) / Delta + t23,
+        t18 * (t24 + t17 * A_11) / Delta + t23,
+        -(t17 * (t24 - t12 * A_11) / Delta) + t23,
+        A_11 * (t25 + t18 * A_21) / Delta + t23,
+        -(t18 * (t25 - A_11 * t15) / Delta) + t23,
+        t17 * (t25 + A_11 * t18) / Delta + t23,
+        t26 * (t29 + t30 * t31) / Delta + t23,
+        -(t31 * (t29 + t30 * t28) / Delta) + t23,
+        -(t30 * (t29 - t27 * t31) / Delta) + t23,
+        t26 * (t32 + t30 * A_21_inner) / Delta + t23,
+        -(t31 * (t32 - t30 * t26) / Delta) + t23,
+        t30 * (t32 + t27 * t26) / Delta + t23,
         t34,
-        t29 * (t35 + t32 * A_21_inner) / Delta + t26,
-        -(t33 * (t35 - t32 * t29) / Delta) + t26,
-        t32 * (t35 + A_13_inner * t29) / Delta + t26,
-        t37,
-        -(t33 * (t36 + t29 * t30) / Delta) + t26,
-        t32 * (t36 + t29 * t33) / Delta + t26,
-        t39 | (j <= t38) | (slack <= t38),
+        -(t31 * (t33 + t26 * t28) / Delta) + t23,
+        t30 * (t33 + t26 * t31) / Delta + t23,
+        t36 | (slack <= _runtime.VANISHING * t21),
     )
 
 
@@ -1448,7 +1391,6 @@ _JACOBIAN = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_common,
-    size=_runtime.Size((0, 1, 2, 3), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1488,144 +1430,137 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _determinant(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    t19 = (E_11 * E_23 - E_13 * E_21) * h
-    t20 = E_12 * X - t12 * E_22
-    t21 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t22 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
-    t23 = (t17 + t18) * (rho2 + (t19 - t20)) * (rho3 + (t21 - t22))
-    Delta = D * j * h
-    del D, h, j
-    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t24)
-    del t24
-    t25 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t26 = t25 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t25
-    t27 = _runtime.poison(invalid | np.logical_not(t26))
-    del invalid, t26
-    t28 = (t17 - t18) * (rho2 - (t19 + t20)) * (rho3 - (t21 + t22))
-    del t17, t18, t19, t20, t21, t22
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    t8 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
+    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
+    del all_same, mu, nu
+    t12 = L * L - t11
+    del t11
+    slack = np.maximum(t12, 0.0)
+    t13 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t14 = w_x * h
+    del w_x
+    t15 = t7 * t10 - rho1 * 0.5
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t16 = w_y * h
+    del w_y
+    t17 = n_y * t10 - d_y * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, last, n_y, t7
+    t18 = w_z * h
+    del w_z
+    t19 = n_z * t10 - d_z * 0.5
+    del d_z, n_z, t10
+    t20 = (t14 + t15) * (rho2 - (t16 - t17)) * (rho3 - (t18 - t19))
+    Delta = t8 * h
+    del h, t8
+    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
+    del t21
+    t22 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t2, t9
+    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t13) <= t12))
+    del t12, t13, t22
+    t23 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    t24 = (t14 - t15) * (rho2 + (t16 + t17)) * (rho3 + (t18 + t19))
+    del t14, t15, t16, t17, t18, t19
     return (
-        t23 / Delta + t27,
-        t28 / Delta + t27,
+        t20 / Delta + t23,
+        t24 / Delta + t23,
     )
 
 
 def _determinant_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho3 * rho3
-    t2 = rho1 * rho1
-    size_u = np.sqrt(t2 + rho2 * rho2)
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    E_12 = rho2 / size_u
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t1 + t8 * t8 + t9 * t9)
-    t10 = t1 / (2.0 * j)
-    E_23 = rho3 / j
-    t11 = t10 * E_23
-    t12 = t9 / j
-    del t9
-    t13 = t8 / j
-    del t8
-    X = size_u * 0.5
-    rho = np.sqrt(X * X + t10 * t10)
-    t14 = L - rho
-    slack = np.maximum(t14, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t15 = (t3 * t12 + E_12 * t13) * h
-    t16 = E_12 * E_23 * h
-    t17 = t3 * X + t13 * t10
-    del t13
-    t18 = t3 * E_23 * h
-    del E_23, t3
-    t19 = X * E_12 - t10 * t12
-    del E_12, X, t10, t12
-    t20 = (rho3 - (t11 + t15)) * (t16 - t17) * (rho2 - (t18 + t19))
-    Delta = size_u * j * h
-    del h
-    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
-    del t21
+    t1 = rho1 * rho1
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    t2 = rho3 * rho3
+    m_z = rho1 * rho2
+    t3 = over * (rho2 * m_z)
+    t4 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t3 * t3 + t4 * t4 + n_z * n_z
+    t5 = u_u * nu
+    part = 1.0 / t5
+    t6 = u_u * t2 * part * 0.5
+    t7 = n_z * t6
+    t8 = L * L - (nu * (t6 * t6) + u_u * 0.25)
+    slack = np.maximum(t8, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t9 = (rho1 * t4 + rho2 * t3) * h
+    t10 = rho2 * n_z * h
+    t11 = rho1 * 0.5 + t3 * t6
+    del t3
+    t12 = rho1 * n_z * h
+    del n_z
+    t13 = t4 * t6 - rho2 * 0.5
+    del t4, t6
+    t14 = (rho3 - (t7 + t9)) * (t10 - t11) * (rho2 - (t12 - t13))
+    Delta = t5 * h
+    del h, t5
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
+    del t15
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t22 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t23 = t22 & (-(size * _runtime.FEASIBILITY) <= t14)
-    del t14, t22
-    t24 = _runtime.poison(invalid | np.logical_not(t23))
-    del invalid, t23
-    t25 = (rho3 - (t11 - t15)) * (t16 + t17) * (rho2 + (t18 - t19))
-    del t11, t15, t16, t17, t18, t19
-    t26 = size * _runtime.VANISHING
+    t16 = size * size
+    t17 = L * size * 2.0
     del size
-    t27 = (size_u <= t26) | (size_u + np.sqrt(t2 + t1) <= t26)
-    del size_u, t1, t2
+    t18 = (np.abs(0.0) <= t16 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t17) <= t8)
+    del t8
+    t19 = _runtime.poison(invalid | np.logical_not(t18))
+    del invalid, t18
+    t20 = (rho3 - (t7 - t9)) * (t10 + t11) * (rho2 + (t12 + t13))
+    del t10, t11, t12, t13, t7, t9
+    t21 = _runtime.VANISHING * _runtime.VANISHING * t16
+    del t16
+    t22 = (u_u <= t21) | (u_u + (t1 + t2) <= t21) | (nu <= t21)
+    del nu, t1, t2, t21, u_u
     return (
-        t20 / Delta + t24,
-        t25 / Delta + t24,
-        t27 | (j <= t26) | (slack <= t26),
+        t14 / Delta + t19,
+        t20 / Delta + t19,
+        t22 | (slack <= _runtime.VANISHING * t17),
     )
 
 
@@ -1637,7 +1572,6 @@ _DETERMINANT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_determinant_common,
-    size=_runtime.Size((0, 1, 2, 3), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1676,150 +1610,142 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
 def _singularities(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t19)
-    del t19
-    t20 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t21 = t20 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t20
-    t22 = _runtime.poison(invalid | np.logical_not(t21))
-    del invalid, t21
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    t24 = E_12 * X - t12 * E_22
-    t25 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t26 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
-    Delta = D * j * h
-    del D, h, j
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    t8 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
+    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
+    del all_same, mu, nu
+    t12 = L * L - t11
+    del t11
+    slack = np.maximum(t12, 0.0)
+    t13 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t14 = w_x * h
+    del w_x
+    t15 = t7 * t10 - rho1 * 0.5
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
+    del t16
+    t17 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t2, t9
+    unreachable = np.logical_not(t17 & (-(_runtime.FEASIBILITY * t13) <= t12))
+    del t12, t13, t17
+    t18 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t19 = w_y * h
+    del w_y
+    t20 = n_y * t10 - d_y * 0.5
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, in_line, last, n_y, t7
+    t21 = w_z * h
+    del w_z
+    t22 = n_z * t10 - d_z * 0.5
+    del d_z, n_z, t10
+    Delta = t8 * h
+    del h, t8
     return (
-        t17 + t18 + t22,
-        -(rho2 + (t23 - t24)) + t22,
-        -(rho3 + (t25 - t26)) + t22,
-        Delta + t22,
-        t18 - t17 + t22,
-        t23 + t24 - rho2 + t22,
-        t25 + t26 - rho3 + t22,
-        -Delta + t22,
+        t14 + t15 + t18,
+        t19 - t20 - rho2 + t18,
+        t21 - t22 - rho3 + t18,
+        Delta + t18,
+        t15 - t14 + t18,
+        -(rho2 + (t19 + t20)) + t18,
+        -(rho3 + (t21 + t22)) + t18,
+        -Delta + t18,
     )
 
 
 def _singularities_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    E_12 = rho2 / size_u
-    t2 = rho3 * rho3
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t2 + t8 * t8 + t9 * t9)
-    E_23 = rho3 / j
-    X = size_u * 0.5
-    t10 = t2 / (2.0 * j)
-    rho = np.sqrt(X * X + t10 * t10)
-    t11 = L - rho
-    slack = np.maximum(t11, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t12 = E_12 * E_23 * h
-    t13 = t8 / j
-    del t8
-    t14 = t3 * X + t13 * t10
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    m_z = rho1 * rho2
+    t2 = over * (rho2 * m_z)
+    t3 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t2 * t2 + t3 * t3 + n_z * n_z
+    t4 = u_u * nu
+    part = 1.0 / t4
+    t5 = rho3 * rho3
+    t6 = u_u * t5 * part * 0.5
+    t7 = L * L - (nu * (t6 * t6) + u_u * 0.25)
+    slack = np.maximum(t7, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t8 = rho2 * n_z * h
+    t9 = rho1 * 0.5 + t2 * t6
+    t10 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t10)
+    del t10
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t16 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t17 = t16 & (-(size * _runtime.FEASIBILITY) <= t11)
-    del t11, t16
-    t18 = _runtime.poison(invalid | np.logical_not(t17))
-    del invalid, t17
-    t19 = t3 * E_23 * h
-    t20 = t9 / j
-    del t9
-    t21 = X * E_12 - t10 * t20
-    del X
-    t22 = t10 * E_23
-    del E_23, t10
-    t23 = (t3 * t20 + E_12 * t13) * h
-    del E_12, t13, t20, t3
-    Delta = size_u * j * h
-    del h
-    t24 = size * _runtime.VANISHING
+    t11 = size * size
+    t12 = L * size * 2.0
     del size
-    t25 = (size_u <= t24) | (size_u + np.sqrt(t1 + t2) <= t24)
-    del size_u, t1, t2
+    t13 = (np.abs(0.0) <= t11 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t12) <= t7)
+    del t7
+    t14 = _runtime.poison(invalid | np.logical_not(t13))
+    del invalid, t13
+    t15 = rho1 * n_z * h
+    t16 = t3 * t6 - rho2 * 0.5
+    t17 = n_z * t6
+    del n_z, t6
+    t18 = (rho1 * t3 + rho2 * t2) * h
+    del t2, t3
+    Delta = t4 * h
+    del h, t4
+    t19 = _runtime.VANISHING * _runtime.VANISHING * t11
+    del t11
+    t20 = (u_u <= t19) | (u_u + (t1 + t5) <= t19) | (nu <= t19)
+    del nu, t1, t19, t5, u_u
     return (
-        t12 - t14 + t18,
-        t19 + t21 - rho2 + t18,
-        t22 + t23 - rho3 + t18,
-        Delta + t18,
-        -(t12 + t14) + t18,
-        -(rho2 + (t19 - t21)) + t18,
-        t22 - t23 - rho3 + t18,
-        -Delta + t18,
-        t25 | (j <= t24) | (slack <= t24),
+        t8 - t9 + t14,
+        t15 - t16 - rho2 + t14,
+        t17 + t18 - rho3 + t14,
+        Delta + t14,
+        -(t8 + t9) + t14,
+        -(rho2 + (t15 + t16)) + t14,
+        t17 - t18 - rho3 + t14,
+        -Delta + t14,
+        t20 | (slack <= _runtime.VANISHING * t12),
     )
 
 
@@ -1831,7 +1757,6 @@ _SINGULARITIES = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_singularities_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1870,280 +1795,273 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 def _condition_number(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    del all_same
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
-    rho = np.sqrt(X * X + t12 * t12)
-    t13 = L - rho
-    slack = np.maximum(t13, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    E_23 = _runtime.select(in_line, -t15, n_z / j)
-    del n_z
-    t16 = E_13 + t14
-    E_22 = _runtime.select(in_line, -(E_12 * t15 / t16), n_y / j)
-    del n_y, t15
-    t17 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 / t16, -(t10 / j))
-    del t10, t14, t16
-    t18 = E_11 * X - E_21 * t12
-    A_11 = t17 + t18
-    t19 = (E_11 * E_23 - E_13 * E_21) * h
-    t20 = E_12 * X - t12 * E_22
-    t21 = t19 - t20
-    t22 = t21 * t21
-    t23 = h * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22
-    t24 = E_13 * X - E_23 * t12
-    del E_13, E_23, X, t12
-    t25 = t23 - t24
-    t26 = t25 * t25
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    side = _runtime.sign(d_y * a_x)
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    last = d_y + a_x * side
+    del side
+    t8 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
+    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
+    del all_same, mu, nu
+    t12 = L * L - t11
+    del t11
+    slack = np.maximum(t12, 0.0)
+    t13 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t14 = w_x * h
+    del w_x
+    t15 = t7 * t10 - rho1 * 0.5
+    A_11 = t14 + t15
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    t16 = w_y * h
+    del w_y
+    t17 = n_y * t10 - d_y * 0.5
+    t18 = t16 - t17
+    t19 = t18 * t18
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, d_y, last, n_y, t7
+    t20 = w_z * h
+    del w_z
+    t21 = n_z * t10 - d_z * 0.5
+    del d_z, n_z, t10
+    t22 = t20 - t21
+    t23 = t22 * t22
     A_21 = rho1 + A_11
-    t27 = A_21 * A_21
-    t28 = rho2 + t21
-    t29 = A_11 * A_11 + t22 + t26 + (t26 + t27 + t28 * t28)
-    del t26
-    t30 = rho3 + t25
-    t31 = t21 * A_21
-    t32 = A_11 * t21 - t31
-    t33 = t25 * A_21
-    t34 = A_11 * t25 - t33
-    t35 = t31 - A_11 * t28
-    t36 = t33 - A_11 * t30
+    t24 = A_21 * A_21
+    t25 = rho2 - t18
+    t26 = A_11 * A_11 + t19 + t23 + (t23 + t24 + t25 * t25)
+    del t23
+    t27 = rho3 - t22
+    t28 = t18 * A_21
+    t29 = A_11 * t18 - t28
+    t30 = t22 * A_21
+    t31 = A_11 * t22 - t30
+    t32 = t28 + A_11 * t25
+    t33 = t30 + A_11 * t27
     del A_11
-    t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36
-    del t32, t34, t35, t36
-    t38 = t21 * t25
-    t39 = t38 - t28 * t30
-    t40 = t38 - t21 * t30
-    del t21
-    t41 = t38 - t25 * t28
-    del t25, t38
-    t42 = t31 - A_21 * t28
-    del t28, t31
-    t43 = t37 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42
-    del t37, t39, t40, t41, t42
-    t44 = t33 - A_21 * t30
-    del A_21, t33
-    t45 = (t29 + (t22 + t27 + t30 * t30)) * (t43 + t44 * t44)
-    del t22, t27, t29, t30, t43, t44
-    t46 = 3.0 * (D * j * h)
-    del D, h, j
-    t47 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t47)
-    del t47
-    t48 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t11
-    t49 = t48 & (-(size * _runtime.FEASIBILITY) <= t13)
-    del size, t13, t48
-    t50 = _runtime.poison(invalid | np.logical_not(t49))
-    del invalid, t49
-    t51 = t17 - t18
-    del t17, t18
-    A_12_inner = t19 + t20
-    del t19, t20
-    t52 = A_12_inner * A_12_inner
-    A_13_inner = t23 + t24
-    del t23, t24
-    t53 = A_13_inner * A_13_inner
-    A_21_inner = rho1 - t51
-    t54 = A_21_inner * A_21_inner
-    t55 = rho2 - A_12_inner
-    t56 = t51 * t51 + t52 + t53 + (t53 + t54 + t55 * t55)
-    del t53
-    t57 = rho3 - A_13_inner
-    t58 = A_12_inner * A_21_inner
-    t59 = t51 * A_12_inner + t58
-    t60 = A_13_inner * A_21_inner
-    t61 = t51 * A_13_inner + t60
-    t62 = t58 - t51 * t55
-    t63 = t60 - t51 * t57
+    t34 = t29 * t29 + t31 * t31 + t32 * t32 + t33 * t33
+    del t29, t31, t32, t33
+    t35 = t18 * t22
+    t36 = t35 - t25 * t27
+    t37 = t35 + t18 * t27
+    del t18
+    t38 = t35 + t22 * t25
+    del t22, t35
+    t39 = t28 + A_21 * t25
+    del t25, t28
+    t40 = t34 + t36 * t36 + t37 * t37 + t38 * t38 + t39 * t39
+    del t34, t36, t37, t38, t39
+    t41 = t30 + A_21 * t27
+    del A_21, t30
+    t42 = (t26 + (t19 + t24 + t27 * t27)) * (t40 + t41 * t41)
+    del t19, t24, t26, t27, t40, t41
+    t43 = 3.0 * (t8 * h)
+    del h, t8
+    t44 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t44)
+    del t44
+    t45 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t2, t9
+    unreachable = np.logical_not(t45 & (-(_runtime.FEASIBILITY * t13) <= t12))
+    del t12, t13, t45
+    t46 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    t47 = t14 - t15
+    del t14, t15
+    t48 = t16 + t17
+    del t16, t17
+    t49 = t48 * t48
+    t50 = t20 + t21
+    del t20, t21
+    t51 = t50 * t50
+    A_21_inner = rho1 - t47
+    t52 = A_21_inner * A_21_inner
+    t53 = rho2 + t48
+    t54 = t47 * t47 + t49 + t51 + (t51 + t52 + t53 * t53)
     del t51
-    t64 = t59 * t59 + t61 * t61 + t62 * t62 + t63 * t63
-    del t59, t61, t62, t63
-    t65 = A_12_inner * A_13_inner
-    t66 = t65 - t55 * t57
-    t67 = t65 + A_12_inner * t57
-    del A_12_inner
-    t68 = t65 + A_13_inner * t55
-    del A_13_inner, t65
-    t69 = t58 + A_21_inner * t55
-    del t55, t58
-    t70 = t64 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
-    del t64, t66, t67, t68, t69
-    t71 = t60 + A_21_inner * t57
-    del A_21_inner, t60
-    t72 = (t56 + (t52 + t54 + t57 * t57)) * (t70 + t71 * t71)
-    del t52, t54, t56, t57, t70, t71
+    t55 = rho3 + t50
+    t56 = t48 * A_21_inner
+    t57 = t47 * t48 + t56
+    t58 = t50 * A_21_inner
+    t59 = t47 * t50 + t58
+    t60 = t56 + t47 * t53
+    t61 = t58 + t47 * t55
+    del t47
+    t62 = t57 * t57 + t59 * t59 + t60 * t60 + t61 * t61
+    del t57, t59, t60, t61
+    t63 = t48 * t50
+    t64 = t63 - t53 * t55
+    t65 = t63 - t48 * t55
+    del t48
+    t66 = t63 - t50 * t53
+    del t50, t63
+    t67 = t56 - A_21_inner * t53
+    del t53, t56
+    t68 = t62 + t64 * t64 + t65 * t65 + t66 * t66 + t67 * t67
+    del t62, t64, t65, t66, t67
+    t69 = t58 - A_21_inner * t55
+    del A_21_inner, t58
+    t70 = (t54 + (t49 + t52 + t55 * t55)) * (t68 + t69 * t69)
+    del t49, t52, t54, t55, t68, t69
     return (
-        np.sqrt(t45) / t46 + t50,
-        np.sqrt(t72) / t46 + t50,
+        np.sqrt(t42) / t43 + t46,
+        np.sqrt(t70) / t43 + t46,
     )
 
 
 def _condition_number_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho3 * rho3
-    t2 = rho1 * rho1
-    size_u = np.sqrt(t2 + rho2 * rho2)
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    E_12 = rho2 / size_u
-    t6 = t4 * E_12
-    del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t1 + t8 * t8 + t9 * t9)
-    t10 = t1 / (2.0 * j)
-    E_23 = rho3 / j
-    t11 = t10 * E_23
-    t12 = t9 / j
-    del t9
-    t13 = t8 / j
-    del t8
-    X = size_u * 0.5
-    rho = np.sqrt(X * X + t10 * t10)
-    t14 = L - rho
-    slack = np.maximum(t14, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t15 = (t3 * t12 + E_12 * t13) * h
-    A_13 = t11 + t15
-    t16 = A_13 * A_13
-    t17 = E_12 * E_23 * h
-    t18 = t3 * X + t13 * t10
-    del t13
-    A_11 = t17 - t18
-    t19 = t3 * E_23 * h
-    del E_23, t3
-    t20 = X * E_12 - t10 * t12
-    del E_12, X, t10, t12
-    A_12 = t19 + t20
-    t21 = A_12 * A_12
+    t1 = rho1 * rho1
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    t2 = rho3 * rho3
+    m_z = rho1 * rho2
+    t3 = over * (rho2 * m_z)
+    t4 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t3 * t3 + t4 * t4 + n_z * n_z
+    t5 = u_u * nu
+    part = 1.0 / t5
+    t6 = u_u * t2 * part * 0.5
+    t7 = n_z * t6
+    t8 = L * L - (nu * (t6 * t6) + u_u * 0.25)
+    slack = np.maximum(t8, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t9 = (rho1 * t4 + rho2 * t3) * h
+    t10 = t7 + t9
+    t11 = t10 * t10
+    t12 = rho2 * n_z * h
+    t13 = rho1 * 0.5 + t3 * t6
+    del t3
+    A_11 = t12 - t13
+    t14 = rho1 * n_z * h
+    del n_z
+    t15 = t4 * t6 - rho2 * 0.5
+    del t4, t6
+    t16 = t14 - t15
+    t17 = t16 * t16
     A_21 = rho1 + A_11
-    t22 = A_21 * A_21
-    t23 = rho2 - A_12
-    t24 = t16 + A_11 * A_11 + t21 + (t16 + t22 + t23 * t23)
-    del t16
-    t25 = rho3 - A_13
-    t26 = A_12 * A_21
-    t27 = A_11 * A_12 - t26
-    t28 = A_13 * A_21
-    t29 = A_13 * A_11 - t28
-    t30 = t26 + A_11 * t23
-    t31 = t28 + t25 * A_11
+    t18 = A_21 * A_21
+    t19 = rho2 - t16
+    t20 = t11 + A_11 * A_11 + t17 + (t11 + t18 + t19 * t19)
+    del t11
+    t21 = rho3 - t10
+    t22 = t16 * A_21
+    t23 = A_11 * t16 - t22
+    t24 = t10 * A_21
+    t25 = t10 * A_11 - t24
+    t26 = t22 + A_11 * t19
+    t27 = t24 + t21 * A_11
     del A_11
-    t32 = t27 * t27 + t29 * t29 + t30 * t30 + t31 * t31
-    del t27, t29, t30, t31
-    t33 = A_13 * A_12
-    t34 = t33 - t25 * t23
-    t35 = t33 + t25 * A_12
-    del A_12
-    t36 = t33 + A_13 * t23
-    del A_13, t33
-    t37 = t26 + A_21 * t23
-    del t23, t26
-    t38 = t32 + t34 * t34 + t35 * t35 + t36 * t36 + t37 * t37
-    del t32, t34, t35, t36, t37
-    t39 = t28 + t25 * A_21
-    del A_21, t28
-    t40 = (t24 + (t25 * t25 + t21 + t22)) * (t38 + t39 * t39)
-    del t21, t22, t24, t25, t38, t39
-    t41 = 3.0 * (size_u * j * h)
-    del h
-    t42 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t42)
-    del t42
+    t28 = t23 * t23 + t25 * t25 + t26 * t26 + t27 * t27
+    del t23, t25, t26, t27
+    t29 = t10 * t16
+    t30 = t29 - t21 * t19
+    t31 = t29 + t21 * t16
+    del t16
+    t32 = t29 + t10 * t19
+    del t10, t29
+    t33 = t22 + A_21 * t19
+    del t19, t22
+    t34 = t28 + t30 * t30 + t31 * t31 + t32 * t32 + t33 * t33
+    del t28, t30, t31, t32, t33
+    t35 = t24 + t21 * A_21
+    del A_21, t24
+    t36 = (t20 + (t21 * t21 + t17 + t18)) * (t34 + t35 * t35)
+    del t17, t18, t20, t21, t34, t35
+    t37 = 3.0 * (t5 * h)
+    del h, t5
+    t38 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t38)
+    del t38
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t43 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t44 = t43 & (-(size * _runtime.FEASIBILITY) <= t14)
-    del t14, t43
-    t45 = _runtime.poison(invalid | np.logical_not(t44))
-    del invalid, t44
-    A_13_inner = t11 - t15
-    del t11, t15
-    t46 = A_13_inner * A_13_inner
-    t47 = t17 + t18
-    del t17, t18
-    t48 = t19 - t20
-    del t19, t20
-    t49 = t48 * t48
-    A_21_inner = rho1 - t47
-    t50 = A_21_inner * A_21_inner
-    t51 = rho2 + t48
-    t52 = t46 + t47 * t47 + t49 + (t46 + t50 + t51 * t51)
-    del t46
-    t53 = rho3 - A_13_inner
-    t54 = t48 * A_21_inner
-    t55 = t47 * t48 + t54
-    t56 = A_13_inner * A_21_inner
-    t57 = A_13_inner * t47 + t56
-    t58 = t54 + t47 * t51
-    t59 = t56 - t53 * t47
-    del t47
-    t60 = t55 * t55 + t57 * t57 + t58 * t58 + t59 * t59
-    del t55, t57, t58, t59
-    t61 = A_13_inner * t48
-    t62 = t61 + t53 * t51
-    t63 = t61 + t53 * t48
-    del t48
-    t64 = t61 - A_13_inner * t51
-    del A_13_inner, t61
-    t65 = t54 - A_21_inner * t51
-    del t51, t54
-    t66 = t60 + t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65
-    del t60, t62, t63, t64, t65
-    t67 = t56 + t53 * A_21_inner
-    del A_21_inner, t56
-    t68 = (t52 + (t53 * t53 + t49 + t50)) * (t66 + t67 * t67)
-    del t49, t50, t52, t53, t66, t67
-    t69 = size * _runtime.VANISHING
+    t39 = size * size
+    t40 = L * size * 2.0
     del size
-    t70 = (size_u <= t69) | (size_u + np.sqrt(t2 + t1) <= t69)
-    del size_u, t1, t2
+    t41 = (np.abs(0.0) <= t39 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t40) <= t8)
+    del t8
+    t42 = _runtime.poison(invalid | np.logical_not(t41))
+    del invalid, t41
+    t43 = t7 - t9
+    del t7, t9
+    t44 = t43 * t43
+    t45 = t12 + t13
+    del t12, t13
+    t46 = t14 + t15
+    del t14, t15
+    t47 = t46 * t46
+    A_21_inner = rho1 - t45
+    t48 = A_21_inner * A_21_inner
+    t49 = rho2 + t46
+    t50 = t44 + t45 * t45 + t47 + (t44 + t48 + t49 * t49)
+    del t44
+    t51 = rho3 - t43
+    t52 = t46 * A_21_inner
+    t53 = t45 * t46 + t52
+    t54 = t43 * A_21_inner
+    t55 = t43 * t45 + t54
+    t56 = t52 + t45 * t49
+    t57 = t54 - t51 * t45
+    del t45
+    t58 = t53 * t53 + t55 * t55 + t56 * t56 + t57 * t57
+    del t53, t55, t56, t57
+    t59 = t43 * t46
+    t60 = t59 + t51 * t49
+    t61 = t59 + t51 * t46
+    del t46
+    t62 = t59 - t43 * t49
+    del t43, t59
+    t63 = t52 - A_21_inner * t49
+    del t49, t52
+    t64 = t58 + t60 * t60 + t61 * t61 + t62 * t62 + t63 * t63
+    del t58, t60, t61, t62, t63
+    t65 = t54 + t51 * A_21_inner
+    del A_21_inner, t54
+    t66 = (t50 + (t51 * t51 + t47 + t48)) * (t64 + t65 * t65)
+    del t47, t48, t50, t51, t64, t65
+    t67 = _runtime.VANISHING * _runtime.VANISHING * t39
+    del t39
+    t68 = (u_u <= t67) | (u_u + (t1 + t2) <= t67) | (nu <= t67)
+    del nu, t1, t2, t67, u_u
     return (
-        np.sqrt(t40) / t41 + t45,
-        np.sqrt(t68) / t41 + t45,
-        t70 | (j <= t69) | (slack <= t69),
+        np.sqrt(t36) / t37 + t42,
+        np.sqrt(t66) / t37 + t42,
+        t68 | (slack <= _runtime.VANISHING * t40),
     )
 
 
@@ -2155,7 +2073,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_condition_number_common,
-    size=_runtime.Size((0, 1, 2, 3), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -2195,161 +2112,151 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 def _constraint(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
-    size_u = np.sqrt(t1 + rho2 * rho2)
-    size_v = np.sqrt(t1 + rho3 * rho3)
+    u_u = t1 + rho2 * rho2
+    v_v = t1 + rho3 * rho3
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t2 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t2
-    same = size_u <= t2
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
-    t3 = _runtime.select(same, 0.0, rho2)
-    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t2 = size * size
+    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
+    all_same = u_u + v_v <= t3
+    same = u_u <= t3
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    d_y = _runtime.select(same, 0.0, rho2)
+    a_x = _runtime.select(all_same, 1.0, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
-    t5 = _runtime.select(same, rho3, 0.0)
-    E_13 = _runtime.select(all_same, 0.0, t5 / D)
-    t6 = _runtime.select(same, 0.0, rho3)
+    m_z = a_x * t4 + rho1 * d_y
+    d_z = _runtime.select(same, rho3, 0.0)
+    t5 = _runtime.select(same, 0.0, rho3)
     del same
-    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
-    t8 = rho1 - E_11 * t7
-    m_y = t4 + E_12 * t7
-    m_z = t6 + E_13 * t7
-    del t7
-    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
-    t10 = t8 - E_11 * t9
-    del t8
-    n_y = m_y + E_12 * t9
-    del m_y
-    n_z = m_z + E_13 * t9
-    del m_z, t9
-    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
-    in_line = j <= t2
-    t11 = _runtime.sign(E_13)
-    t12 = E_11 * t11
-    E_23 = _runtime.select(in_line, -t12, n_z / j)
-    del n_z
-    t13 = E_13 + t11
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t11 / t13, -(t10 / j))
-    del t10, t11
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    del D, all_same
-    t14 = t4 * (t3 - t4) + t6 * (t5 - t6)
-    del t3, t4, t5, t6
-    t15 = _runtime.select(in_line, 0.0, t14 / (j * 2.0))
-    rho = np.sqrt(X * X + t15 * t15)
-    t16 = L - rho
-    slack = np.maximum(t16, 0.0)
-    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
-    del rho, slack, t2
-    t17 = (E_11 * E_23 - E_13 * E_21) * h
-    E_22 = _runtime.select(in_line, -(E_12 * t12 / t13), n_y / j)
-    del j, n_y, t12, t13
-    t18 = E_12 * X - t15 * E_22
-    t19 = t17 - t18
-    t20 = h * (E_12 * E_21 - E_11 * E_22)
-    t21 = E_13 * X - E_23 * t15
-    t22 = t20 - t21
-    t23 = h * (E_12 * E_23 - E_13 * E_22)
-    del E_12, E_13, E_22, E_23, h
-    t24 = E_11 * X - E_21 * t15
-    del E_11, E_21, X, t15
-    A_11 = t23 + t24
-    t25 = t19 * t22 * (rho1 + A_11) - A_11 * (rho2 + t19) * (rho3 + t22)
-    del A_11, t19, t22
-    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t26)
-    del t26
-    t27 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t14
-    t28 = t27 & (-(size * _runtime.FEASIBILITY) <= t16)
-    del size, t16, t27
-    t29 = _runtime.poison(invalid | np.logical_not(t28))
-    del invalid, t28
-    t30 = t23 - t24
-    del t23, t24
-    A_12_inner = t17 + t18
-    del t17, t18
-    A_13_inner = t20 + t21
-    del t20, t21
-    t31 = t30 * (rho2 - A_12_inner) * (rho3 - A_13_inner)
-    t32 = t31 + A_12_inner * A_13_inner * (rho1 - t30) + t29
-    del A_12_inner, A_13_inner, t30, t31
+    t6 = a_x * t5 + rho1 * d_z
+    t7 = over * (d_y * m_z + d_z * t6)
+    m_x = d_y * t5 - d_z * t4
+    n_y = over * (a_x * m_z - d_z * m_x)
+    del m_z
+    n_z = over * (a_x * t6 + d_y * m_x)
+    del m_x, over, t6
+    nu = t7 * t7 + n_y * n_y + n_z * n_z
+    in_line = nu <= t3
+    del t3
+    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    side = _runtime.sign(d_y * a_x)
+    last = d_y + a_x * side
+    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
+    del t4, t5
+    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
+    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
+    del all_same, mu, nu
+    t11 = L * L - t10
+    del t10
+    slack = np.maximum(t11, 0.0)
+    t12 = L * size * 2.0
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t13 = w_y * h
+    del w_y
+    t14 = n_y * t9 - d_y * 0.5
+    t15 = t13 - t14
+    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
+    del a_x, last
+    t16 = w_z * h
+    del w_z
+    t17 = n_z * t9 - d_z * 0.5
+    t18 = t16 - t17
+    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    del d_y, d_z, n_y, n_z, side
+    t19 = w_x * h
+    del h, w_x
+    t20 = t7 * t9 - rho1 * 0.5
+    del t7, t9
+    A_11 = t19 + t20
+    t21 = t15 * t18 * (rho1 + A_11) - A_11 * (rho2 - t15) * (rho3 - t18)
+    del A_11, t15, t18
+    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t22)
+    del t22
+    t23 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t2, t8
+    unreachable = np.logical_not(t23 & (-(_runtime.FEASIBILITY * t12) <= t11))
+    del t11, t12, t23
+    t24 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    t25 = t19 - t20
+    del t19, t20
+    t26 = t13 + t14
+    del t13, t14
+    t27 = t16 + t17
+    del t16, t17
+    t28 = t25 * (rho2 + t26) * (rho3 + t27) + t26 * t27 * (rho1 - t25)
+    del t25, t26, t27
     return (
-        t25 + t29,
-        t32,
+        t21 + t24,
+        t28 + t24,
     )
 
 
 def _constraint_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho3 * rho3
-    t2 = rho1 * rho1
-    size_u = np.sqrt(t2 + rho2 * rho2)
-    t3 = rho1 / size_u
-    t4 = rho1 * t3
-    t5 = rho1 - t3 * t4
-    E_12 = rho2 / size_u
-    t6 = t4 * E_12
+    t1 = rho1 * rho1
+    u_u = t1 + rho2 * rho2
+    over = 1.0 / u_u
+    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
+    t2 = rho3 * rho3
+    m_z = rho1 * rho2
+    t3 = over * (rho2 * m_z)
+    t4 = over * (rho1 * m_z)
+    del m_z, over
+    nu = t3 * t3 + t4 * t4 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t5 = u_u * t2 * part * 0.5
+    t6 = n_z * t5
+    t7 = L * L - (nu * (t5 * t5) + u_u * 0.25)
+    slack = np.maximum(t7, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t8 = (rho1 * t4 + rho2 * t3) * h
+    t9 = t6 + t8
+    t10 = rho1 * n_z * h
+    t11 = t4 * t5 - rho2 * 0.5
     del t4
-    t7 = t3 * t5 - E_12 * t6
-    t8 = t5 - t3 * t7
-    del t5
-    t9 = t6 + E_12 * t7
-    del t6, t7
-    j = np.sqrt(t1 + t8 * t8 + t9 * t9)
-    t10 = t1 / (2.0 * j)
-    E_23 = rho3 / j
-    t11 = t10 * E_23
-    t12 = t9 / j
-    del t9
-    t13 = t8 / j
-    del t8
-    X = size_u * 0.5
-    rho = np.sqrt(X * X + t10 * t10)
-    t14 = L - rho
-    slack = np.maximum(t14, 0.0)
-    h = np.sqrt(slack * (L + rho))
-    del rho
-    t15 = (t3 * t12 + E_12 * t13) * h
-    A_13 = t11 + t15
-    t16 = t3 * E_23 * h
-    t17 = X * E_12 - t10 * t12
-    del t12
-    A_12 = t16 + t17
-    t18 = E_12 * E_23 * h
-    del E_12, E_23, h
-    t19 = t3 * X + t13 * t10
-    del X, t10, t13, t3
-    A_11 = t18 - t19
-    t20 = A_13 * A_12 * (rho1 + A_11) - (rho3 - A_13) * A_11 * (rho2 - A_12)
-    del A_11, A_12, A_13
-    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
-    del t21
+    t12 = t10 - t11
+    t13 = rho2 * n_z * h
+    del h, n_z
+    t14 = rho1 * 0.5 + t3 * t5
+    del t3, t5
+    A_11 = t13 - t14
+    t15 = t9 * t12 * (rho1 + A_11) - (rho3 - t9) * A_11 * (rho2 - t12)
+    del A_11, t12, t9
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
+    del t16
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t22 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
-    t23 = t22 & (-(size * _runtime.FEASIBILITY) <= t14)
-    del t14, t22
-    t24 = _runtime.poison(invalid | np.logical_not(t23))
-    del invalid, t23
-    A_13_inner = t11 - t15
-    del t11, t15
-    t25 = t18 + t19
-    del t18, t19
-    t26 = t16 - t17
-    del t16, t17
-    t27 = (rho3 - A_13_inner) * t25 * (rho2 + t26) - A_13_inner * t26 * (rho1 - t25)
-    del A_13_inner, t25, t26
-    t28 = size * _runtime.VANISHING
+    t17 = size * size
+    t18 = L * size * 2.0
     del size
-    t29 = (size_u <= t28) | (size_u + np.sqrt(t2 + t1) <= t28)
-    del size_u, t1, t2
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t7)
+    del t7
+    t20 = _runtime.poison(invalid | np.logical_not(t19))
+    del invalid, t19
+    t21 = t6 - t8
+    del t6, t8
+    t22 = t13 + t14
+    del t13, t14
+    t23 = t10 + t11
+    del t10, t11
+    t24 = (rho3 - t21) * t22 * (rho2 + t23) - t21 * t23 * (rho1 - t22)
+    del t21, t22, t23
+    t25 = _runtime.VANISHING * _runtime.VANISHING * t17
+    del t17
+    t26 = (u_u <= t25) | (u_u + (t1 + t2) <= t25) | (nu <= t25)
+    del nu, t1, t2, t25, u_u
     return (
-        t20 + t24,
-        t27 + t24,
-        t29 | (j <= t28) | (slack <= t28),
+        t15 + t20,
+        t24 + t20,
+        t26 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -2361,7 +2268,6 @@ _CONSTRAINT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_constraint_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 

@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 63 compare and select, 65 add, 12 divide, 87 multiply, 7 sincos, 5 sqrt
-#   skeleton: 62 compare and select, 77 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
-#   jacobian_parallel: 62 compare and select, 86 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
-#   jacobian_serial: 62 compare and select, 72 add, 18 divide, 89 multiply, 7 sincos, 5 sqrt
-#   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
-#   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
-#   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
+#   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+#   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
+#   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
+#   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+#   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
 #   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -117,10 +117,10 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
     s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
     del c_beta2_half
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
     c1_x = r * c_alpha1
     del c_alpha1
     t1 = r * np.abs(s_alpha2)
@@ -140,135 +140,145 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1, t5
     t7 = c1_z - s2 * t1
     del s2, t1
-    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
-    t8 = r * _runtime.VANISHING
-    same = size_u <= t8
-    t9 = _runtime.select(same, t4, c1_x)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    all_same = size_u + size_v <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t10 = 1.0 / D
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) * t10))
-    del t4
-    t11 = _runtime.select(same, t6, c1_y)
-    t12 = _runtime.select(all_same, 0.0, t10 * _runtime.select(same, c1_y, t6))
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    all_same = u_u + v_v <= t9
+    same = u_u <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t10 = _runtime.select(same, c1_y, t6)
+    t11 = _runtime.select(same, c1_x, t4)
+    a_x = _runtime.select(all_same, 1.0, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
     del t6
-    t13 = _runtime.select(same, t7, c1_z)
-    t14 = _runtime.select(all_same, 0.0, t10 * _runtime.select(same, c1_z, t7))
-    del t10, t7
-    t15 = E_11 * t9 - t11 * t12 - t13 * t14
-    t16 = t9 - E_11 * t15
+    t13 = _runtime.select(same, t4, c1_x)
+    del t4
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    del t7
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
     del t9
-    t17 = t11 + t12 * t15
-    del t11
-    t18 = t13 + t14 * t15
-    del t13
-    t19 = E_11 * t16 - t12 * t17 - t14 * t18
-    t20 = t16 - E_11 * t19
-    del t16
-    t21 = t17 + t12 * t19
-    del t17
-    t22 = t18 + t14 * t19
-    del t18
-    j = np.sqrt(t20 * t20 + t21 * t21 + t22 * t22)
-    in_line = j <= t8
-    del t8
-    t23 = _runtime.sign(-t14)
-    t24 = 1.0 / (t14 - t23)
-    t25 = 1.0 / j
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t23 * t24, -(t20 * t25))
-    del t20
-    t26 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t26
-    del s_beta1_half
-    t27 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t26
-    del s_beta2_half, t26
-    t28 = _runtime.select(same, r, r_2)
-    t29 = t27 - t28
-    outer = np.maximum(t29, 0.0)
-    t30 = D - r_1
-    t31 = t28 + t30
-    inner = np.maximum(t31, 0.0)
+    side = _runtime.sign(-(t10 * a_x))
+    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
+    length_a = np.sqrt(mu)
+    del mu
+    t20 = t10 - a_x * side
+    del side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    part = 1.0 / (length_a * length_n)
+    t21 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    r_1 = np.abs(s_beta1_half) * t21
+    del s_beta1_half, t21
+    t22 = D + r_1
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
     share = 1.0 / (outer + inner)
-    t32 = t28 - t30
+    t27 = t23 - t25
+    del t25
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
+    del t28
+    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del nu, t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
     del t30
-    slack = np.maximum(t32, 0.0)
-    t33 = share * np.sqrt(outer * inner * slack * (t28 + t27))
-    del t27, t28
-    rho = _runtime.select(all_same, r_1, t33)
-    del r_1, t33
-    t34 = 2.0 * rho
-    t35 = j * t34
-    t36 = _runtime.select(same, r_2 * r_2, r * r) - j * j
-    del j
-    t37 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D, inner, outer, share, slack
-    X = _runtime.select(all_same, 0.0, t37)
-    del all_same, t37
-    t38 = t15 + t19 + X
-    del t15, t19
-    t39 = t36 - rho * rho - t38 * t38
-    del t36, t38
-    t40 = t35 - t39
-    upper = np.maximum(t40, 0.0)
-    t41 = t39 + t35
-    del t35, t39
-    lower = np.maximum(t41, 0.0)
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
     both = upper + lower
-    t42 = _runtime.select(same, r_2, r)
+    t36 = _runtime.select(same, r_2, r)
     del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t42)
-    t43 = 1.0 / both
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
     del both
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) * t43)
-    t44 = E_21 * Y + (c1_x + E_11 * X)
-    del c1_x
-    t45 = E_11 * t23
-    del t23
-    t46 = _runtime.select(in_line, t45, t22 * t25)
-    del t22
-    t47 = _runtime.select(in_line, t24 * (t12 * t45), t21 * t25)
-    del t21, t24, t25, t45
-    h = _runtime.select(flat, rho, t43 * (t34 * np.sqrt(upper * lower)))
-    del flat, lower, rho, t34, t43, upper
-    t48 = (t12 * t46 - t14 * t47) * h
-    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t49
-    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t50
-    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t51
-    invalid = np.logical_not(t52)
-    del t52
-    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t42) * 0.5)
+    t38 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del rho
+    h = part * t38
+    del t38
+    t39 = w_x * h
+    del w_x
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del half, length_a, lower, part, t37, upper
+    X = over_a * along
+    del along, over_a
+    t40 = t17 * Y - (c1_x - t11 * X)
+    del c1_x, t11
+    t41 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t42 = t41 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t41
+    t43 = t42 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t42
-    t55 = (t53 <= t32) & (t53 <= t29) & (t53 <= t31) & (-t54 <= t40)
-    del t29, t31, t32, t40, t53
-    unreachable = np.logical_not(t55 & (-t54 <= t41))
-    del t41, t54, t55
-    t56 = _runtime.poison(invalid | unreachable)
-    t57 = (E_11 * t46 - t14 * E_21) * h
-    t58 = t47 * Y - (c1_y - t12 * X)
+    t44 = t43 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t43
+    invalid = np.logical_not(t44)
+    del t44
+    t45 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t46 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t47 = (t45 <= t27) & (t45 <= t24) & (t45 <= t26) & (-t46 <= t34)
+    del t24, t26, t27, t34, t45
+    unreachable = np.logical_not(t47 & (-t46 <= t35))
+    del t35, t46, t47
+    t48 = _runtime.poison(invalid | unreachable)
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t49 = w_y * h
+    del w_y
+    t50 = t18 * Y - (c1_y - t10 * X)
     del c1_y
-    t59 = t46 * Y - (c1_z - t14 * X)
-    del X, Y, c1_z, t14, t46
-    t60 = (E_11 * t47 - t12 * E_21) * h
-    del E_11, E_21, h, t12, t47
-    t61 = _runtime.status(invalid, unreachable, in_line)
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
+    del a_x, t10, t17, t18, t20
+    t51 = w_z * h
+    del h, w_z
+    t52 = t19 * Y - (c1_z - t15 * X)
+    del X, Y, c1_z, t15, t19
+    t53 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t44 + t48 + t56,
-        t57 - t58 + t56,
-        -(t59 + t60) + t56,
-        t44 - t48 + t56,
-        -(t58 + t57) + t56,
-        t60 - t59 + t56,
-        t61,
-        t61,
+        t39 - t40 + t48,
+        t49 - t50 + t48,
+        t51 - t52 + t48,
+        -(t40 + t39) + t48,
+        -(t50 + t49) + t48,
+        -(t52 + t51) + t48,
+        t53,
+        t53,
     )
 
 
@@ -279,7 +289,6 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -365,161 +374,176 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t6
     del s2, t6
     t15 = c1_z - c2_z
-    size_u = np.sqrt(t11 * t11 + t14 * t14 + t15 * t15)
-    t16 = r * _runtime.VANISHING
-    same = size_u <= t16
-    t17 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t17
+    u_u = t11 * t11 + t14 * t14 + t15 * t15
+    t16 = r * r
+    t17 = _runtime.VANISHING * _runtime.VANISHING * t16
+    same = u_u <= t17
+    t18 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t18
     del s_beta2_half
-    t18 = _runtime.select(same, r, r_2)
-    r_1 = np.abs(s_beta1_half) * t17
-    del s_beta1_half, t17
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    D = _runtime.select(same, size_v, size_u)
-    t19 = r_1 - D
-    t20 = t18 + t19
-    t21 = r_1 + D
-    t22 = t21 - t18
-    t23 = t18 - t19
-    del t19
-    t24 = _runtime.select(same, r_2, r)
-    t25 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t24) * 0.5)
-    t26 = _runtime.select(same, t11, c1_x)
-    all_same = size_u + size_v <= t16
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t11) / D))
-    del t11
-    t27 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t14) / D)
-    t28 = _runtime.select(same, t14, c1_y)
+    t19 = _runtime.select(same, r, r_2)
+    r_1 = np.abs(s_beta1_half) * t18
+    del s_beta1_half, t18
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t17
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    length_a = np.sqrt(mu)
+    D = _runtime.select(all_same, 0.0, length_a)
+    t20 = r_1 - D
+    t21 = t19 + t20
+    t22 = r_1 + D
+    t23 = t22 - t19
+    t24 = t19 - t20
+    del t20
+    t25 = _runtime.select(same, r_2, r)
+    t26 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t25) * 0.5)
+    over = 1.0 / mu
+    del mu
+    t27 = _runtime.select(same, c1_y, t14)
+    t28 = _runtime.select(same, c1_x, t11)
+    a_x = _runtime.select(all_same, 1.0, -t28)
+    t29 = _runtime.select(same, t14, c1_y)
     del t14
-    t29 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t15) / D)
-    t30 = _runtime.select(same, t15, c1_z)
+    t30 = _runtime.select(same, t11, c1_x)
+    del t11
+    t31 = a_x * t29 + t27 * t30
+    t32 = _runtime.select(same, c1_z, t15)
+    t33 = _runtime.select(same, t15, c1_z)
     del t15
-    t31 = t26 * E_11 - t27 * t28 - t29 * t30
-    t32 = t26 - E_11 * t31
-    del t26
-    t33 = t28 + t27 * t31
-    del t28
-    t34 = t30 + t29 * t31
-    del t30
-    t35 = E_11 * t32 - t27 * t33 - t29 * t34
-    t36 = t32 - E_11 * t35
-    del t32
-    t37 = t33 + t27 * t35
-    del t33
-    t38 = t34 + t29 * t35
-    del t34
-    j = np.sqrt(t36 * t36 + t37 * t37 + t38 * t38)
-    t39 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    del r_2, same
-    outer = np.maximum(t22, 0.0)
-    inner = np.maximum(t23, 0.0)
+    m_y = a_x * t33 + t30 * t32
+    t34 = over * (t27 * t31 + t32 * m_y)
+    m_x = t27 * t33 - t29 * t32
+    t35 = over * (a_x * t31 - t32 * m_x)
+    del t31
+    t36 = over * (a_x * m_y + t27 * m_x)
+    del m_x, m_y
+    nu = t34 * t34 + t35 * t35 + t36 * t36
+    in_line = nu <= t17
+    del t17
+    side = _runtime.sign(-(t27 * a_x))
+    t37 = t27 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t32 * t32) + t37 * t37), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    outer = np.maximum(t23, 0.0)
+    inner = np.maximum(t24, 0.0)
     share = 1.0 / (outer + inner)
-    slack = np.maximum(t20, 0.0)
-    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    slack = np.maximum(t21, 0.0)
+    t38 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    X = _runtime.select(all_same, 0.0, t40)
-    del t40
-    t41 = t31 + t35 + X
-    del t31, t35
-    t42 = share * np.sqrt(outer * inner * slack * (t18 + t21))
-    del inner, outer, share, slack, t18, t21
-    rho = _runtime.select(all_same, r_1, t42)
-    del all_same, r_1, t42
-    left = t39 + t41 * t41 + rho * rho
-    del t39, t41
-    t43 = 2.0 * rho
-    t44 = j * t43
-    t45 = left + t44
-    t46 = (t5 <= t20) & (t5 <= t22) & (t5 <= t23) & (-t25 <= t45)
-    del t20, t22, t23, t5
-    t47 = t44 - left
-    del left, t44
-    failed = np.logical_not(t4) | np.logical_not(t46 & (-t25 <= t47))
-    del t25, t4, t46
-    t48 = _runtime.poison(failed)
-    del failed
-    t49 = 0.0 + t48
-    t50 = c1_x + t48
-    t51 = c1_y + t48
-    t52 = c1_z + t48
-    t53 = t9 + t48
-    del t9
-    t54 = t13 + t48
-    del t13
-    t55 = -t10 + t48
-    del t10
-    t56 = c2_y + t48
-    del c2_y
-    t57 = c2_z + t48
-    del c2_z
-    in_line = j <= t16
-    del t16
-    t58 = _runtime.sign(-t29)
-    t59 = t29 - t58
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t58 / t59, -(t36 / j))
-    del t36
-    upper = np.maximum(t45, 0.0)
-    del t45
-    lower = np.maximum(t47, 0.0)
-    del t47
-    both = upper + lower
-    flat = both <= _runtime.VANISHING * (r * t24)
-    del t24
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t60 = E_11 * X + E_21 * Y
-    t61 = E_11 * t58
-    del t58
-    t62 = _runtime.select(in_line, t61, t38 / j)
+    along = _runtime.select(all_same, 0.0, t38)
     del t38
-    t63 = _runtime.select(in_line, t27 * t61 / t59, t37 / j)
-    del in_line, j, t37, t59, t61
-    h = _runtime.select(flat, rho, t43 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t43, upper
-    t64 = (t27 * t62 - t29 * t63) * h
-    t65 = t27 * X + t63 * Y
-    t66 = (E_11 * t62 - t29 * E_21) * h
-    t67 = t29 * X + t62 * Y
-    del X, Y, t29, t62
-    t68 = (E_11 * t63 - t27 * E_21) * h
-    del E_11, E_21, h, t27, t63
+    t39 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along
+    del t29, t30, t33
+    t40 = nu - _runtime.select(same, r_2 * r_2, t16) + t39 * t39
+    del nu, r_2, same, t16, t39
+    t41 = share * np.sqrt(outer * inner * slack * (t19 + t22))
+    del inner, outer, share, slack, t19, t22
+    rho = _runtime.select(all_same, r_1, t41)
+    del all_same, r_1, t41
+    left = t40 + rho * rho
+    del t40
+    t42 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t43 = t42 * rho
+    del t42
+    t44 = left + t43
+    t45 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (-t26 <= t44)
+    del t21, t23, t24, t5
+    t46 = t43 - left
+    del left, t43
+    failed = np.logical_not(t4) | np.logical_not(t45 & (-t26 <= t46))
+    del t26, t4, t45
+    t47 = _runtime.poison(failed)
+    del failed
+    t48 = 0.0 + t47
+    t49 = c1_x + t47
+    t50 = c1_y + t47
+    t51 = c1_z + t47
+    t52 = t9 + t47
+    del t9
+    t53 = t13 + t47
+    del t13
+    t54 = -t10 + t47
+    del t10
+    t55 = c2_y + t47
+    del c2_y
+    t56 = c2_z + t47
+    del c2_z
+    X = over_a * along
+    del along, over_a
+    upper = np.maximum(t44, 0.0)
+    del t44
+    lower = np.maximum(t46, 0.0)
+    del t46
+    both = upper + lower
+    t57 = (both <= _runtime.VANISHING * (r * t25)) | in_line
+    del t25
+    half = rho / both
+    del both
+    Y = _runtime.select(t57, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t58 = t28 * X + t34 * Y
+    del t28
+    w_x = _runtime.select(in_line, -(t32 * side), t27 * t36 - t32 * t35)
+    del side
+    t59 = _runtime.select(t57, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t57, upper
+    h = part * t59
+    del part, t59
+    t60 = w_x * h
+    del w_x
+    t61 = t27 * X + t35 * Y
+    w_y = _runtime.select(in_line, -t32, a_x * t36 + t32 * t34)
+    t62 = w_y * h
+    del w_y
+    t63 = t32 * X + t36 * Y
+    del X, Y, t32, t36
+    w_z = _runtime.select(in_line, t37, -(a_x * t35 + t27 * t34))
+    del a_x, in_line, t27, t34, t35, t37
+    t64 = w_z * h
+    del h, w_z
     return (
+        t48,
+        t48,
+        t48,
         t49,
-        t49,
-        t49,
-        t50,
-        t49,
-        t49,
-        t50,
-        t51,
-        t52,
-        t53,
-        t54,
-        t49,
-        t55,
-        t56,
-        t57,
-        c1_x + (t60 + t64) + t48,
-        c1_y - (t65 - t66) + t48,
-        c1_z - (t67 + t68) + t48,
-        t49,
-        t49,
-        t49,
-        t50,
-        t49,
+        t48,
+        t48,
         t49,
         t50,
         t51,
         t52,
         t53,
+        t48,
         t54,
-        t49,
         t55,
         t56,
-        t57,
-        c1_x + (t60 - t64) + t48,
-        c1_y - (t65 + t66) + t48,
-        c1_z - (t67 - t68) + t48,
+        c1_x - (t58 - t60) + t47,
+        c1_y - (t61 - t62) + t47,
+        c1_z - (t63 - t64) + t47,
+        t48,
+        t48,
+        t48,
+        t49,
+        t48,
+        t48,
+        t49,
+        t50,
+        t51,
+        t52,
+        t53,
+        t48,
+        t54,
+        t55,
+        t56,
+        c1_x - (t58 + t60) + t47,
+        c1_y - (t61 + t62) + t47,
+        c1_z - (t63 + t64) + t47,
     )
 
 
@@ -530,7 +554,6 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -594,141 +617,156 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1, t5
     t7 = c1_z - s2 * t1
     del s2, t1
-    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t8 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t8
-    same = size_u <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) / D))
-    t9 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t9
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_x, t4)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t11 = _runtime.select(same, c1_y, t6)
+    a_x = _runtime.select(all_same, 1.0, -t10)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t4, c1_x)
+    t14 = a_x * t12 + t11 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t11 * t14 + t15 * m_y)
+    m_x = t11 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t11 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(-(t11 * a_x))
+    t20 = t11 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    length_a = np.sqrt(mu)
+    del mu
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    t21 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t21
     del s_beta1_half
-    t10 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t9
-    del s_beta2_half, t9
-    t11 = _runtime.select(same, r, r_2)
-    t12 = t10 - t11
-    outer = np.maximum(t12, 0.0)
-    t13 = D - r_1
-    t14 = t11 + t13
-    inner = np.maximum(t14, 0.0)
+    t22 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half, t21
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
     share = 1.0 / (outer + inner)
-    t15 = t11 - t13
-    del t13
-    slack = np.maximum(t15, 0.0)
-    t16 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    X = _runtime.select(all_same, 0.0, t16)
-    del t16
-    t17 = _runtime.select(same, t4, c1_x)
-    t18 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
-    t19 = _runtime.select(same, t6, c1_y)
-    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t7) / D)
-    del D
-    t21 = _runtime.select(same, t7, c1_z)
-    t22 = E_11 * t17 - t18 * t19 - t20 * t21
-    t23 = t17 - E_11 * t22
-    del t17
-    t24 = t19 + t18 * t22
-    del t19
-    t25 = t21 + t20 * t22
-    del t21
-    t26 = E_11 * t23 - t18 * t24 - t20 * t25
-    t27 = t23 - E_11 * t26
-    del t23
-    t28 = t24 + t18 * t26
-    del t24
-    t29 = t25 + t20 * t26
+    t27 = t23 - t25
     del t25
-    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
-    in_line = j <= t8
-    del t8
-    t30 = _runtime.sign(-t20)
-    t31 = t20 - t30
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t30 / t31, -(t27 / j))
-    del t27
-    t32 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    t33 = t22 + t26 + X
-    del t22, t26
-    t34 = share * np.sqrt(outer * inner * slack * (t11 + t10))
-    del inner, outer, share, slack, t10, t11
-    rho = _runtime.select(all_same, r_1, t34)
-    del all_same, r_1, t34
-    left = t32 + t33 * t33 + rho * rho
-    del t32, t33
-    t35 = 2.0 * rho
-    t36 = j * t35
-    t37 = left + t36
-    upper = np.maximum(t37, 0.0)
-    t38 = t36 - left
-    del left, t36
-    lower = np.maximum(t38, 0.0)
-    both = upper + lower
-    t39 = _runtime.select(same, r_2, r)
-    del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t39)
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t40 = E_11 * X + E_21 * Y
-    t41 = E_11 * t30
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
+    del t28
+    X = over_a * along
+    t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del nu, t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
     del t30
-    t42 = _runtime.select(in_line, t41, t29 / j)
-    del t29
-    t43 = _runtime.select(in_line, t18 * t41 / t31, t28 / j)
-    del in_line, j, t28, t31, t41
-    h = _runtime.select(flat, rho, t35 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t35, upper
-    t44 = (t18 * t42 - t20 * t43) * h
-    A_11 = t40 + t44
-    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t45
-    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t46
-    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t47
-    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t39) * 0.5)
-    del t39
-    t51 = (t49 <= t15) & (t49 <= t12) & (t49 <= t14) & (-t50 <= t37)
-    del t12, t14, t15, t37, t49
-    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t38))
-    del t38, t48, t50, t51
-    t52 = _runtime.poison(failed)
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
+    both = upper + lower
+    t36 = _runtime.select(same, r_2, r)
+    del r_2, same
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
+    del both
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t38 = t10 * X + t17 * Y
+    del t10
+    w_x = _runtime.select(in_line, -(t15 * side), t11 * t19 - t15 * t18)
+    del side
+    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t37, upper
+    h = part * t39
+    del part, t39
+    t40 = w_x * h
+    del w_x
+    t41 = t38 - t40
+    t42 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t43 = t42 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t42
+    t44 = t43 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t43
+    t45 = t44 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t44
+    t46 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t48 = (t46 <= t27) & (t46 <= t24) & (t46 <= t26) & (-t47 <= t34)
+    del t24, t26, t27, t34, t46
+    failed = np.logical_not(t45) | np.logical_not(t48 & (-t47 <= t35))
+    del t35, t45, t47, t48
+    t49 = _runtime.poison(failed)
     del failed
-    t53 = t18 * X + t43 * Y
-    t54 = (E_11 * t42 - t20 * E_21) * h
+    t50 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t51 = w_y * h
+    del w_y
+    t52 = t50 - t51
+    t53 = t15 * X + t19 * Y
+    del X, Y, t15, t19
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t20
+    t54 = w_z * h
+    del h, w_z
     t55 = t53 - t54
-    t56 = t20 * X + t42 * Y
-    del X, Y, t20, t42
-    t57 = (E_11 * t43 - t18 * E_21) * h
-    del E_11, E_21, h, t18, t43
-    t58 = t56 + t57
-    A_11_below = t40 - t44
-    del t40, t44
-    t59 = t53 + t54
+    t56 = t38 + t40
+    del t38, t40
+    t57 = t50 + t51
+    del t50, t51
+    t58 = t53 + t54
     del t53, t54
-    t60 = t56 - t57
-    del t56, t57
     return (
-        c1_x + A_11 + t52,
-        c1_y - t55 + t52,
-        c1_z - t58 + t52,
-        A_11 + t52,
-        -t55 + t52,
-        -t58 + t52,
-        t4 + A_11 + t52,
-        t6 - t55 + t52,
-        t7 - t58 + t52,
-        c1_x + A_11_below + t52,
-        c1_y - t59 + t52,
-        c1_z - t60 + t52,
-        A_11_below + t52,
-        -t59 + t52,
-        -t60 + t52,
-        t4 + A_11_below + t52,
-        t6 - t59 + t52,
-        t7 - t60 + t52,
+        c1_x - t41 + t49,
+        c1_y - t52 + t49,
+        c1_z - t55 + t49,
+        -t41 + t49,
+        -t52 + t49,
+        -t55 + t49,
+        t4 - t41 + t49,
+        t6 - t52 + t49,
+        t7 - t55 + t49,
+        c1_x - t56 + t49,
+        c1_y - t57 + t49,
+        c1_z - t58 + t49,
+        -t56 + t49,
+        -t57 + t49,
+        -t58 + t49,
+        t4 - t56 + t49,
+        t6 - t57 + t49,
+        t7 - t58 + t49,
     )
 
 
@@ -739,7 +777,6 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -804,131 +841,146 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t2
     del s2, t2
     t7 = c2_z - c1_z
-    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t8 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t8
-    same = size_u <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
-    t10 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t10
-    del s_beta1_half
-    t11 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t10
-    del s_beta2_half, t10
-    t12 = _runtime.select(same, r, r_2)
-    t13 = t11 - t12
-    outer = np.maximum(t13, 0.0)
-    t14 = D - r_1
-    t15 = t12 + t14
-    inner = np.maximum(t15, 0.0)
-    share = 1.0 / (outer + inner)
-    t16 = t12 - t14
-    del t14
-    slack = np.maximum(t16, 0.0)
-    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    X = _runtime.select(all_same, 0.0, t17)
-    del t17
-    t18 = _runtime.select(same, t5, c1_x)
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, 1.0, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
     del c1_x
-    t19 = _runtime.select(same, t6, c1_y)
-    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
-    del D
-    t21 = _runtime.select(same, -t7, c1_z)
-    t22 = t18 * E_11 - t9 * t19 - t20 * t21
-    t23 = t18 - E_11 * t22
-    del t18
-    t24 = t19 + t9 * t22
-    del t19
-    t25 = t21 + t20 * t22
-    del t21
-    t26 = E_11 * t23 - t9 * t24 - t20 * t25
-    t27 = t23 - E_11 * t26
-    del t23
-    t28 = t24 + t9 * t26
-    del t24
-    t29 = t25 + t20 * t26
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(-(t10 * a_x))
+    t20 = t10 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    length_a = np.sqrt(mu)
+    del mu
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    t21 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t21
+    del s_beta1_half
+    t22 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half, t21
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
+    share = 1.0 / (outer + inner)
+    t27 = t23 - t25
     del t25
-    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
-    in_line = j <= t8
-    del t8
-    t30 = _runtime.sign(-t20)
-    t31 = E_11 * t30
-    t32 = t20 - t30
-    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
     del t28
-    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    t35 = t22 + t26 + X
-    del t22, t26
-    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
-    del inner, outer, share, slack, t11, t12
-    rho = _runtime.select(all_same, r_1, t36)
-    del all_same, r_1, t36
-    left = t34 + t35 * t35 + rho * rho
-    del t34, t35
-    t37 = 2.0 * rho
-    t38 = j * t37
-    t39 = left + t38
-    upper = np.maximum(t39, 0.0)
-    t40 = t38 - left
-    del left, t38
-    lower = np.maximum(t40, 0.0)
+    X = over_a * along
+    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del nu, t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
+    del t30
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
     both = upper + lower
-    t41 = _runtime.select(same, r_2, r)
+    t36 = _runtime.select(same, r_2, r)
     del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t41)
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t42 = t9 * X + t33 * Y
-    t43 = _runtime.select(in_line, t31, t29 / j)
-    del t29, t31
-    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
-    del in_line, j, t27, t30, t32
-    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t37, upper
-    t44 = (E_11 * t43 - t20 * E_21) * h
-    t45 = t42 - t44
-    t46 = t20 * X + t43 * Y
-    t47 = (E_11 * t33 - t9 * E_21) * h
-    t48 = t46 + t47
-    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t49
-    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t50
-    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t51
-    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
-    del t41
-    t55 = (t53 <= t16) & (t53 <= t13) & (t53 <= t15) & (-t54 <= t39)
-    del t13, t15, t16, t39, t53
-    failed = np.logical_not(t52) | np.logical_not(t55 & (-t54 <= t40))
-    del t40, t52, t54, t55
-    t56 = _runtime.poison(failed)
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
+    del both
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t38 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t37, upper
+    h = part * t39
+    del part, t39
+    t40 = w_y * h
+    del w_y
+    t41 = t38 - t40
+    t42 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
+    del a_x, t20
+    t43 = w_z * h
+    del w_z
+    t44 = t42 - t43
+    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t45
+    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t46
+    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t47
+    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t51 = (t49 <= t27) & (t49 <= t24) & (t49 <= t26) & (-t50 <= t34)
+    del t24, t26, t27, t34, t49
+    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t35))
+    del t35, t48, t50, t51
+    t52 = _runtime.poison(failed)
     del failed
-    t57 = s_gamma * c2_z
+    t53 = s_gamma * c2_z
     del s_gamma
-    t58 = E_11 * X + E_21 * Y
-    del E_11, E_21, X, Y
-    t59 = (t9 * t43 - t20 * t33) * h
-    del h, t20, t33, t43, t9
-    t60 = c_gamma * c2_z
+    t54 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19
+    t55 = w_x * h
+    del h, w_x
+    t56 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t57 * (t5 + (t58 + t59)) - t60 * (t6 - t45) - t3 * (t7 + t48)
-    t61 = t42 + t44
-    del t42, t44
-    t62 = t46 - t47
-    del t46, t47
-    B_22_below = t57 * (t5 + (t58 - t59)) - t60 * (t6 - t61) - t3 * (t7 + t62)
-    del t3, t5, t57, t58, t59, t6, t60, t7
+    B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44)
+    t57 = t38 + t40
+    del t38, t40
+    t58 = t42 + t43
+    del t42, t43
+    B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58)
+    del t3, t5, t53, t54, t55, t56, t6, t7
     return (
-        c1_z * t45 - c1_y * t48 + t56,
-        B_22 + t56,
-        c1_z * t61 - c1_y * t62 + t56,
-        B_22_below + t56,
+        c1_z * t41 - c1_y * t44 + t52,
+        B_22 + t52,
+        c1_z * t57 - c1_y * t58 + t52,
+        B_22_below + t52,
     )
 
 
@@ -939,7 +991,6 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1004,182 +1055,197 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t2
     del s2, t2
     t7 = c2_z - c1_z
-    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t8 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t8
-    same = size_u <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
-    t10 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t10
-    del s_beta1_half
-    t11 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t10
-    del s_beta2_half, t10
-    t12 = _runtime.select(same, r, r_2)
-    t13 = t11 - t12
-    outer = np.maximum(t13, 0.0)
-    t14 = D - r_1
-    t15 = t12 + t14
-    inner = np.maximum(t15, 0.0)
-    share = 1.0 / (outer + inner)
-    t16 = t12 - t14
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, 1.0, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
     del t14
-    slack = np.maximum(t16, 0.0)
-    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    X = _runtime.select(all_same, 0.0, t17)
-    del t17
-    t18 = _runtime.select(same, t5, c1_x)
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
-    t19 = _runtime.select(same, t6, c1_y)
-    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
-    t21 = _runtime.select(same, -t7, c1_z)
-    t22 = t18 * E_11 - t9 * t19 - t20 * t21
-    t23 = t18 - E_11 * t22
-    del t18
-    t24 = t19 + t9 * t22
-    del t19
-    t25 = t21 + t20 * t22
-    del t21
-    t26 = E_11 * t23 - t9 * t24 - t20 * t25
-    t27 = t23 - E_11 * t26
-    del t23
-    t28 = t24 + t9 * t26
-    del t24
-    t29 = t25 + t20 * t26
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(-(t10 * a_x))
+    t20 = t10 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    length_a = np.sqrt(mu)
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    t21 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t21
+    del s_beta1_half
+    t22 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half, t21
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
+    share = 1.0 / (outer + inner)
+    t27 = t23 - t25
     del t25
-    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
-    in_line = j <= t8
-    del t8
-    t30 = _runtime.sign(-t20)
-    t31 = E_11 * t30
-    t32 = t20 - t30
-    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
     del t28
-    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    t35 = t22 + t26 + X
-    del t22, t26
-    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
-    del inner, outer, share, slack, t11, t12
-    rho = _runtime.select(all_same, r_1, t36)
-    del all_same, r_1, t36
-    left = t34 + t35 * t35 + rho * rho
-    del t34, t35
-    t37 = 2.0 * rho
-    t38 = j * t37
-    t39 = left + t38
-    upper = np.maximum(t39, 0.0)
-    t40 = t38 - left
-    del left, t38
-    lower = np.maximum(t40, 0.0)
+    X = over_a * along
+    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
+    del t30
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
     both = upper + lower
-    t41 = _runtime.select(same, r_2, r)
+    t36 = _runtime.select(same, r_2, r)
     del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t41)
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t42 = t9 * X + t33 * Y
-    t43 = _runtime.select(in_line, t31, t29 / j)
-    del t29, t31
-    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
-    del in_line, t27, t30, t32
-    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t37, upper
-    t44 = (E_11 * t43 - t20 * E_21) * h
-    t45 = t42 - t44
-    t46 = t20 * X + t43 * Y
-    t47 = (E_11 * t33 - t9 * E_21) * h
-    t48 = t46 + t47
-    B_11 = c1_z * t45 - c1_y * t48
-    A_02 = c1_y - t45
-    t49 = t7 + t48
-    A_03 = c1_z - t48
-    A_22 = t6 - t45
-    Delta = D * j * h
-    del D, j
-    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t50
-    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t51
-    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t52
-    t54 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t55 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
-    del t41
-    t56 = (t54 <= t16) & (t54 <= t13) & (t54 <= t15) & (-t55 <= t39)
-    del t13, t15, t16, t39, t54
-    failed = np.logical_not(t53) | np.logical_not(t56 & (-t55 <= t40))
-    del t40, t53, t55, t56
-    t57 = _runtime.poison(failed)
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
+    del both
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t38 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t37, upper
+    h = part * t39
+    del part, t39
+    t40 = w_y * h
+    del w_y
+    t41 = t38 - t40
+    t42 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
+    del a_x, t20
+    t43 = w_z * h
+    del w_z
+    t44 = t42 - t43
+    B_11 = c1_z * t41 - c1_y * t44
+    A_02 = c1_y - t41
+    t45 = t7 + t44
+    A_03 = c1_z - t44
+    A_22 = t6 - t41
+    Delta = mu * nu * h
+    del mu, nu
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t47
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t48
+    t50 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t51 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t52 = (t50 <= t27) & (t50 <= t24) & (t50 <= t26) & (-t51 <= t34)
+    del t24, t26, t27, t34, t50
+    failed = np.logical_not(t49) | np.logical_not(t52 & (-t51 <= t35))
+    del t35, t49, t51, t52
+    t53 = _runtime.poison(failed)
     del failed
-    t58 = B_11 * (A_02 * t49 + A_03 * A_22) / Delta + t57
-    t59 = s_gamma * c2_z
+    t54 = B_11 * (A_02 * t45 + A_03 * A_22) / Delta + t53
+    t55 = s_gamma * c2_z
     del s_gamma
-    t60 = E_11 * X + E_21 * Y
-    del E_11, E_21, X, Y
-    t61 = (t9 * t43 - t20 * t33) * h
-    del h, t20, t33, t43, t9
-    A_11 = t60 + t61
-    A_21 = t5 + A_11
-    t62 = c_gamma * c2_z
+    t56 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19
+    t57 = w_x * h
+    del h, w_x
+    t58 = t56 - t57
+    A_21 = t5 - t58
+    t59 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t59 * A_21 - t62 * A_22 - t3 * t49
-    t63 = -(B_22 * (t48 * A_02 - t45 * A_03) / Delta) + t57
-    A_01 = c1_x + A_11
-    t64 = -(B_11 * (t49 * A_01 + A_03 * A_21) / Delta) + t57
-    del t49
-    t65 = B_22 * (t48 * A_01 + A_03 * A_11) / Delta + t57
-    del A_03, t48
-    t66 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    B_22 = t55 * A_21 - t59 * A_22 - t3 * t45
+    t60 = -(B_22 * (t44 * A_02 - t41 * A_03) / Delta) + t53
+    A_01 = c1_x - t58
+    t61 = -(B_11 * (t45 * A_01 + A_03 * A_21) / Delta) + t53
+    del t45
+    t62 = B_22 * (t44 * A_01 - A_03 * t58) / Delta + t53
+    del A_03, t44
+    t63 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t67 = -(B_22 * (t45 * A_01 + A_02 * A_11) / Delta) + t57
-    del A_01, A_02, A_11, B_22, t45
-    t68 = t42 + t44
-    del t42, t44
-    t69 = t46 - t47
-    del t46, t47
-    B_11_below = c1_z * t68 - c1_y * t69
-    A_02_below = c1_y - t68
+    t64 = -(B_22 * (t41 * A_01 - A_02 * t58) / Delta) + t53
+    del A_01, A_02, B_22, t41, t58
+    t65 = t38 + t40
+    del t38, t40
+    t66 = t42 + t43
+    del t42, t43
+    B_11_below = c1_z * t65 - c1_y * t66
+    A_02_below = c1_y - t65
     del c1_y
-    t70 = t7 + t69
+    t67 = t7 + t66
     del t7
-    A_03_below = c1_z - t69
+    A_03_below = c1_z - t66
     del c1_z
-    A_22_below = t6 - t68
+    A_22_below = t6 - t65
     del t6
-    t71 = B_11_below * (A_02_below * t70 + A_03_below * A_22_below)
-    A_11_below = t60 - t61
-    del t60, t61
-    A_21_below = t5 + A_11_below
+    t68 = B_11_below * (A_02_below * t67 + A_03_below * A_22_below)
+    t69 = t56 + t57
+    del t56, t57
+    A_21_below = t5 - t69
     del t5
-    B_22_below = t59 * A_21_below - t62 * A_22_below - t3 * t70
-    del t3, t59, t62
-    t72 = B_22_below * (t69 * A_02_below - t68 * A_03_below)
-    A_01_below = c1_x + A_11_below
+    B_22_below = t55 * A_21_below - t59 * A_22_below - t3 * t67
+    del t3, t55, t59
+    t70 = B_22_below * (t66 * A_02_below - t65 * A_03_below)
+    A_01_below = c1_x - t69
     del c1_x
-    t73 = B_11_below * (t70 * A_01_below + A_03_below * A_21_below)
-    del t70
-    t74 = B_22_below * (t69 * A_01_below + A_03_below * A_11_below)
-    del A_03_below, t69
-    t75 = A_22_below * A_01_below - A_02_below * A_21_below
+    t71 = B_11_below * (t67 * A_01_below + A_03_below * A_21_below)
+    del t67
+    t72 = B_22_below * (t66 * A_01_below - A_03_below * t69)
+    del A_03_below, t66
+    t73 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t76 = B_22_below * (t68 * A_01_below + A_02_below * A_11_below)
-    del A_01_below, A_02_below, A_11_below, B_22_below, t68
+    t74 = B_22_below * (t65 * A_01_below - A_02_below * t69)
+    del A_01_below, A_02_below, B_22_below, t65, t69
     return (
-        t58,
-        t63,
+        t54,
+        t60,
+        t61,
+        t62,
+        t63 + t53,
         t64,
-        t65,
-        t66 + t57,
-        t67,
-        -(t71 / Delta) + t57,
-        t72 / Delta + t57,
-        t73 / Delta + t57,
-        -(t74 / Delta) + t57,
-        B_11_below * t75 / Delta + t57,
-        t76 / Delta + t57,
+        -(t68 / Delta) + t53,
+        t70 / Delta + t53,
+        t71 / Delta + t53,
+        -(t72 / Delta) + t53,
+        B_11_below * t73 / Delta + t53,
+        t74 / Delta + t53,
     )
 
 
@@ -1190,7 +1256,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1256,134 +1321,149 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2_z = s2 * t2
     del s2, t2
     t7 = c2_z - c1_z
-    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t8 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t8
-    same = size_u <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
-    t10 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t10
-    del s_beta1_half
-    t11 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t10
-    del s_beta2_half, t10
-    t12 = _runtime.select(same, r, r_2)
-    t13 = t11 - t12
-    outer = np.maximum(t13, 0.0)
-    t14 = D - r_1
-    t15 = t12 + t14
-    inner = np.maximum(t15, 0.0)
-    share = 1.0 / (outer + inner)
-    t16 = t12 - t14
-    del t14
-    slack = np.maximum(t16, 0.0)
-    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    X = _runtime.select(all_same, 0.0, t17)
-    del t17
-    t18 = _runtime.select(same, t5, c1_x)
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, 1.0, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
     del c1_x
-    t19 = _runtime.select(same, t6, c1_y)
-    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
-    t21 = _runtime.select(same, -t7, c1_z)
-    t22 = t18 * E_11 - t9 * t19 - t20 * t21
-    t23 = t18 - E_11 * t22
-    del t18
-    t24 = t19 + t9 * t22
-    del t19
-    t25 = t21 + t20 * t22
-    del t21
-    t26 = E_11 * t23 - t9 * t24 - t20 * t25
-    t27 = t23 - E_11 * t26
-    del t23
-    t28 = t24 + t9 * t26
-    del t24
-    t29 = t25 + t20 * t26
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(-(t10 * a_x))
+    t20 = t10 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    length_a = np.sqrt(mu)
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    t21 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t21
+    del s_beta1_half
+    t22 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half, t21
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
+    share = 1.0 / (outer + inner)
+    t27 = t23 - t25
     del t25
-    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
-    in_line = j <= t8
-    del t8
-    t30 = _runtime.sign(-t20)
-    t31 = E_11 * t30
-    t32 = t20 - t30
-    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
     del t28
-    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    t35 = t22 + t26 + X
-    del t22, t26
-    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
-    del inner, outer, share, slack, t11, t12
-    rho = _runtime.select(all_same, r_1, t36)
-    del all_same, r_1, t36
-    left = t34 + t35 * t35 + rho * rho
-    del t34, t35
-    t37 = 2.0 * rho
-    t38 = j * t37
-    t39 = left + t38
-    upper = np.maximum(t39, 0.0)
-    t40 = t38 - left
-    del left, t38
-    lower = np.maximum(t40, 0.0)
+    X = over_a * along
+    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
+    del t30
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
     both = upper + lower
-    t41 = _runtime.select(same, r_2, r)
+    t36 = _runtime.select(same, r_2, r)
     del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t41)
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t42 = t9 * X + t33 * Y
-    t43 = _runtime.select(in_line, t31, t29 / j)
-    del t29, t31
-    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
-    del in_line, t27, t30, t32
-    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t37, upper
-    t44 = (E_11 * t43 - t20 * E_21) * h
-    t45 = t42 - t44
-    t46 = t20 * X + t43 * Y
-    t47 = (E_11 * t33 - t9 * E_21) * h
-    t48 = t46 + t47
-    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t49
-    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t50
-    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t51
-    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
-    del t41
-    t55 = (t53 <= t16) & (t53 <= t13) & (t53 <= t15) & (-t54 <= t39)
-    del t13, t15, t16, t39, t53
-    failed = np.logical_not(t52) | np.logical_not(t55 & (-t54 <= t40))
-    del t40, t52, t54, t55
-    t56 = _runtime.poison(failed)
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
+    del both
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t38 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t37, upper
+    h = part * t39
+    del part, t39
+    t40 = w_y * h
+    del w_y
+    t41 = t38 - t40
+    t42 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
+    del a_x, t20
+    t43 = w_z * h
+    del w_z
+    t44 = t42 - t43
+    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t45
+    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t46
+    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t47
+    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t51 = (t49 <= t27) & (t49 <= t24) & (t49 <= t26) & (-t50 <= t34)
+    del t24, t26, t27, t34, t49
+    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t35))
+    del t35, t48, t50, t51
+    t52 = _runtime.poison(failed)
     del failed
-    t57 = s_gamma * c2_z
+    t53 = s_gamma * c2_z
     del s_gamma
-    t58 = E_11 * X + E_21 * Y
-    del E_11, E_21, X, Y
-    t59 = (t9 * t43 - t20 * t33) * h
-    del t20, t33, t43, t9
-    t60 = c_gamma * c2_z
+    t54 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19
+    t55 = w_x * h
+    del w_x
+    t56 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t57 * (t5 + (t58 + t59)) - t60 * (t6 - t45) - t3 * (t7 + t48)
-    Delta = D * j * h
-    del D, h, j
-    t61 = t42 + t44
-    del t42, t44
-    t62 = t46 - t47
-    del t46, t47
-    B_22_below = t57 * (t5 + (t58 - t59)) - t60 * (t6 - t61) - t3 * (t7 + t62)
-    del t3, t5, t57, t58, t59, t6, t60, t7
+    B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44)
+    Delta = mu * nu * h
+    del h, mu, nu
+    t57 = t38 + t40
+    del t38, t40
+    t58 = t42 + t43
+    del t42, t43
+    B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58)
+    del t3, t5, t53, t54, t55, t56, t6, t7
     return (
-        c1_z * t45 - c1_y * t48 + t56,
-        B_22 + t56,
-        Delta + t56,
-        c1_z * t61 - c1_y * t62 + t56,
-        B_22_below + t56,
-        -Delta + t56,
+        c1_z * t41 - c1_y * t44 + t52,
+        B_22 + t52,
+        Delta + t52,
+        c1_z * t57 - c1_y * t58 + t52,
+        B_22_below + t52,
+        -Delta + t52,
     )
 
 
@@ -1394,7 +1474,6 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1458,102 +1537,117 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1, t5
     t7 = c1_z - s2 * t1
     del s2, t1
-    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
-    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t8 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t8
-    same = size_u <= t8
-    D = _runtime.select(same, size_v, size_u)
-    del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) / D))
-    t9 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t9
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_x, t4)
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t9
+    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t11 = _runtime.select(same, c1_y, t6)
+    a_x = _runtime.select(all_same, 1.0, -t10)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t4, c1_x)
+    t14 = a_x * t12 + t11 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t11 * t14 + t15 * m_y)
+    m_x = t11 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t11 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    side = _runtime.sign(-(t11 * a_x))
+    t20 = t11 - a_x * side
+    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    length_a = np.sqrt(mu)
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    D = _runtime.select(all_same, 0.0, length_a)
+    t21 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t21
     del s_beta1_half
-    t10 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t9
-    del s_beta2_half, t9
-    t11 = _runtime.select(same, r, r_2)
-    t12 = t10 - t11
-    outer = np.maximum(t12, 0.0)
-    t13 = D - r_1
-    t14 = t11 + t13
-    inner = np.maximum(t14, 0.0)
+    t22 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t21
+    del s_beta2_half, t21
+    t23 = _runtime.select(same, r, r_2)
+    t24 = t22 - t23
+    outer = np.maximum(t24, 0.0)
+    t25 = D - r_1
+    t26 = t23 + t25
+    inner = np.maximum(t26, 0.0)
     share = 1.0 / (outer + inner)
-    t15 = t11 - t13
-    del t13
-    slack = np.maximum(t15, 0.0)
-    t16 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    X = _runtime.select(all_same, 0.0, t16)
-    del t16
-    t17 = _runtime.select(same, t4, c1_x)
-    t18 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
-    t19 = _runtime.select(same, t6, c1_y)
-    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t7) / D)
-    t21 = _runtime.select(same, t7, c1_z)
-    t22 = E_11 * t17 - t18 * t19 - t20 * t21
-    t23 = t17 - E_11 * t22
-    del t17
-    t24 = t19 + t18 * t22
-    del t19
-    t25 = t21 + t20 * t22
-    del t21
-    t26 = E_11 * t23 - t18 * t24 - t20 * t25
-    t27 = t23 - E_11 * t26
-    del t23
-    t28 = t24 + t18 * t26
-    del t24
-    t29 = t25 + t20 * t26
+    t27 = t23 - t25
     del t25
-    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
-    in_line = j <= t8
-    del t8
-    t30 = _runtime.sign(-t20)
-    t31 = t20 - t30
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t30 / t31, -(t27 / j))
-    del t27
-    t32 = j * j - _runtime.select(same, r_2 * r_2, r * r)
-    t33 = t22 + t26 + X
-    del t22, t26
-    t34 = share * np.sqrt(outer * inner * slack * (t11 + t10))
-    del inner, outer, share, slack, t10, t11
-    rho = _runtime.select(all_same, r_1, t34)
-    del all_same, r_1, t34
-    left = t32 + t33 * t33 + rho * rho
-    del t32, t33
-    t35 = 2.0 * rho
-    t36 = j * t35
-    t37 = left + t36
-    upper = np.maximum(t37, 0.0)
-    t38 = t36 - left
-    del left, t36
-    lower = np.maximum(t38, 0.0)
-    both = upper + lower
-    t39 = _runtime.select(same, r_2, r)
-    del r_2, same
-    flat = both <= _runtime.VANISHING * (r * t39)
-    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
-    t40 = E_11 * X + E_21 * Y
-    t41 = E_11 * t30
+    slack = np.maximum(t27, 0.0)
+    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t28)
+    del t28
+    X = over_a * along
+    t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
+    del t29, t8
+    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
+    del inner, outer, share, slack, t22, t23
+    rho = _runtime.select(all_same, r_1, t31)
+    del all_same, r_1, t31
+    left = t30 + rho * rho
     del t30
-    t42 = _runtime.select(in_line, t41, t29 / j)
-    del t29
-    t43 = _runtime.select(in_line, t18 * t41 / t31, t28 / j)
-    del in_line, t28, t31, t41
-    h = _runtime.select(flat, rho, t35 * np.sqrt(upper * lower) / both)
-    del both, flat, lower, rho, t35, upper
-    t44 = (t18 * t42 - t20 * t43) * h
-    A_11 = t40 + t44
-    A_01 = c1_x + A_11
-    t45 = t18 * X + t43 * Y
-    t46 = (E_11 * t42 - t20 * E_21) * h
+    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t33 = t32 * rho
+    del t32
+    t34 = left + t33
+    upper = np.maximum(t34, 0.0)
+    t35 = t33 - left
+    del left, t33
+    lower = np.maximum(t35, 0.0)
+    both = upper + lower
+    t36 = _runtime.select(same, r_2, r)
+    del r_2, same
+    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    half = rho / both
+    del both
+    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t38 = t10 * X + t17 * Y
+    del t10
+    w_x = _runtime.select(in_line, -(t15 * side), t11 * t19 - t15 * t18)
+    del side
+    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t37, upper
+    h = part * t39
+    del part, t39
+    t40 = w_x * h
+    del w_x
+    t41 = t38 - t40
+    A_01 = c1_x - t41
+    t42 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
+    t43 = w_y * h
+    del w_y
+    t44 = t42 - t43
+    A_02 = c1_y - t44
+    t45 = t15 * X + t19 * Y
+    del X, Y, t15, t19
+    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t20
+    t46 = w_z * h
+    del w_z
     t47 = t45 - t46
-    A_02 = c1_y - t47
-    t48 = t20 * X + t42 * Y
-    del X, Y, t20, t42
-    t49 = (E_11 * t43 - t18 * E_21) * h
-    del E_11, E_21, t18, t43
-    t50 = t48 + t49
-    A_03 = c1_z - t50
+    A_03 = c1_z - t47
     strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
     radial_x = A_01 / strut
     del A_01
@@ -1561,18 +1655,18 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_02
     radial_z = A_03 / strut
     del A_03
-    off1 = A_11 * radial_x - t47 * radial_y - t50 * radial_z
-    t1_x = A_11 - radial_x * off1
-    t51 = t47 + radial_y * off1
-    t52 = t50 + radial_z * off1
-    del off1
-    square1 = t1_x * t1_x + t51 * t51 + t52 * t52
-    A_21 = t4 + A_11
-    del A_11
-    A_22 = t6 - t47
+    t48 = t41 * radial_x + t44 * radial_y + t47 * radial_z
+    t49 = t41 - radial_x * t48
+    t50 = t44 - radial_y * t48
+    t51 = t47 - radial_z * t48
+    del t48
+    square1 = t49 * t49 + t50 * t50 + t51 * t51
+    A_21 = t4 - t41
+    del t41
+    A_22 = t6 - t44
+    del t44
+    A_23 = t7 - t47
     del t47
-    A_23 = t7 - t50
-    del t50
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     del A_21, radial_x
@@ -1581,40 +1675,40 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t2_z = A_23 - radial_z * off2
     del A_23, off2, radial_z
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t53 = square1 - square2
-    t54 = t1_x * t2_x - t51 * t2_y - t52 * t2_z
-    del t1_x, t2_x, t2_y, t2_z, t51, t52
-    t55 = square1 + square2 + np.sqrt(t53 * t53 + 4.0 * (t54 * t54))
-    del square1, square2, t53, t54
-    t56 = 2.0 * (D * j * h)
-    del D, h, j
-    t57 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t58 = t57 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t52 = square1 - square2
+    t53 = t49 * t2_x + t50 * t2_y + t51 * t2_z
+    del t2_x, t2_y, t2_z, t49, t50, t51
+    t54 = square1 + square2 + np.sqrt(t52 * t52 + 4.0 * (t53 * t53))
+    del square1, square2, t52, t53
+    t55 = 2.0 * (mu * nu * h)
+    del h, mu, nu
+    t56 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t57 = t56 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t56
+    t58 = t57 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t57
-    t59 = t58 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t59 = t58 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t58
-    t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t59
-    t61 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t62 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t39) * 0.5)
-    del t39
-    t63 = (t61 <= t15) & (t61 <= t12) & (t61 <= t14) & (-t62 <= t37)
-    del t12, t14, t15, t37, t61
-    failed = np.logical_not(t60) | np.logical_not(t63 & (-t62 <= t38))
-    del t38, t60, t62, t63
-    t64 = _runtime.poison(failed)
+    t60 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t61 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
+    del t36
+    t62 = (t60 <= t27) & (t60 <= t24) & (t60 <= t26) & (-t61 <= t34)
+    del t24, t26, t27, t34, t60
+    failed = np.logical_not(t59) | np.logical_not(t62 & (-t61 <= t35))
+    del t35, t59, t61, t62
+    t63 = _runtime.poison(failed)
     del failed
-    A_11_below = t40 - t44
-    del t40, t44
-    A_01_below = c1_x + A_11_below
+    t64 = t38 + t40
+    del t38, t40
+    A_01_below = c1_x - t64
     del c1_x
-    t65 = t45 + t46
-    del t45, t46
+    t65 = t42 + t43
+    del t42, t43
     A_02_below = c1_y - t65
     del c1_y
     t66 = A_01_below * A_01_below + A_02_below * A_02_below
-    t67 = t48 - t49
-    del t48, t49
+    t67 = t45 + t46
+    del t45, t46
     A_03_below = c1_z - t67
     del c1_z
     strut_below = np.sqrt(t66 + A_03_below * A_03_below)
@@ -1623,42 +1717,40 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
-    t68 = A_11_below * radial_x_below - t65 * radial_y_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    off1_below = t68 - t67 * radial_z_below
+    t68 = t64 * radial_x_below + t65 * radial_y_below + t67 * radial_z_below
+    t69 = t64 - radial_x_below * t68
+    t70 = t65 - radial_y_below * t68
+    t71 = t67 - radial_z_below * t68
     del t68
-    t1_x_below = A_11_below - radial_x_below * off1_below
-    t69 = t65 + radial_y_below * off1_below
-    t70 = t67 + radial_z_below * off1_below
-    del off1_below
-    square1_below = t1_x_below * t1_x_below + t69 * t69 + t70 * t70
-    A_21_below = t4 + A_11_below
-    del A_11_below, t4
+    square1_below = t69 * t69 + t70 * t70 + t71 * t71
+    A_21_below = t4 - t64
+    del t4, t64
     A_22_below = t6 - t65
     del t6, t65
-    t71 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    t72 = radial_x_below * A_21_below + radial_y_below * A_22_below
     A_23_below = t7 - t67
     del t67, t7
-    off2_below = t71 + radial_z_below * A_23_below
-    del t71
+    off2_below = t72 + radial_z_below * A_23_below
+    del t72
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t72 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t73 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t72 + t2_z_below * t2_z_below
-    del t72
-    t73 = square1_below - square2_below
-    t74 = t1_x_below * t2_x_below - t69 * t2_y_below - t70 * t2_z_below
-    del t1_x_below, t2_x_below, t2_y_below, t2_z_below, t69, t70
-    t75 = square1_below + square2_below + np.sqrt(t73 * t73 + 4.0 * (t74 * t74))
-    del square1_below, square2_below, t73, t74
+    square2_below = t73 + t2_z_below * t2_z_below
+    del t73
+    t74 = square1_below - square2_below
+    t75 = t69 * t2_x_below + t70 * t2_y_below + t71 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t69, t70, t71
+    t76 = square1_below + square2_below + np.sqrt(t74 * t74 + 4.0 * (t75 * t75))
+    del square1_below, square2_below, t74, t75
     return (
-        strut * t55 / t56 + t64,
-        strut_below * t75 / t56 + t64,
+        strut * t54 / t55 + t63,
+        strut_below * t76 / t55 + t63,
     )
 
 
@@ -1669,7 +1761,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

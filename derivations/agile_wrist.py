@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from closedform.derivations.claims.agile_wrist import state
 from closedform.derivations.papers.textbook_loops import WRIST_LOOPS
 from sympy import Abs, Expr, Matrix, Min, Mul, Rational, atan2, cos, diag, eye, sin, sqrt
 
@@ -320,3 +321,7 @@ d.function(
 d.inverses.append(Inverse("ik", q, (0,) * 3, loop, images="fk", links=tuple(links)))
 for link in links:
     d.solved.append(Solved("ik", link.unknowns[0], link.lemma, link.lemma.equations[0]))
+
+# Claims
+
+state(d, q, [(u[k], w[k], p[k], V[:, k]) for k in range(3)], given, loop)

@@ -7,6 +7,7 @@ import pytest
 from closedform.derivations.agile_wrist import d
 from closedform.generated.numpy import agile_wrist as wrist
 
+from closedform.proof.claims import judged
 from closedform.proof.inverse import prove_inverse
 from closedform.proof.require import ProofError
 
@@ -229,3 +230,15 @@ def test_the_proof_of_the_forward_map_can_fail() -> None:
         broken = replace(inverse, links=(replace(link, lemma=lemma),))
         with pytest.raises(ProofError, match=message):
             prove_inverse(d, broken)
+
+
+@pytest.mark.parametrize(
+    ("label", "number", "right"),
+    [("assembly", 4, True), ("assembly", 8, False), ("working", 8, True), ("working", 4, False)],
+)
+def test_the_counts_of_the_abstract_are_computed(label: str, number: int, right: bool) -> None:
+    """With the four orientations that are left out there would be eight assembly modes."""
+    claim = next(c for c in d.claims if c.label.startswith(label))
+    words = {4: "four", 8: "eight"}
+    printed = claim.printed.replace("four", words[number]).replace("eight", words[number])
+    assert judged(claim, printed).kind == ("proved" if right else "refuted")

@@ -29,6 +29,7 @@ WRIST_LOOPS = Paper(
     "wrist-loops",
     "Three legs that turn a hand about a point",
     ("The closedform authors",),
+    source="The claims are quoted from the abstract of Bonev, Chablat and Wenger.",
     works=(MERLET, GOSSELIN_HAMEL, BONEV_CHABLAT_WENGER),
 )
 TRIPODS = Paper(

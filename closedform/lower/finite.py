@@ -8,16 +8,21 @@ other operands, the number 1, at which its derivative is finite.
 A value matters where a result depends on it: unless it is on the other side of a selection, or the
 branch fails.  Derivatives do not pass through conditions.  So a condition is computed from the
 operands as they are, because it is what decides; a value in both is computed twice.
+
+Safe operands are not those of any posture, so what follows from them can grow: a search of many
+steps multiplies a sine that is larger than 1 with itself until it overflows, and zero times
+infinity is NaN once more.  A value that is a product of many others therefore gets a guard, too.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import NamedTuple, TypeAlias
 
+from closedform.lower.degrees import OF_ANGLES
 from closedform.lower.graph import Graph, Node, constant_of, reachable
 from closedform.lower.operators import BOOLEAN
 from closedform.lower.program import Lowered
@@ -41,6 +46,11 @@ Cases: TypeAlias = "frozenset[Case]"
 """Where a value matters: in any of these cases."""
 ALWAYS = 0
 """The number of the cases of a value that matters always."""
+FACTORS = 64
+"""How many values are multiplied, at most, before a product that does not matter becomes 1.
+
+Where that happens, powers of the size of the mechanism that are as high are computed.
+"""
 
 
 def finite_derivatives(program: Lowered) -> Lowered:
@@ -52,7 +62,10 @@ def finite_derivatives(program: Lowered) -> Lowered:
         copies[node.id] = _selected(graph, args) or graph.node(node.op, *args, payload=node.payload)
     results = [tuple(copies[n.id] for n in r.nodes) for r in program.results]
     roots = [n for nodes in results for n in nodes]
-    values = _with_safe_operands(graph, roots)
+    values, high = _with_safe_operands(graph, roots)
+    degrees = program.degrees
+    if degrees and high:
+        degrees = replace(degrees, highest=max(degrees.highest, FACTORS))
     flat = iter([values.get(n.id, n) for n in roots])
     names = {copies[i].id: name for i, name in program.names.items() if i in copies}
     names |= {values[i].id: name for i, name in names.items() if i in values}
@@ -62,6 +75,7 @@ def finite_derivatives(program: Lowered) -> Lowered:
         turned=tuple(copies[n.id] for n in program.turned),
         results=tuple(replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in program.results),
         names=names,
+        degrees=degrees,
         common=None,
         branch=None,
     )
@@ -74,10 +88,12 @@ def _selected(graph: Graph, args: Sequence[Node]) -> Node | None:
     return None
 
 
-def _with_safe_operands(graph: Graph, roots: Sequence[Node]) -> dict[int, Node]:
-    """The images of all values that a result depends on."""
+def _with_safe_operands(graph: Graph, roots: Sequence[Node]) -> tuple[dict[int, Node], bool]:
+    """The images of all values that a result depends on, and whether one has many factors."""
     matters = _Matters(graph, roots)
     image: dict[int, Node] = {}
+    factors: defaultdict[int, int] = defaultdict(int)
+    high = False
 
     def guarded(node: Node, operand: Node) -> Node:
         return graph.select(matters.condition(matters.cases[node.id]), operand, graph.const(1))
@@ -91,7 +107,21 @@ def _with_safe_operands(graph: Graph, roots: Sequence[Node]) -> dict[int, Node]:
         elif node.op == "sqrt":
             args[0] = guarded(node, args[0])
         image[node.id] = graph.node(node.op, *args, payload=node.payload)
-    return image
+        factors[node.id] = _factors(node, factors) if matters.cases[node.id] != ALWAYS else 1
+        if factors[node.id] > FACTORS:
+            image[node.id] = guarded(node, image[node.id])
+            factors[node.id], high = 0, True
+    return image, high
+
+
+def _factors(node: Node, known: Mapping[int, int]) -> int:
+    """How many values are multiplied in a value, where it does not matter."""
+    if node.op in ("sqrt", "atan2", *FLAT) or node.op in OF_ANGLES:
+        return 0
+    counts = [1 if a.op == "input" else known[a.id] for a in node.args]
+    if node.op == "div":
+        return counts[0]
+    return sum(counts) if node.op == "mul" else max(counts)
 
 
 def _carries(node: Node, operand: Node) -> bool:

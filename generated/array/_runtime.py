@@ -63,7 +63,7 @@ FLOAT64 = Precision(
     limit=400000.0,
     least=-512,
     most=1000,
-    steps=(512, 256, 128, 64, 32),
+    steps=(512, 256, 128, 64, 32, 16, 8),
 )
 FLOAT32 = Precision(
     feasibility=1e-06,
@@ -77,7 +77,7 @@ FLOAT32 = Precision(
     limit=200.0,
     least=-64,
     most=112,
-    steps=(64, 32, 16, 8, 4),
+    steps=(64, 32, 16, 8, 4, 2),
 )
 
 
@@ -138,7 +138,7 @@ class Size(NamedTuple):
 
     ``lengths`` are the indices of the input planes that are lengths.  ``degrees`` are pairs: the
     index of a result plane and the power of the size with which it scales.  ``highest`` is the
-    highest power of the size on the way.
+    highest power of the size on the way, that of derivatives included.
     """
 
     lengths: tuple[int, ...]

@@ -177,7 +177,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 2)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1)), 8),
 )
 
 
@@ -289,7 +289,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Spec("theta", (2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), (), 4),
+    _runtime.Size((2, 3, 4, 5, 6), (), 8),
 )
 
 
@@ -422,7 +422,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 5, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((3, 1), (4, 1), (6, 1), (9, 1), (10, 1), (12, 1), (13, 1), (18, 1), (19, 1), (21, 1), (24, 1), (25, 1), (27, 1), (28, 1)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((3, 1), (4, 1), (6, 1), (9, 1), (10, 1), (12, 1), (13, 1), (18, 1), (19, 1), (21, 1), (24, 1), (25, 1), (27, 1), (28, 1)), 8),
 )
 
 
@@ -523,7 +523,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 8),
 )
 
 
@@ -628,7 +628,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2)), 8),
 )
 
 
@@ -748,7 +748,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 8),
 )
 
 
@@ -850,7 +850,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2)), 8),
 )
 
 
@@ -957,7 +957,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 4),
+    _runtime.Size((2, 3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8),
 )
 
 
@@ -1068,7 +1068,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((2, 3, 4, 5, 6), (), 4),
+    _runtime.Size((2, 3, 4, 5, 6), (), 8),
 )
 
 
@@ -1224,7 +1224,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (4, 2)), _runtime.Spec("status", (4,), "status")),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 4),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 8),
 )
 
 
@@ -1297,7 +1297,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('L0', 'L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 4),
 )
 
 

@@ -154,7 +154,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 1)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), (), 4),
+    _runtime.Size((1, 2, 3, 4), (), 8),
 )
 
 
@@ -272,7 +272,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 4, 3)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (15, 1), (18, 1), (19, 1), (21, 1), (22, 1)), 4),
+    _runtime.Size((1, 2, 3, 4), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (15, 1), (18, 1), (19, 1), (21, 1), (22, 1)), 8),
 )
 
 
@@ -356,7 +356,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 1, 1)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2)), 4),
+    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2)), 8),
 )
 
 
@@ -441,7 +441,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 1)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2)), 4),
+    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2)), 8),
 )
 
 
@@ -528,7 +528,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 1, 1)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), (), 4),
+    _runtime.Size((1, 2, 3, 4), (), 8),
 )
 
 
@@ -616,7 +616,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), (), 4),
+    _runtime.Size((1, 2, 3, 4), (), 8),
 )
 
 
@@ -705,7 +705,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 2)),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2), (2, 2), (3, 2)), 4),
+    _runtime.Size((1, 2, 3, 4), ((0, 2), (1, 2), (2, 2), (3, 2)), 8),
 )
 
 
@@ -810,7 +810,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (2, 1)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), (), 4),
+    _runtime.Size((1, 2, 3, 4), (), 8),
 )
 
 
@@ -880,7 +880,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('L1', 'L2', 'L3', 'L4'),
-    _runtime.Size((1, 2, 3, 4), (), 2),
+    _runtime.Size((1, 2, 3, 4), (), 4),
 )
 
 

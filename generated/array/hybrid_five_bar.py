@@ -180,7 +180,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
+    _runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -284,7 +284,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Spec("theta", (2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), (), 2),
+    _runtime.Size((3, 4, 5), (), 4),
 )
 
 
@@ -413,7 +413,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 5, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((4, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1)), 2),
+    _runtime.Size((3, 4, 5), ((4, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1)), 4),
 )
 
 
@@ -524,7 +524,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
+    _runtime.Size((3, 4, 5), ((0, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -622,7 +622,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2),
+    _runtime.Size((3, 4, 5), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 4),
 )
 
 
@@ -753,7 +753,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 3),
+    _runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 6),
 )
 
 
@@ -847,7 +847,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 3), (1, 3)), 5),
+    _runtime.Size((3, 4, 5), ((0, 3), (1, 3)), 10),
 )
 
 
@@ -947,7 +947,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), ((0, 1), (1, 2), (2, 2), (3, 2), (4, 1), (5, 2), (6, 2), (7, 2)), 2),
+    _runtime.Size((3, 4, 5), ((0, 1), (1, 2), (2, 2), (3, 2), (4, 1), (5, 2), (6, 2), (7, 2)), 4),
 )
 
 
@@ -1025,7 +1025,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((3, 4, 5), (), 2),
+    _runtime.Size((3, 4, 5), (), 4),
 )
 
 
@@ -1199,7 +1199,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 6),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 12),
 )
 
 
@@ -1282,7 +1282,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 4),
 )
 
 
@@ -1356,7 +1356,7 @@ _WORKSPACE_VOLUME = _runtime.Kernel(
     (_runtime.Spec("volume", ()),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((0, 1, 2), ((0, 3),), 4),
+    _runtime.Size((0, 1, 2), ((0, 3),), 8),
 )
 
 

@@ -518,7 +518,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('a1', 'a2', 'a3', 'd4'),
-    _runtime.Size((6, 7, 8, 9), ((0, 3),), 3),
+    _runtime.Size((6, 7, 8, 9), ((0, 3),), 6),
 )
 
 
@@ -1428,7 +1428,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 6)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('a1', 'd1', 'a2', 'a3', 'd4', 'd6'),
-    _runtime.Size((3, 7, 11, 16, 17, 18, 19, 20, 21), (), 4),
+    _runtime.Size((3, 7, 11, 16, 17, 18, 19, 20, 21), (), 8),
 )
 
 

@@ -823,7 +823,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('l1', 'l3', 'l4', 'l6'),
-    _runtime.Size((4, 5, 6, 7), ((0, 3),), 3),
+    _runtime.Size((4, 5, 6, 7), ((0, 3),), 6),
 )
 
 
@@ -1093,7 +1093,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (4, 4)), _runtime.Spec("status", (4,), "status")),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
-    _runtime.Size((0, 1, 2, 4, 5, 6, 7, 8, 9), (), 4),
+    _runtime.Size((0, 1, 2, 4, 5, 6, 7, 8, 9), (), 8),
 )
 
 
@@ -1214,7 +1214,7 @@ _WORKSPACE_MARGIN = _runtime.Kernel(
     (_runtime.Spec("margin", ()),),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), ((0, 1),), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), ((0, 1),), 4),
 )
 
 
@@ -1271,7 +1271,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), (), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), (), 4),
 )
 
 

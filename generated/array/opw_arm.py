@@ -12,7 +12,7 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 385 compare and select, 258 add, 22 atan2, 33 divide, 385 multiply, 26 sqrt
+#   ik: 409 compare and select, 258 add, 22 atan2, 33 divide, 385 multiply, 26 sqrt
 """Six-axis arm of industry (OPW).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -528,7 +528,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('a1', 'a2', 'c2', 'c3'),
-    _runtime.Size((6, 7, 8, 9), ((0, 3),), 3),
+    _runtime.Size((6, 7, 8, 9), ((0, 3),), 6),
 )
 
 
@@ -1129,332 +1129,337 @@ def _ik(
     t170 = slower * c3_0 + clower * s3
     t171 = clower * c3_0 - slower * s3
     t172 = R1_13_2 * t170 + T33 * t171
-    h_wrist = ops.sqrt(ops.select(t168, t169 + t172 * t172, 1.0))
-    t173 = 1.0 / ops.select(t168, h_wrist, 1.0)
-    t174 = ops.select(aligned_wrist, 0.0, t167 * t173)
-    c_wrist = ops.select(aligned_wrist, 1.0, -(t172 * t173))
-    t175 = ops.atan2(t174, ops.select(t78, c_wrist, 1.0))
-    t176 = ops.select(failed, ops.nan, ops.wrap_cut(-t175))
-    t177 = ops.select(t78, R1_13_2 * t171 - T33 * t170, 1.0)
-    t178 = ops.atan2(t167 * t174 - t172 * c_wrist, t177)
-    t179 = ops.select(failed, ops.nan, ops.wrap_cut(t178))
-    t180 = T11 * s1_2 - T21 * c1_0_2
+    t173 = ops.select(t168, t169 + ops.select(t168, t172 * t172, 1.0), 1.0)
+    t174 = 1.0 / ops.select(t168, ops.sqrt(t173), 1.0)
+    t175 = ops.select(aligned_wrist, 0.0, t167 * t174)
+    c_wrist = ops.select(aligned_wrist, 1.0, -(t172 * t174))
+    t176 = ops.atan2(t175, ops.select(t78, c_wrist, 1.0))
+    t177 = ops.select(failed, ops.nan, ops.wrap_cut(-t176))
+    t178 = t167 * t175 - ops.select(t78, t172 * c_wrist, 1.0)
+    t179 = ops.select(t78, R1_13_2 * t171 - T33 * t170, 1.0)
+    t180 = ops.atan2(t178, t179)
+    t181 = ops.select(failed, ops.nan, ops.wrap_cut(t180))
+    t182 = T11 * s1_2 - T21 * c1_0_2
     R1_11 = T11 * c1_0_2 + T21 * s1_2
-    t181 = c_wrist * t180 + t174 * (t170 * R1_11 + T31 * t171)
-    t182 = T12 * s1_2 - T22 * c1_0_2
+    t183 = ops.select(t78, t175 * (t170 * R1_11 + T31 * t171), 1.0)
+    t184 = T12 * s1_2 - T22 * c1_0_2
     R1_12 = T12 * c1_0_2 + T22 * s1_2
-    t183 = c_wrist * t182 + t174 * (t170 * R1_12 + T32 * t171)
-    t184 = ops.atan2(t181, ops.select(t78, -t183, 1.0))
-    t185 = ops.select(failed, ops.nan, ops.wrap_cut(-t184))
+    t185 = ops.select(t78, t175 * (t170 * R1_12 + T32 * t171), 1.0)
+    t186 = -(ops.select(t78, c_wrist * t184, 1.0) + t185)
+    t187 = ops.atan2(ops.select(t78, c_wrist * t182, 1.0) + t183, ops.select(t78, t186, 1.0))
+    t188 = ops.select(failed, ops.nan, ops.wrap_cut(-t187))
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t186 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t175))
-    t187 = ops.select(failed, ops.nan, ops.wrap_cut(-t178))
-    t188 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t184))
+    t189 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t176))
+    t190 = ops.select(failed, ops.nan, ops.wrap_cut(-t180))
+    t191 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t187))
     clower_facing_down_noflip = t126 - t129
     slower_facing_down_noflip = t130 + t131
-    t189 = ops.select(t78, -slower_facing_down_noflip, 1.0)
-    t190 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t189))
-    t191 = ops.select(failed, ops.nan, t190)
-    t192 = t138 + t139
+    t192 = ops.select(t78, -slower_facing_down_noflip, 1.0)
+    t193 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t192))
+    t194 = ops.select(failed, ops.nan, t193)
+    t195 = t138 + t139
     c3_0_facing_down_noflip = t140 - t141
-    t193 = ops.select(t78, c3_0_facing_down_noflip, 1.0)
-    t194 = ops.select(failed, ops.nan, ops.wrap_cut(-ops.atan2(t192, t193)))
+    t196 = ops.select(t78, c3_0_facing_down_noflip, 1.0)
+    t197 = ops.select(failed, ops.nan, ops.wrap_cut(-ops.atan2(t195, t196)))
     slower_facing_down_noflip_2 = t151 + t153
     c3_0_facing_down_noflip_2 = t158 - t159
-    t195 = slower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
+    t198 = slower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
     clower_facing_down_noflip_2 = t160 - t161
-    t196 = t162 + t163
-    t197 = R1_13 * (t195 - clower_facing_down_noflip_2 * t196)
-    t198 = clower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
-    t199 = T33 * (t198 + slower_facing_down_noflip_2 * t196)
-    t200 = t197 + t199
-    aligned_wrist_facing_down_noflip = ops.sqrt(t145 + t200 * t200) <= t166
-    t201 = ops.opposite(aligned_wrist_facing_down_noflip)
-    t202 = t78 & t201
-    t203 = slower_facing_down_noflip * c3_0_facing_down_noflip
-    t204 = t203 - clower_facing_down_noflip * t192
-    t205 = clower_facing_down_noflip * c3_0_facing_down_noflip
-    t206 = t205 + slower_facing_down_noflip * t192
-    t207 = R1_13_2 * t204 + T33 * t206
-    h_wrist_facing_down_noflip = ops.sqrt(ops.select(t202, t169 + t207 * t207, 1.0))
-    t208 = ops.select(t202, h_wrist_facing_down_noflip, 1.0)
-    t209 = 1.0 / t208
-    t210 = ops.select(aligned_wrist_facing_down_noflip, 0.0, t167 * t209)
-    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, -(t207 * t209))
-    t211 = ops.select(t78, c_wrist_facing_down_noflip, 1.0)
-    t212 = ops.atan2(t210, t211)
-    t213 = ops.select(failed, ops.nan, ops.wrap_cut(-t212))
-    t214 = t167 * t210 - t207 * c_wrist_facing_down_noflip
-    t215 = ops.select(t78, R1_13_2 * t206 - T33 * t204, 1.0)
-    t216 = ops.atan2(t214, t215)
-    t217 = ops.select(failed, ops.nan, ops.wrap_cut(t216))
-    t218 = t180 * c_wrist_facing_down_noflip + t210 * (R1_11 * t204 + T31 * t206)
-    t219 = t182 * c_wrist_facing_down_noflip + t210 * (R1_12 * t204 + T32 * t206)
-    t220 = ops.atan2(t218, ops.select(t78, -t219, 1.0))
-    t221 = ops.select(failed, ops.nan, ops.wrap_cut(-t220))
+    t199 = t162 + t163
+    t200 = R1_13 * (t198 - clower_facing_down_noflip_2 * t199)
+    t201 = clower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
+    t202 = T33 * (t201 + slower_facing_down_noflip_2 * t199)
+    t203 = t200 + t202
+    aligned_wrist_facing_down_noflip = ops.sqrt(t145 + t203 * t203) <= t166
+    t204 = ops.opposite(aligned_wrist_facing_down_noflip)
+    t205 = t78 & t204
+    t206 = slower_facing_down_noflip * c3_0_facing_down_noflip
+    t207 = t206 - clower_facing_down_noflip * t195
+    t208 = clower_facing_down_noflip * c3_0_facing_down_noflip
+    t209 = t208 + slower_facing_down_noflip * t195
+    t210 = R1_13_2 * t207 + T33 * t209
+    t211 = ops.select(t205, t169 + ops.select(t205, t210 * t210, 1.0), 1.0)
+    t212 = 1.0 / ops.select(t205, ops.sqrt(t211), 1.0)
+    t213 = ops.select(aligned_wrist_facing_down_noflip, 0.0, t167 * t212)
+    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, -(t210 * t212))
+    t214 = ops.select(t78, c_wrist_facing_down_noflip, 1.0)
+    t215 = ops.atan2(t213, t214)
+    t216 = ops.select(failed, ops.nan, ops.wrap_cut(-t215))
+    t217 = ops.select(t78, t210 * c_wrist_facing_down_noflip, 1.0)
+    t218 = ops.select(t78, R1_13_2 * t209 - T33 * t207, 1.0)
+    t219 = ops.atan2(t167 * t213 - t217, t218)
+    t220 = ops.select(failed, ops.nan, ops.wrap_cut(t219))
+    t221 = ops.select(t78, t182 * c_wrist_facing_down_noflip, 1.0)
+    t222 = ops.select(t78, t213 * (R1_11 * t207 + T31 * t209), 1.0)
+    t223 = ops.select(t78, t184 * c_wrist_facing_down_noflip, 1.0)
+    t224 = ops.select(t78, t213 * (R1_12 * t207 + T32 * t209), 1.0)
+    t225 = ops.atan2(t221 + t222, ops.select(t78, -(t223 + t224), 1.0))
+    t226 = ops.select(failed, ops.nan, ops.wrap_cut(-t225))
     flip_wrist_facing_down_flip = ops.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t222 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t212))
-    t223 = ops.select(failed, ops.nan, ops.wrap_cut(-t216))
-    t224 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t220))
+    t227 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t215))
+    t228 = ops.select(failed, ops.nan, ops.wrap_cut(-t219))
+    t229 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t225))
     c_1_1_backward_up_noflip_2 = ops.select(free1, 1.0, t85 - t87)
-    t225 = ops.select(free1, 0.0, t88 + t89)
-    t226 = a1 - w_x * c_1_1_backward_up_noflip_2 + w_y * t225
-    dqx_1_1_backward_up_noflip_2 = w_y * c_1_1_backward_up_noflip_2 + w_x * t225
-    t227 = t226 * dqx_1_1_backward_up_noflip_2
-    square_1_1_backward_up_noflip_2 = t21 + t226 * t226
-    t228 = ops.min(high_1_1_2, square_1_1_backward_up_noflip_2)
-    miss_1_1_backward_up_noflip_2 = square_1_1_backward_up_noflip_2 - ops.max(low_1_1_2, t228)
-    above_1_1_backward_up_noflip_2 = ops.select(t56, -t227, miss_1_1_backward_up_noflip_2)
+    t230 = ops.select(free1, 0.0, t88 + t89)
+    t231 = a1 - w_x * c_1_1_backward_up_noflip_2 + w_y * t230
+    dqx_1_1_backward_up_noflip_2 = w_y * c_1_1_backward_up_noflip_2 + w_x * t230
+    t232 = t231 * dqx_1_1_backward_up_noflip_2
+    square_1_1_backward_up_noflip_2 = t21 + t231 * t231
+    t233 = ops.min(high_1_1_2, square_1_1_backward_up_noflip_2)
+    miss_1_1_backward_up_noflip_2 = square_1_1_backward_up_noflip_2 - ops.max(low_1_1_2, t233)
+    above_1_1_backward_up_noflip_2 = ops.select(t56, -t232, miss_1_1_backward_up_noflip_2)
     bend_1_1_backward_up_noflip_2 = dqx_1_1_backward_up_noflip_2 * dqx_1_1_backward_up_noflip_2
-    t229 = bend_1_1_backward_up_noflip_2 * miss_1_1_backward_up_noflip_2
-    t230 = ops.select(t98, ops.max(0.0, t227 * t227 - t229), 1.0)
-    below_1_1_backward_up_noflip_2 = ops.select(t56, 2.0 * bend_1_1_backward_up_noflip_2, -(2.0 * (t227 - t57 * ops.sqrt(t230))))
-    t231 = ops.select(t76, below_1_1_backward_up_noflip_2, 1.0)
-    t232 = ops.select(t59, 0.0, above_1_1_backward_up_noflip_2 / t231)
-    t233 = t232 * t232
-    t234 = 1.0 / ops.select(t75, 1.0 + t233, 1.0)
-    sine_1_1_backward_up_noflip_2 = ops.select(t66, -(2.0 * t232 * t234), 0.0)
-    t235 = c_1_1_backward_up_noflip_2 * sine_1_1_backward_up_noflip_2
-    cosine_1_1_backward_up_noflip_2 = ops.select(t66, t234 * (1.0 - t233), 1.0)
-    t236 = t235 - t225 * cosine_1_1_backward_up_noflip_2
-    s1_backward_up_noflip_2 = ops.select(tangent1, t236, -t225)
-    t237 = c_1_1_backward_up_noflip_2 * cosine_1_1_backward_up_noflip_2
-    c1_0_backward_up_noflip_2 = ops.select(tangent1, t237 + t225 * sine_1_1_backward_up_noflip_2, c_1_1_backward_up_noflip_2)
-    t238 = ops.select(t74, c1_0_backward_up_noflip_2, 1.0)
-    t239 = ops.wrap_cut(ops.atan2(s1_backward_up_noflip_2, t238))
-    t240 = ops.select(failed_2, ops.nan, t239)
-    t241 = ops.opposite(folded_elbow_backward_up_noflip)
-    t242 = t74 & t241
+    t234 = bend_1_1_backward_up_noflip_2 * miss_1_1_backward_up_noflip_2
+    t235 = ops.select(t98, ops.max(0.0, t232 * t232 - t234), 1.0)
+    below_1_1_backward_up_noflip_2 = ops.select(t56, 2.0 * bend_1_1_backward_up_noflip_2, -(2.0 * (t232 - t57 * ops.sqrt(t235))))
+    t236 = ops.select(t76, below_1_1_backward_up_noflip_2, 1.0)
+    t237 = ops.select(t59, 0.0, above_1_1_backward_up_noflip_2 / t236)
+    t238 = t237 * t237
+    t239 = 1.0 / ops.select(t75, 1.0 + t238, 1.0)
+    sine_1_1_backward_up_noflip_2 = ops.select(t66, -(2.0 * t237 * t239), 0.0)
+    t240 = c_1_1_backward_up_noflip_2 * sine_1_1_backward_up_noflip_2
+    cosine_1_1_backward_up_noflip_2 = ops.select(t66, t239 * (1.0 - t238), 1.0)
+    t241 = t240 - t230 * cosine_1_1_backward_up_noflip_2
+    s1_backward_up_noflip_2 = ops.select(tangent1, t241, -t230)
+    t242 = c_1_1_backward_up_noflip_2 * cosine_1_1_backward_up_noflip_2
+    c1_0_backward_up_noflip_2 = ops.select(tangent1, t242 + t230 * sine_1_1_backward_up_noflip_2, c_1_1_backward_up_noflip_2)
+    t243 = ops.select(t74, c1_0_backward_up_noflip_2, 1.0)
+    t244 = ops.wrap_cut(ops.atan2(s1_backward_up_noflip_2, t243))
+    t245 = ops.select(failed_2, ops.nan, t244)
+    t246 = ops.opposite(folded_elbow_backward_up_noflip)
+    t247 = t74 & t246
     ahead1_backward_up_noflip_2 = w_x * c1_0_backward_up_noflip_2 + w_y * s1_backward_up_noflip_2
-    t243 = a1 - ahead1_backward_up_noflip_2
-    t244 = ops.select(t94 | t242 | t96, t21 + t243 * t243, 1.0)
-    r_elbow_backward_up_noflip_2 = ops.sqrt(t244)
+    t248 = a1 - ahead1_backward_up_noflip_2
+    t249 = ops.select(t94 | t247 | t96, t21 + t248 * t248, 1.0)
+    r_elbow_backward_up_noflip_2 = ops.sqrt(t249)
     A_elbow_backward_up_noflip = ops.max(t107 - r_elbow_backward_up_noflip_2, 0.0)
     C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t105, 0.0)
-    t245 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    t250 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
     S_elbow_backward_up_noflip = t107 + r_elbow_backward_up_noflip_2
     B_elbow_backward_up_noflip = ops.max(t105 + r_elbow_backward_up_noflip_2, 0.0)
-    t246 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t247 = 1.0 / ops.select(t96, t245 + t246, 1.0)
-    c_base_elbow_backward_up_noflip = ops.select(t95, 1.0, -((t245 - t246) * t247))
-    t248 = ops.select(t242, r_elbow_backward_up_noflip_2, 1.0)
-    t249 = 1.0 / t248
-    t250 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t243 * t249))
-    t251 = c_base_elbow_backward_up_noflip * t250
-    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t97, t245 * t246, 1.0))
-    s_base_elbow_backward_down_noflip = ops.select(t95, 0.0, t247 * area_elbow_backward_up_noflip)
-    t252 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t249)
-    t253 = s_base_elbow_backward_down_noflip * t252
-    clower_backward_up_noflip = t251 - t253
-    t254 = c_base_elbow_backward_up_noflip * t252
-    t255 = t250 * s_base_elbow_backward_down_noflip
-    slower_backward_up_noflip = t254 + t255
-    t256 = ops.select(t74, -slower_backward_up_noflip, 1.0)
-    t257 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t256))
-    t258 = ops.select(failed_2, ops.nan, t257)
-    t259 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
-    t260 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t261 = 1.0 / ops.select(t94, t259 + t260, 1.0)
-    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t261)
-    t262 = c_forearm * selbow_backward_down_noflip
-    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -(t261 * (t259 - t260)))
-    t263 = s_forearm * celbow_backward_up_noflip
-    t264 = t262 + t263
-    t265 = c_forearm * celbow_backward_up_noflip
-    t266 = s_forearm * selbow_backward_down_noflip
-    c3_0_backward_up_noflip = t265 - t266
-    t267 = ops.select(t74, c3_0_backward_up_noflip, 1.0)
-    t268 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t264, t267)))
-    t269 = T13 * s1_backward_up_noflip - T23 * c1_0_backward_up_noflip
-    t270 = t269 * t269
+    t251 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t252 = 1.0 / ops.select(t96, t250 + t251, 1.0)
+    c_base_elbow_backward_up_noflip = ops.select(t95, 1.0, -((t250 - t251) * t252))
+    t253 = ops.select(t247, r_elbow_backward_up_noflip_2, 1.0)
+    t254 = 1.0 / t253
+    t255 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t248 * t254))
+    t256 = c_base_elbow_backward_up_noflip * t255
+    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t97, t250 * t251, 1.0))
+    s_base_elbow_backward_down_noflip = ops.select(t95, 0.0, t252 * area_elbow_backward_up_noflip)
+    t257 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t254)
+    t258 = s_base_elbow_backward_down_noflip * t257
+    clower_backward_up_noflip = t256 - t258
+    t259 = c_base_elbow_backward_up_noflip * t257
+    t260 = t255 * s_base_elbow_backward_down_noflip
+    slower_backward_up_noflip = t259 + t260
+    t261 = ops.select(t74, -slower_backward_up_noflip, 1.0)
+    t262 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t261))
+    t263 = ops.select(failed_2, ops.nan, t262)
+    t264 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    t265 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t266 = 1.0 / ops.select(t94, t264 + t265, 1.0)
+    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t266)
+    t267 = c_forearm * selbow_backward_down_noflip
+    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -(t266 * (t264 - t265)))
+    t268 = s_forearm * celbow_backward_up_noflip
+    t269 = t267 + t268
+    t270 = c_forearm * celbow_backward_up_noflip
+    t271 = s_forearm * selbow_backward_down_noflip
+    c3_0_backward_up_noflip = t270 - t271
+    t272 = ops.select(t74, c3_0_backward_up_noflip, 1.0)
+    t273 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t269, t272)))
+    t274 = T13 * s1_backward_up_noflip - T23 * c1_0_backward_up_noflip
+    t275 = t274 * t274
     R1_13_backward_up_noflip = T13 * c1_0_backward_up_noflip + T23 * s1_backward_up_noflip
     A_elbow_backward_up_noflip_2 = ops.max(t70, 0.0)
     C_elbow_backward_up_noflip_2 = ops.max(t72, 0.0)
-    t271 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
+    t276 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
     S_elbow_backward_up_noflip_2 = t20 + r_elbow_backward_up_noflip
     B_elbow_backward_up_noflip_2 = ops.max(t71, 0.0)
-    t272 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t273 = 1.0 / (t271 + t272)
-    c_base_elbow_backward_up_noflip_2 = ops.select(t95, 1.0, -((t271 - t272) * t273))
-    t274 = 1.0 / r_elbow_backward_up_noflip
-    t275 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t274)
-    t276 = c_base_elbow_backward_up_noflip_2 * t275
-    t277 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t69 * t274))
-    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t271 * t272)
-    s_base_elbow_backward_down_noflip_2 = ops.select(t95, 0.0, t273 * area_elbow_backward_up_noflip_2)
-    t278 = t277 * s_base_elbow_backward_down_noflip_2
-    slower_backward_up_noflip_2 = t276 + t278
-    t279 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
-    t280 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t281 = 1.0 / (t279 + t280)
-    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -(t281 * (t279 - t280)))
-    t282 = c_forearm_2 * celbow_backward_up_noflip_2
-    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t281)
-    t283 = s_forearm_2 * selbow_backward_down_noflip_2
-    c3_0_backward_up_noflip_2 = t282 - t283
-    t284 = slower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
-    t285 = c_base_elbow_backward_up_noflip_2 * t277
-    t286 = s_base_elbow_backward_down_noflip_2 * t275
-    clower_backward_up_noflip_2 = t285 - t286
-    t287 = c_forearm_2 * selbow_backward_down_noflip_2
-    t288 = s_forearm_2 * celbow_backward_up_noflip_2
-    t289 = t287 + t288
-    t290 = R1_13_backward_up_noflip * (t284 - clower_backward_up_noflip_2 * t289)
-    t291 = clower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
-    t292 = T33 * (t291 + slower_backward_up_noflip_2 * t289)
-    t293 = t290 + t292
-    aligned_wrist_backward_up_noflip = ops.sqrt(t270 + t293 * t293) <= t166
-    t294 = T13 * s1_backward_up_noflip_2 - T23 * c1_0_backward_up_noflip_2
-    t295 = ops.opposite(aligned_wrist_backward_up_noflip)
-    t296 = t74 & t295
-    t297 = t294 * t294
+    t277 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t278 = 1.0 / (t276 + t277)
+    c_base_elbow_backward_up_noflip_2 = ops.select(t95, 1.0, -((t276 - t277) * t278))
+    t279 = 1.0 / r_elbow_backward_up_noflip
+    t280 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t279)
+    t281 = c_base_elbow_backward_up_noflip_2 * t280
+    t282 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t69 * t279))
+    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t276 * t277)
+    s_base_elbow_backward_down_noflip_2 = ops.select(t95, 0.0, t278 * area_elbow_backward_up_noflip_2)
+    t283 = t282 * s_base_elbow_backward_down_noflip_2
+    slower_backward_up_noflip_2 = t281 + t283
+    t284 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
+    t285 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t286 = 1.0 / (t284 + t285)
+    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -(t286 * (t284 - t285)))
+    t287 = c_forearm_2 * celbow_backward_up_noflip_2
+    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t286)
+    t288 = s_forearm_2 * selbow_backward_down_noflip_2
+    c3_0_backward_up_noflip_2 = t287 - t288
+    t289 = slower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
+    t290 = c_base_elbow_backward_up_noflip_2 * t282
+    t291 = s_base_elbow_backward_down_noflip_2 * t280
+    clower_backward_up_noflip_2 = t290 - t291
+    t292 = c_forearm_2 * selbow_backward_down_noflip_2
+    t293 = s_forearm_2 * celbow_backward_up_noflip_2
+    t294 = t292 + t293
+    t295 = R1_13_backward_up_noflip * (t289 - clower_backward_up_noflip_2 * t294)
+    t296 = clower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
+    t297 = T33 * (t296 + slower_backward_up_noflip_2 * t294)
+    t298 = t295 + t297
+    aligned_wrist_backward_up_noflip = ops.sqrt(t275 + t298 * t298) <= t166
+    t299 = T13 * s1_backward_up_noflip_2 - T23 * c1_0_backward_up_noflip_2
+    t300 = ops.opposite(aligned_wrist_backward_up_noflip)
+    t301 = t74 & t300
+    t302 = t299 * t299
     R1_13_backward_up_noflip_2 = T13 * c1_0_backward_up_noflip_2 + T23 * s1_backward_up_noflip_2
-    t298 = slower_backward_up_noflip * c3_0_backward_up_noflip
-    t299 = t298 - clower_backward_up_noflip * t264
-    t300 = clower_backward_up_noflip * c3_0_backward_up_noflip
-    t301 = t300 + slower_backward_up_noflip * t264
-    t302 = R1_13_backward_up_noflip_2 * t299 + T33 * t301
-    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t296, t297 + t302 * t302, 1.0))
-    t303 = ops.select(t296, h_wrist_backward_up_noflip, 1.0)
-    t304 = 1.0 / t303
-    t305 = ops.select(aligned_wrist_backward_up_noflip, 0.0, t294 * t304)
-    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t302 * t304))
-    t306 = ops.select(t74, c_wrist_backward_up_noflip, 1.0)
-    t307 = ops.atan2(t305, t306)
-    t308 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t307))
-    t309 = t294 * t305 - t302 * c_wrist_backward_up_noflip
-    R2_33_backward_up_noflip = R1_13_backward_up_noflip_2 * t301 - T33 * t299
-    t310 = ops.select(t74, R2_33_backward_up_noflip, 1.0)
-    t311 = ops.atan2(t309, t310)
-    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(t311))
-    t313 = T11 * s1_backward_up_noflip_2 - T21 * c1_0_backward_up_noflip_2
+    t303 = slower_backward_up_noflip * c3_0_backward_up_noflip
+    t304 = t303 - clower_backward_up_noflip * t269
+    t305 = clower_backward_up_noflip * c3_0_backward_up_noflip
+    t306 = t305 + slower_backward_up_noflip * t269
+    t307 = R1_13_backward_up_noflip_2 * t304 + T33 * t306
+    t308 = ops.select(t301, t302 + ops.select(t301, t307 * t307, 1.0), 1.0)
+    t309 = 1.0 / ops.select(t301, ops.sqrt(t308), 1.0)
+    t310 = ops.select(aligned_wrist_backward_up_noflip, 0.0, t299 * t309)
+    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t307 * t309))
+    t311 = ops.select(t74, c_wrist_backward_up_noflip, 1.0)
+    t312 = ops.atan2(t310, t311)
+    t313 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t312))
+    t314 = ops.select(t74, t307 * c_wrist_backward_up_noflip, 1.0)
+    R2_33_backward_up_noflip = R1_13_backward_up_noflip_2 * t306 - T33 * t304
+    t315 = ops.select(t74, R2_33_backward_up_noflip, 1.0)
+    t316 = ops.atan2(t299 * t310 - t314, t315)
+    t317 = ops.select(failed_2, ops.nan, ops.wrap_cut(t316))
+    t318 = T11 * s1_backward_up_noflip_2 - T21 * c1_0_backward_up_noflip_2
+    t319 = ops.select(t74, c_wrist_backward_up_noflip * t318, 1.0)
     R1_11_backward_up_noflip = T11 * c1_0_backward_up_noflip_2 + T21 * s1_backward_up_noflip_2
-    t314 = t305 * (t299 * R1_11_backward_up_noflip + T31 * t301)
-    t315 = T12 * s1_backward_up_noflip_2 - T22 * c1_0_backward_up_noflip_2
+    t320 = t310 * (t304 * R1_11_backward_up_noflip + T31 * t306)
+    t321 = T12 * s1_backward_up_noflip_2 - T22 * c1_0_backward_up_noflip_2
+    t322 = ops.select(t74, c_wrist_backward_up_noflip * t321, 1.0)
     R1_12_backward_up_noflip = T12 * c1_0_backward_up_noflip_2 + T22 * s1_backward_up_noflip_2
-    t316 = t305 * (t299 * R1_12_backward_up_noflip + T32 * t301)
-    t317 = ops.select(t74, -(c_wrist_backward_up_noflip * t315 + t316), 1.0)
-    t318 = ops.atan2(c_wrist_backward_up_noflip * t313 + t314, t317)
-    t319 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t318))
+    t323 = t310 * (t304 * R1_12_backward_up_noflip + T32 * t306)
+    t324 = ops.select(t74, -(t322 + ops.select(t74, t323, 1.0)), 1.0)
+    t325 = ops.atan2(t319 + ops.select(t74, t320, 1.0), t324)
+    t326 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t325))
     flip_wrist_backward_up_flip = ops.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    t320 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t307))
-    t321 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t311))
-    t322 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t318))
-    clower_backward_down_noflip = t251 + t253
-    slower_backward_down_noflip = t254 - t255
-    t323 = ops.select(t74, -slower_backward_down_noflip, 1.0)
-    t324 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t323))
-    t325 = ops.select(failed_2, ops.nan, t324)
-    s3_backward_down_noflip = t262 - t263
-    c3_0_backward_down_noflip = t265 + t266
-    t326 = ops.select(t74, c3_0_backward_down_noflip, 1.0)
-    t327 = ops.wrap_cut(ops.atan2(s3_backward_down_noflip, t326))
-    t328 = ops.select(failed_2, ops.nan, t327)
-    slower_backward_down_noflip_2 = t276 - t278
-    c3_0_backward_down_noflip_2 = t282 + t283
-    t329 = slower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
-    clower_backward_down_noflip_2 = t285 + t286
-    s3_backward_down_noflip_2 = t287 - t288
-    t330 = clower_backward_down_noflip_2 * s3_backward_down_noflip_2
-    t331 = clower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
-    t332 = slower_backward_down_noflip_2 * s3_backward_down_noflip_2
-    t333 = R1_13_backward_up_noflip * (t329 + t330) + T33 * (t331 - t332)
-    aligned_wrist_backward_down_noflip = ops.sqrt(t270 + t333 * t333) <= t166
-    t334 = ops.opposite(aligned_wrist_backward_down_noflip)
-    t335 = t74 & t334
-    t336 = slower_backward_down_noflip * c3_0_backward_down_noflip
-    t337 = clower_backward_down_noflip * s3_backward_down_noflip
-    t338 = t336 + t337
-    t339 = clower_backward_down_noflip * c3_0_backward_down_noflip
-    t340 = slower_backward_down_noflip * s3_backward_down_noflip
-    t341 = t339 - t340
-    t342 = R1_13_backward_up_noflip_2 * t338 + T33 * t341
-    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t335, t297 + t342 * t342, 1.0))
-    t343 = ops.select(t335, h_wrist_backward_down_noflip, 1.0)
-    t344 = 1.0 / t343
-    t345 = ops.select(aligned_wrist_backward_down_noflip, 0.0, t294 * t344)
-    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t342 * t344))
-    t346 = ops.select(t74, c_wrist_backward_down_noflip, 1.0)
-    t347 = ops.atan2(t345, t346)
-    t348 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t347))
-    t349 = t294 * t345 - t342 * c_wrist_backward_down_noflip
-    R2_33_backward_down_noflip = R1_13_backward_up_noflip_2 * t341 - T33 * t338
-    t350 = ops.select(t74, R2_33_backward_down_noflip, 1.0)
-    t351 = ops.atan2(t349, t350)
-    t352 = ops.select(failed_2, ops.nan, ops.wrap_cut(t351))
-    t353 = t345 * (R1_11_backward_up_noflip * t338 + T31 * t341)
-    t354 = t345 * (R1_12_backward_up_noflip * t338 + T32 * t341)
-    t355 = -(t315 * c_wrist_backward_down_noflip + t354)
-    t356 = ops.atan2(t313 * c_wrist_backward_down_noflip + t353, ops.select(t74, t355, 1.0))
-    t357 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t356))
+    t327 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t312))
+    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t316))
+    t329 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t325))
+    clower_backward_down_noflip = t256 + t258
+    slower_backward_down_noflip = t259 - t260
+    t330 = ops.select(t74, -slower_backward_down_noflip, 1.0)
+    t331 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t330))
+    t332 = ops.select(failed_2, ops.nan, t331)
+    s3_backward_down_noflip = t267 - t268
+    c3_0_backward_down_noflip = t270 + t271
+    t333 = ops.select(t74, c3_0_backward_down_noflip, 1.0)
+    t334 = ops.wrap_cut(ops.atan2(s3_backward_down_noflip, t333))
+    t335 = ops.select(failed_2, ops.nan, t334)
+    slower_backward_down_noflip_2 = t281 - t283
+    c3_0_backward_down_noflip_2 = t287 + t288
+    t336 = slower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
+    clower_backward_down_noflip_2 = t290 + t291
+    s3_backward_down_noflip_2 = t292 - t293
+    t337 = clower_backward_down_noflip_2 * s3_backward_down_noflip_2
+    t338 = clower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
+    t339 = slower_backward_down_noflip_2 * s3_backward_down_noflip_2
+    t340 = R1_13_backward_up_noflip * (t336 + t337) + T33 * (t338 - t339)
+    aligned_wrist_backward_down_noflip = ops.sqrt(t275 + t340 * t340) <= t166
+    t341 = ops.opposite(aligned_wrist_backward_down_noflip)
+    t342 = t74 & t341
+    t343 = slower_backward_down_noflip * c3_0_backward_down_noflip
+    t344 = clower_backward_down_noflip * s3_backward_down_noflip
+    t345 = t343 + t344
+    t346 = clower_backward_down_noflip * c3_0_backward_down_noflip
+    t347 = slower_backward_down_noflip * s3_backward_down_noflip
+    t348 = t346 - t347
+    t349 = R1_13_backward_up_noflip_2 * t345 + T33 * t348
+    t350 = ops.select(t342, t302 + ops.select(t342, t349 * t349, 1.0), 1.0)
+    t351 = 1.0 / ops.select(t342, ops.sqrt(t350), 1.0)
+    t352 = ops.select(aligned_wrist_backward_down_noflip, 0.0, t299 * t351)
+    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t349 * t351))
+    t353 = ops.select(t74, c_wrist_backward_down_noflip, 1.0)
+    t354 = ops.atan2(t352, t353)
+    t355 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t354))
+    t356 = ops.select(t74, t349 * c_wrist_backward_down_noflip, 1.0)
+    R2_33_backward_down_noflip = R1_13_backward_up_noflip_2 * t348 - T33 * t345
+    t357 = ops.select(t74, R2_33_backward_down_noflip, 1.0)
+    t358 = ops.atan2(t299 * t352 - t356, t357)
+    t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(t358))
+    t360 = ops.select(t74, t318 * c_wrist_backward_down_noflip, 1.0)
+    t361 = t352 * (R1_11_backward_up_noflip * t345 + T31 * t348)
+    t362 = ops.select(t74, t321 * c_wrist_backward_down_noflip, 1.0)
+    t363 = t352 * (R1_12_backward_up_noflip * t345 + T32 * t348)
+    t364 = ops.select(t74, -(t362 + ops.select(t74, t363, 1.0)), 1.0)
+    t365 = ops.atan2(t360 + ops.select(t74, t361, 1.0), t364)
+    t366 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t365))
     flip_wrist_backward_down_flip = ops.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t358 = ops.wrap(flip_wrist_backward_down_flip - t347)
-    t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t351))
-    t360 = ops.wrap(flip_wrist_backward_down_flip - t356)
-    t361 = free1 | no_link_elbow
-    t362 = t361 | folded_elbow
-    t363 = ops.status(invalid, unreachable, t362 | aligned_wrist)
-    t364 = ops.status(invalid, unreachable, t362 | aligned_wrist_facing_down_noflip)
-    t365 = t361 | folded_elbow_backward_up_noflip
-    t366 = ops.status(invalid, unreachable_2, t365 | aligned_wrist_backward_up_noflip)
-    t367 = ops.status(invalid, unreachable_2, t365 | aligned_wrist_backward_down_noflip)
+    t367 = ops.wrap(flip_wrist_backward_down_flip - t354)
+    t368 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t358))
+    t369 = ops.wrap(flip_wrist_backward_down_flip - t365)
+    t370 = free1 | no_link_elbow
+    t371 = t370 | folded_elbow
+    t372 = ops.status(invalid, unreachable, t371 | aligned_wrist)
+    t373 = ops.status(invalid, unreachable, t371 | aligned_wrist_facing_down_noflip)
+    t374 = t370 | folded_elbow_backward_up_noflip
+    t375 = ops.status(invalid, unreachable_2, t374 | aligned_wrist_backward_up_noflip)
+    t376 = ops.status(invalid, unreachable_2, t374 | aligned_wrist_backward_down_noflip)
     return (
         t117,
         t133,
         t143,
-        t176,
-        t179,
-        t185,
+        t177,
+        t181,
+        t188,
         t117,
         t133,
         t143,
-        t186,
-        t187,
-        t188,
-        t117,
+        t189,
+        t190,
         t191,
-        t194,
-        t213,
-        t217,
-        t221,
         t117,
-        t191,
         t194,
-        t222,
-        t223,
-        t224,
-        t240,
-        t258,
-        t268,
-        t308,
-        t312,
-        t319,
-        t240,
-        t258,
-        t268,
-        t320,
-        t321,
-        t322,
-        t240,
-        t325,
+        t197,
+        t216,
+        t220,
+        t226,
+        t117,
+        t194,
+        t197,
+        t227,
+        t228,
+        t229,
+        t245,
+        t263,
+        t273,
+        t313,
+        t317,
+        t326,
+        t245,
+        t263,
+        t273,
+        t327,
         t328,
-        t348,
-        t352,
-        t357,
-        t240,
-        t325,
-        t328,
-        ops.select(failed_2, ops.nan, t358),
+        t329,
+        t245,
+        t332,
+        t335,
+        t355,
         t359,
-        ops.select(failed_2, ops.nan, t360),
-        t363,
-        t363,
-        t364,
-        t364,
         t366,
-        t366,
-        t367,
-        t367,
+        t245,
+        t332,
+        t335,
+        ops.select(failed_2, ops.nan, t367),
+        t368,
+        ops.select(failed_2, ops.nan, t369),
+        t372,
+        t372,
+        t373,
+        t373,
+        t375,
+        t375,
+        t376,
+        t376,
     )
 
 
@@ -1465,7 +1470,6 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 6)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('a1', 'a2', 'b', 'c1', 'c2', 'c3', 'c4'),
-    _runtime.Size((3, 7, 11, 16, 17, 18, 19, 20, 21, 22), (), 4),
 )
 
 

@@ -386,7 +386,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('l1', 'l2'),
-    _runtime.Size((2, 3), ((0, 2),), 2),
+    _runtime.Size((2, 3), ((0, 2),), 4),
 )
 
 
@@ -429,7 +429,7 @@ _MANIPULABILITY = _runtime.Kernel(
     (_runtime.Spec("w", ()),),
     Parameters._fields,
     ('l1', 'l2'),
-    _runtime.Size((2, 3), ((0, 2),), 2),
+    _runtime.Size((2, 3), ((0, 2),), 4),
 )
 
 
@@ -556,7 +556,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (2, 2)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('l1', 'l2'),
-    _runtime.Size((0, 1, 2, 3), (), 4),
+    _runtime.Size((0, 1, 2, 3), (), 8),
 )
 
 
@@ -650,7 +650,7 @@ _IK_POSE = _runtime.Kernel(
     (_runtime.Spec("q", (1, 2)), _runtime.Spec("status", (1,), "status")),
     Parameters._fields,
     ('l1', 'l2'),
-    _runtime.Size((3, 7, 11, 16, 17), (), 2),
+    _runtime.Size((3, 7, 11, 16, 17), (), 4),
 )
 
 

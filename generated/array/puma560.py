@@ -473,7 +473,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('a2', 'a3', 'd4'),
-    _runtime.Size((6, 7, 8), ((0, 3),), 3),
+    _runtime.Size((6, 7, 8), ((0, 3),), 6),
 )
 
 
@@ -1185,7 +1185,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 6)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('a2', 'a3', 'd3', 'd4'),
-    _runtime.Size((3, 7, 11, 16, 17, 18, 19), (), 4),
+    _runtime.Size((3, 7, 11, 16, 17, 18, 19), (), 8),
 )
 
 

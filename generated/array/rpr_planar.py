@@ -143,7 +143,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 2)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1)), 3),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1)), 6),
 )
 
 
@@ -236,7 +236,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Spec("theta", (2, 2)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), (), 3),
+    _runtime.Size((0, 1, 2), (), 6),
 )
 
 
@@ -331,7 +331,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 3, 3)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((3, 1), (6, 1), (7, 1), (12, 1), (15, 1), (16, 1)), 3),
+    _runtime.Size((0, 1, 2), ((3, 1), (6, 1), (7, 1), (12, 1), (15, 1), (16, 1)), 6),
 )
 
 
@@ -418,7 +418,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 2, 2)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 3),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 6),
 )
 
 
@@ -563,7 +563,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 2, 2)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), (), 3),
+    _runtime.Size((0, 1, 2), (), 6),
 )
 
 
@@ -635,7 +635,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), (), 3),
+    _runtime.Size((0, 1, 2), (), 6),
 )
 
 
@@ -712,7 +712,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 2), (3, 1), (4, 1), (5, 2)), 3),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 2), (3, 1), (4, 1), (5, 2)), 6),
 )
 
 
@@ -798,7 +798,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), (), 4),
+    _runtime.Size((0, 1, 2), (), 8),
 )
 
 
@@ -858,7 +858,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (1, 2)), _runtime.Spec("status", (1,), "status")),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((0, 1), (1, 1)), 2),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1)), 4),
 )
 
 

@@ -366,7 +366,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('l1', 'l2'),
-    _runtime.Size((4, 5), ((0, 2),), 2),
+    _runtime.Size((4, 5), ((0, 2),), 4),
 )
 
 
@@ -668,7 +668,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (2, 4)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('l1', 'l2', 'h'),
-    _runtime.Size((0, 1, 4, 5), (), 4),
+    _runtime.Size((0, 1, 4, 5), (), 8),
 )
 
 

@@ -128,7 +128,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 1)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 2),
+    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 4),
 )
 
 
@@ -224,7 +224,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 4, 3)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((4, 1), (6, 1), (7, 1), (9, 1), (10, 1), (16, 1), (18, 1), (19, 1), (21, 1), (22, 1)), 2),
+    _runtime.Size((1, 2, 3), ((4, 1), (6, 1), (7, 1), (9, 1), (10, 1), (16, 1), (18, 1), (19, 1), (21, 1), (22, 1)), 4),
 )
 
 
@@ -286,7 +286,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 1, 1)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 2),
+    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 4),
 )
 
 
@@ -350,7 +350,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 1)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 2), (1, 2)), 2),
+    _runtime.Size((1, 2, 3), ((0, 2), (1, 2)), 4),
 )
 
 
@@ -417,7 +417,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 1, 1)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 2),
+    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 4),
 )
 
 
@@ -485,7 +485,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 2),
+    _runtime.Size((1, 2, 3), ((0, 1), (1, 1)), 4),
 )
 
 
@@ -551,7 +551,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 2)),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((1, 2, 3), ((0, 2), (1, 1), (2, 2), (3, 1)), 2),
+    _runtime.Size((1, 2, 3), ((0, 2), (1, 1), (2, 2), (3, 1)), 4),
 )
 
 
@@ -644,7 +644,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (2, 1)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((0, 1, 2, 3), (), 4),
+    _runtime.Size((0, 1, 2, 3), (), 8),
 )
 
 
@@ -709,7 +709,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('r', 'l', 'e'),
-    _runtime.Size((0, 1, 2, 3), (), 2),
+    _runtime.Size((0, 1, 2, 3), (), 4),
 )
 
 

@@ -428,7 +428,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     (),
-    _runtime.Size((2,), ((0, 2),), 2),
+    _runtime.Size((2,), ((0, 2),), 4),
 )
 
 
@@ -980,7 +980,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 6)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('d2',),
-    _runtime.Size((3, 7, 11, 16), ((2, 1), (8, 1), (14, 1), (20, 1), (26, 1), (32, 1), (38, 1), (44, 1)), 2),
+    _runtime.Size((3, 7, 11, 16), ((2, 1), (8, 1), (14, 1), (20, 1), (26, 1), (32, 1), (38, 1), (44, 1)), 4),
 )
 
 

@@ -164,7 +164,7 @@ _HAND_POSE = _runtime.Kernel(
     (_runtime.Spec("T", (4, 4)),),
     Parameters._fields,
     ('a',),
-    _runtime.Size((3,), ((3, 1), (7, 1)), 2),
+    _runtime.Size((3,), ((3, 1), (7, 1)), 4),
 )
 
 
@@ -305,7 +305,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (3, 3)),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, 1), (1, 2), (2, 2), (3, 1), (4, 2), (5, 2), (6, 1), (7, 2), (8, 2)), 2),
+    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, 1), (1, 2), (2, 2), (3, 1), (4, 2), (5, 2), (6, 1), (7, 2), (8, 2)), 4),
 )
 
 
@@ -371,7 +371,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (3,)),),
     Parameters._fields,
     ('a',),
-    _runtime.Size((0, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1)), 2),
+    _runtime.Size((0, 3, 4, 5, 6), ((0, 1), (1, 1), (2, 1)), 4),
 )
 
 
@@ -515,7 +515,7 @@ _JACOBIAN_INVERSE = _runtime.Kernel(
     (_runtime.Spec("K", (3, 3)),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 3, 4, 5, 6, 7), ((1, 1), (2, 1), (4, 1), (5, 1), (7, 1), (8, 1)), 2),
+    _runtime.Size((0, 3, 4, 5, 6, 7), ((1, 1), (2, 1), (4, 1), (5, 1), (7, 1), (8, 1)), 4),
 )
 
 
@@ -668,7 +668,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (3, 3)),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 3, 4, 5, 6, 7), ((3, -1), (4, -1), (5, -1), (6, -1), (7, -1), (8, -1)), 5),
+    _runtime.Size((0, 3, 4, 5, 6, 7), ((3, -1), (4, -1), (5, -1), (6, -1), (7, -1), (8, -1)), 10),
 )
 
 
@@ -807,7 +807,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, -2),), 5),
+    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, -2),), 10),
 )
 
 
@@ -949,7 +949,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (5,)),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, 1), (1, 1), (2, 1), (3, 5), (4, 1)), 5),
+    _runtime.Size((0, 3, 4, 5, 6, 7), ((0, 1), (1, 1), (2, 1), (3, 5), (4, 1)), 10),
 )
 
 
@@ -1055,7 +1055,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (10, 3)),),
     Parameters._fields,
     ('b', 'a'),
-    _runtime.Size((0, 7), ((0, 1), (1, 1), (2, 1), (9, 1), (11, 1), (18, 1), (19, 1), (20, 1), (27, 1), (28, 1), (29, 1)), 2),
+    _runtime.Size((0, 7), ((0, 1), (1, 1), (2, 1), (9, 1), (11, 1), (18, 1), (19, 1), (20, 1), (27, 1), (28, 1), (29, 1)), 4),
 )
 
 
@@ -1396,7 +1396,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('b', 'a', 'l'),
-    _runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6),
+    _runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 12),
 )
 
 
@@ -1492,7 +1492,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('b', 'a', 'l'),
-    _runtime.Size((0, 3, 4, 5), (), 2),
+    _runtime.Size((0, 3, 4, 5), (), 4),
 )
 
 

@@ -123,8 +123,8 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> A
 
 
 def _highest(program: Lowered) -> int:
-    """The highest power of the size of the mechanism that the program computes."""
-    return program.degrees.highest if program.degrees else 0
+    """The highest power of the size; derivatives of angles have the squares of powers."""
+    return 2 * program.degrees.highest if program.degrees else 0
 
 
 def _specs(specs: Iterable[tuple[str, tuple[int, ...], str]]) -> str:

@@ -59,6 +59,12 @@ p = [u[k].cross(w[k]) for k in range(3)]
 loop = tuple(w[k].dot(V[:, k]) for k in range(3))
 square = V.T * V - eye(3)
 rigid = (*(square[i, j] for i in range(3) for j in range(i, 3)), V.det() - 1)
+for k in (1, 2, 3):
+    d.explain(
+        {rf"\mathbf w_{k}": "middle axis of leg k", f"B_{{{k}{k}}}": "entry of the diagonal of B"}
+    )
+    d.explain({rf"\mathbf a_{k}": "cross product of w and v, a row of A"})
+d.write("gap", r"\Delta", "determinant of A in every assembly mode")
 stated = d.step(
     "The loop",
     "The last axis v of each leg is an axis of the hand, and a column of R.  It is at right angles "

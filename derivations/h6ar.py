@@ -89,6 +89,13 @@ d = Derivation(
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
 means, halves = half_sums(q), by_half_sums(q)
+for name in ("x_T", "y_T", "z_T"):
+    d.explain({name: "coordinate of the tip"})
+d.explain(
+    {"e_1": "side of the triangle of both points", "e_2": "side of the triangle of both points"}
+)
+d.explain({"r_6": "distance of the point of eq. (6) from the waist axis"})
+d.explain({"h_6": "height of the point of eq. (6) above the shoulders"})
 shoulder_half, fore_half = means[alpha], means[beta]
 
 # Tips of the fore-arms

@@ -167,12 +167,12 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
     d.step(
         "Arms at their limit while the virtual arm is straight",
         "If the virtual fore-arm turns by t and the virtual upper arm by (1 - drawn / L1) t, the "
-        "tip moves by tilt t along the upper arm.  If the virtual arm with the wrist is straight, "
-        "tilt is zero.  An error of the target by rounding then turns the arm by as much as the "
-        "root of that error, and a real arm at its own limit may seem to be beyond it.  In that "
-        "case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
-        {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
-        proves="The rate of the tip, with the wrist turned along, is tilt along the upper arm.",
+        "tip moves by R_perp t along the upper arm.  If the virtual arm with the wrist is "
+        "straight, R_perp is zero.  An error of the target by rounding then turns the arm by as "
+        "much as the root of that error, and a real arm at its own limit may seem to be beyond it. "
+        " In that case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
+        {r"R_\parallel": drawn, r"R_\perp": tilt},
+        proves="The rate of the tip, with the wrist turned along, is R_perp along the upper arm.",
         equal=[(rate, tilt * pair(theta2A).unit)],
     )
 
@@ -180,7 +180,7 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
 def as_published(d: Derivation, m: Dimensions) -> None:
     """Add the step with the paper's way to the elbow, and why the code takes another."""
     d.write("theta3A", r"\theta_3^A", "angle of the virtual fore-arm against its upper arm")
-    d.write("L_3A", "L_{3A}")
+    d.write("L_3A", "L_{3A}", "square of the reach, less the squares of the links")
     elbow, L_3A = real("theta3A"), real("L_3A")
     end = reach(m, pair(theta2A), pair(theta23A), L_2W, a_3W)
     fore = sp.sqrt(L_2W**2 + a_3W**2)

@@ -84,6 +84,8 @@ d = Derivation(
     ),
 )
 m, q = declare(d)
+d.explain({"b": "half the base line of the wrist", "R_I": "reach of the virtual arm"})
+d.explain({f"p_{k}": "coordinate of the invariant point" for k in (1, 2, 3)})
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
 theta23R, theta23L = real("theta23R"), real("theta23L")
 lengths = (m.L1, m.L2, m.a3)

@@ -118,12 +118,25 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
     d.write("higher", r"\Delta_h", "how far the right tip is above the middle of the tips")
     d.write("beyond", r"\Delta_z", "half the base line, along the virtual fore-arm")
     d.write("width", r"\Delta_x", "half the base line, across the virtual fore-arm")
-    d.write("upright", r"\mathrm{room}_\phi", "cosine of the roll, which must be positive")
+    d.write("upright", r"m_\phi", "cosine of the roll, which must be positive")
     d.write("L_2W", "L_{2W}", "length of the virtual fore-arm with the wrist")
     d.write("a_3W", "a_{3W}", "offset of the virtual fore-arm with the wrist")
     d.write("psi_max", meaning="largest yaw")
     d.write("phi_max", meaning="largest roll")
     d.write("beta_min", meaning="smallest separation angle of the wrist links")
+    d.explain(
+        {
+            r"a_{l,\min}": "shortest wrist link for a separation angle",
+            r"R_\parallel": "component of the reach of the virtual arm along its upper arm",
+            r"R_\perp": "component of the reach of the virtual arm across its upper arm",
+        }
+    )
+    d.write("drawn", r"R_\parallel")
+    d.write("tilt", r"R_\perp")
+    d.write("R_perp", r"R_\perp")
+    d.write("pitch", r"\theta_T", "pitch of the target")
+    d.write("tips", "P")
+    d.write("angle", r"\alpha_{\max}", "largest angle of both yaw and roll")
 
     return dimensions, Joints(theta1, theta2R, theta3R, theta2L, theta3L, d.joint("theta"))
 

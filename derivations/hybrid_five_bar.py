@@ -199,6 +199,35 @@ for name, meaning in (
 ):
     d.write(name, meaning=meaning)
 d.write("r_P", "r_P", "distance of P from AB")
+d.explain(
+    {
+        r"\rho": "distance of P from AB, with a sign",
+        r"\overrightarrow{AP}": "vector from A to P, along AB and away from it",
+        r"\overrightarrow{BP}": "vector from B to P, along AB and away from it",
+        r"\overrightarrow{CP}": "vector of the bar CP",
+        r"\overrightarrow{DP}": "vector of the bar DP",
+        r"\varsigma": "singular values of A",
+        "a": "distance of P from A",
+        "b": "distance of P from B",
+        r"\mathbf c": "place of C",
+        r"\mathbf d": "place of D",
+        r"\mathbf p": "place of P",
+        r"\mathbf k": "normal of the plane of the linkage",
+        "d_{max}": "largest distance of C and D",
+        "d_{min}": "smallest distance of C and D",
+        "e": "distance of P from the middle of CD",
+        "h": "half the distance of C and D",
+        r"F_\psi": "polynomial that vanishes on the curve of one psi",
+        r"\alpha": "abbreviation, for the leg over A",
+        r"\beta": "abbreviation, for the leg over B",
+        "N_a": "measure of how far leg AC is from being stretched",
+        "M_a": "measure of how far leg AC is from being folded",
+        "N_b": "measure of how far leg BD is from being stretched",
+        "M_b": "measure of how far leg BD is from being folded",
+    }
+)
+d.write("side", r"\Delta", "cross product of CP and DP, in an assembly mode")
+d.write("volume", "V", "volume of the workspace")
 
 skeleton(
     d,

@@ -94,6 +94,49 @@ for i in (1, 2, 3, 5):
 d.write("lambda", meaning="polar angle of an axis")
 d.write("mu", meaning="azimuth of an axis")
 d.write("t", meaning="time")
+d.explain(
+    {
+        r"\alpha": "angle at the shoulder, of the triangle of the arms",
+        r"\beta_{1,\text{crossed}}": "angle of the rod of the lower loop, crossed",
+        r"\phi_{1,\text{crossed}}": "turn of the coupler of the lower loop, crossed",
+        r"\omega": "direction of an axis, a unit vector",
+        r"\rho": "distance of the hand from the base axis, with a sign",
+        r"\rho_0": "centre of the annulus, in the plane of the arm",
+        "z_0": "height of the centre of the annulus",
+        r"e^{\hat\xi\theta}": "motion by the angle theta about the axis of a twist",
+        "g_{st}": "pose of the hand by the product of exponentials",
+        "J_b": "twist of the hand in its own frame per joint rate",
+        "J^s_{st}": "twist of the hand in the base frame per joint rate",
+        "h": "how far the wrist is above the shoulder",
+        "u": "how far the wrist is ahead of the shoulder",
+        "R": "rotation by the angle theta",
+        r"n_\rho": "direction in which the hand cannot move on the base axis",
+        r"n_{\theta_3}": "direction in which the hand cannot move with a straight arm",
+        "r_{max}": "outer radius of the annulus",
+        "r_{min}": "inner radius of the annulus",
+        "w": "velocity of the hand if motor 3 were on the turret",
+        r"\xi_1": "twist of a joint at home",
+        r"\xi_1'": "twist of a joint in the present posture",
+        r"\xi_2": "twist of a joint at home",
+        r"\xi_2'": "twist of a joint in the present posture",
+        r"\xi_3": "twist of a joint at home",
+        r"\xi_3'": "twist of a joint in the present posture",
+        r"\xi_4": "twist of a joint at home",
+        r"\xi_4'": "twist of a joint in the present posture",
+        r"\xi_5": "twist of a joint at home",
+        r"\xi_5'": "twist of a joint in the present posture",
+        r"r_{\mathrm{A}}": "root of a factor of Heron's formula",
+        r"r_{\mathrm{B}}": "root of a factor of Heron's formula",
+        r"r_{\mathrm{C}}": "root of a factor of Heron's formula",
+        r"r_{\mathrm{S}}": "root of a factor of Heron's formula",
+        "v_1": "component of v",
+        "w_1": "component of w",
+        "v_2": "component of v",
+        "w_2": "component of w",
+    }
+)
+d.write("yaw", r"\psi")
+d.write("margin", r"\delta", "distance from the border of the workspace")
 lam, mu, theta = real("lambda"), real("mu"), real("theta")
 v = sp.Matrix([real(f"v{i}") for i in "xyz"])
 w = sp.Matrix([sin(lam) * cos(mu), sin(lam) * sin(mu), cos(lam)])  # any unit vector

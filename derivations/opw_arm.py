@@ -61,6 +61,14 @@ rows = [
 ]
 d.write("alpha", meaning="angle at the shoulder, of the triangle of the arm")
 d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
+d.explain(
+    {
+        "X": "how far the centre of the wrist is ahead of the base axis",
+        "Z": "height of the centre of the wrist",
+        "f": "length of the forearm, from the elbow to the centre of the wrist",
+        "w": "centre of the wrist",
+    }
+)
 for axis in "xyz":
     d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
 d.step(

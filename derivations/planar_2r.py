@@ -76,6 +76,20 @@ by_frames = d.step(
 )
 
 d.write("r2", "r^2")
+d.explain(
+    {
+        "A_1": "motion along a link",
+        "A_2": "motion along a link",
+        "D": "cosine of theta2",
+        "N": "measure of the distance from the outer boundary of the workspace",
+        "M": "measure of the distance from the inner boundary of the workspace",
+        "r": "distance of the hand from the base",
+        r"\alpha": "angle at the base, of the triangle of the links",
+        "r_{max}": "outer radius of the workspace",
+        "r_{min}": "inner radius of the workspace",
+        "S": "area of the workspace",
+    }
+)
 phi = theta1 + theta2
 d.step(
     "Orientation",
@@ -335,7 +349,7 @@ d.solved += [
 d.step(
     "Workspace",
     "The triangle exists if |l1 - l2| <= r <= l1 + l2, so the workspace is an annulus.",
-    {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "area": sp.pi * 4 * l1 * l2},
+    {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "S": sp.pi * 4 * l1 * l2},
     proves="The area of the annulus is pi times the difference of the squared radii.",
     equal=[(sp.pi * ((l1 + l2) ** 2 - (l1 - l2) ** 2), 4 * sp.pi * l1 * l2)],
 )

@@ -61,6 +61,15 @@ rows = [
 ]
 d.write("alpha", meaning="angle at the shoulder, of the triangle of the arm")
 d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
+d.explain(
+    {
+        "X": "how far the centre of the wrist is ahead of the base axis",
+        "Z": "height of the centre of the wrist",
+        "f": "length of the forearm, from the elbow to the centre of the wrist",
+        "p": "centre of the wrist",
+        "r": "distance of the centre of the wrist from the shoulder, in the plane of the arm",
+    }
+)
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",

@@ -51,6 +51,15 @@ q = (theta4, theta5, theta6)
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
 d.write("flip", r"\varepsilon", "pi in the second branch, else 0")
+d.explain(
+    {
+        "A_4": "motion from link to link",
+        "A_5": "motion from link to link",
+        "A_6": "motion from link to link",
+        "J_s": "angular velocity in the base frame per joint rate",
+        "J_b": "angular velocity in the hand frame per joint rate",
+    }
+)
 by_angles = d.step(
     "Orientation by ZYZ Euler angles",
     "Rotations about the axes of the moving frame multiply from left to right.",

@@ -38,6 +38,11 @@ d2 = d.parameter(
 theta1, theta2, d3 = d.joint("theta1"), d.joint("theta2"), d.joint("d3", "prismatic")
 theta4, theta5, theta6 = (d.joint(f"theta{i}") for i in (4, 5, 6))
 
+d.explain(
+    {
+        "X": "how far the centre of the wrist is ahead of the base axis",
+    }
+)
 arm = from_dh(
     d,
     [

@@ -75,6 +75,7 @@ for axis in "xyz":
 d.write("phi", meaning="what the three parallel axes turn together")
 d.write("ex", "e_x", "horizontal component of what the two links have to reach")
 d.write("ey", "e_y", "vertical component of what the two links have to reach")
+d.explain({"w": "centre of the wrist"})
 d.step(
     "Inverse: the shoulder",
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulders put "

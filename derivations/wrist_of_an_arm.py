@@ -28,6 +28,7 @@ def wrist_step(
             (R36.subs(turned_back, simultaneous=True), R36),
         ],
     )
+    d.explain({"R_{03}": "rotation of the arm", "R_{36}": "rotation of the wrist"})
 
 
 def aligned_wrist(ik: Chain, R03: sp.Matrix, theta4: sp.Symbol) -> None:

@@ -31,10 +31,11 @@ from closedform.cli import figures
 from closedform.cli.commands import main
 from closedform.plot.contours import thinned
 from closedform.plot.robot import Robot
-from closedform.plot.symbols import lengths, symbol
+from closedform.plot.symbols import equation, lengths, symbol
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "figures"
+TITLES = {f.stem for f in (ROOT / "generated" / "numpy").glob("[a-z]*.py")}
 LARGEST, LARGEST_THUMBNAIL = 60_000, 10_000
 
 
@@ -105,12 +106,54 @@ def test_every_length_of_a_linkage_finds_its_segment() -> None:
 @pytest.mark.parametrize(
     ("name", "written"),
     [
-        ("theta2R", r"$\theta_{2R}$"), ("l1", "$l_{1}$"), ("loff", r"$l_{\mathrm{off}}$"),
-        ("rho1", r"$\rho_{1}$"), ("x", "$x$"), ("al", r"$\alpha l$"),
+        ("theta2R", r"$\theta_{2}^{R}$"), ("l1", "$l_{1}$"), ("loff", r"$l_{\mathrm{off}}$"),
+        ("rho1", r"$\rho_{1}$"), ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
     ],
 )  # fmt: skip
 def test_names_are_written_as_formulas(name: str, written: str) -> None:
     assert symbol(name) == written
+
+
+def test_figures_write_the_names_and_units_of_the_texts() -> None:
+    """A length of the OPW arm was c_1 in its figure and l_1 in its chapter."""
+    for path in sorted((ROOT / "generated" / "latex").glob("*.tex")):
+        units = set()
+        row = re.compile(r"\$([^$&]+)\$ & \\texttt\{(\w+)\} & ([\w ]+) &")
+        for written, name, unit in row.findall(path.read_text("utf-8")):
+            plain = symbol(name).strip("$")
+            assert re.sub(r"[{} ]", "", plain) == re.sub(r"[{} ]", "", written), path.name
+            units |= {unit} & {"m", "cm", "mm"}
+        if path.stem in TITLES:
+            assert view(path.stem).unit == "".join(units), path.name
+
+
+@pytest.mark.parametrize(
+    ("name", "written"),
+    [
+        ("sin(theta2) = 0", r"$\sin\, \theta_{2} = 0$"),
+        ("elbow", "elbow"),
+        ("a3*sin(theta3) + d4*cos(theta3) = 0",
+         r"$a_{3} \sin\, \theta_{3} + d_{4} \cos\, \theta_{3} = 0$"),
+    ],
+)  # fmt: skip
+def test_the_equation_of_a_singular_set_is_a_formula(name: str, written: str) -> None:
+    assert equation(name) == written
+
+
+@pytest.mark.parametrize("name", ["orthoglide", "opw_arm", "linear_delta"])
+def test_a_section_shows_the_whole_workspace(name: str) -> None:
+    v = view(name)
+    ax = plot.workspace(module(name), v.plane, at=v.at, unit="m", resolution=60, singular=False)
+    counts = np.ma.filled(ax.collections[0].get_array(), np.nan).reshape(60, 60)
+    border = [counts[0], counts[-1], counts[:, 0], counts[:, -1]]
+    assert np.isfinite(counts).any() and np.isnan(border).all()
+    assert ax.get_xlabel() == "$x$ (m)"
+
+
+def test_a_passive_joint_is_drawn() -> None:
+    ax = plot.mechanism(module("five_bar"), view("five_bar").general, labels=False, axes=False)
+    circles = [line for line in ax.lines if line.get_marker() == "o"]
+    assert len(circles) == len("AABB")
 
 
 @pytest.mark.parametrize("name", ["planar_2r", "irb260"])

@@ -3,6 +3,7 @@
 import re
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +15,8 @@ from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
-from closedform.emit.backends.latex.inverse import clauses, packed
-from closedform.emit.backends.latex.prose import Prose
+from closedform.emit.backends.latex.inverse import clauses, packed, same_angle
+from closedform.emit.backends.latex.prose import Prose, escape, quoted
 from closedform.emit.backends.latex.sheet import Block
 from closedform.emit.backends.latex.wide import Lines
 from closedform.emit.render import render
@@ -147,7 +148,7 @@ def test_code_and_points_in_a_sentence(robot: str, text: str, latex: str) -> Non
 
 
 def test_angles_in_a_table_stand_in_a_line() -> None:
-    [table] = [s["rows"] for s in context("puma560")["steps"] if s["rows"]]
+    table = next(s["rows"] for s in context("puma560")["steps"] if s["rows"])
     assert table[1][2] == r"$\displaystyle \pi/2$" and len(table) == 7
 
 
@@ -190,3 +191,70 @@ def test_the_book_explains_a_status_once() -> None:
     as_article, _, rest = chapter.partition(r"\begin{document}")
     assert r"\textsc{unreachable} & the target" in as_article
     assert r"\textsc{unreachable} & the target" not in rest and r"\statuses" in rest
+
+
+TEX = Path(__file__).parents[1] / "generated" / "latex"
+
+
+def test_a_row_of_the_notation_says_what_its_symbol_is() -> None:
+    rows = [
+        line
+        for path in TEX.glob("*.tex")
+        for line in path.read_text("utf-8").splitlines()
+        if re.match(r"\$.*\$ & see ", line)
+    ]
+    assert rows == []
+
+
+def test_symbols_with_one_meaning_keep_it_in_their_row() -> None:
+    rows = [(f"A_{{{k}}}", rf"a motion, see \eqref{{eq:r:{k}}}") for k in (1, 2, 3)]
+    rows += [("B_{1}", r"a force, see \eqref{eq:r:4}"), ("B_{2}", r"a torque, see \eqref{eq:r:5}")]
+    assert symbols.joined(rows) == [
+        (r"A_{1},\ \ldots,\ A_{3}", r"a motion, see \eqref{eq:r:1}--\eqref{eq:r:3}"),
+        *rows[3:],
+    ]
+
+
+def test_no_distance_of_two_points_is_an_equation() -> None:
+    """The skeleton was printed as ``|base - corner1| = h``."""
+    for path in TEX.glob("*.tex"):
+        assert r"|\text{" not in path.read_text("utf-8"), path.name
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("the *singularity locus* of P", r"the \emph{singularity locus} of P"),
+        ("as *i*) it is", r"as \emph{i}) it is"),
+        ("A*T*B and 4*4", "A*T*B and 4*4"),
+        ("Link a^i θ^i", r"Link $a^{i}$ $\theta^{i}$"),
+        ("0p_n is the position", "${}^0p_{n}$ is the position"),
+        ("the coordinates (x, y, z)_R are", "the coordinates $(x, y, z)_{R}$ are"),
+    ],
+)
+def test_a_quotation_is_set_as_the_paper_prints_it(text: str, latex: str) -> None:
+    assert quoted(text) == latex
+
+
+def test_the_size_of_a_matrix_has_a_cross() -> None:
+    assert escape("a 4x4 matrix, and 0x10") == r"a 4$\times$4 matrix, and 0x10"
+
+
+def test_the_rate_of_a_target_is_a_differential() -> None:
+    assert Prose(derivation("delta"))("It is A*dp = B*dq.") == (
+        r"It is $A\,\mathrm{d}p = B\,\mathrm{d}q$."
+    )
+
+
+def test_an_angle_that_is_another_one_is_told_once() -> None:
+    a, b = real("a"), real("b")
+    assert same_angle([sp.sin(a), sp.cos(a)], [sp.sin(b), sp.cos(b)]) == b
+    assert same_angle([sp.sin(a), sp.cos(a)], [sp.cos(b), sp.sin(b)]) is None
+    assert same_angle([sp.sin(a)], [sp.sin(b)]) is None
+
+
+def test_a_sum_of_products_is_grouped() -> None:
+    """k_1 of the planar arm was M*l1 + M*l2 + N*l1 - N*l2."""
+    l1, l2, M, N = (real(n) for n in ("l1", "l2", "M", "N"))
+    tidied = Lines(Printer(()), ()).tidy(M * l1 + M * l2 + N * l1 - N * l2)
+    assert tidied in (M * (l1 + l2) + N * (l1 - l2), l1 * (M + N) + l2 * (M - N))

@@ -56,6 +56,8 @@ def coupled(
             r"|\mathbf B_2 - \mathbf B_1|": sp.sympify(driver.rod, strict=True),
         },
     )
+    d.explain({r"\mathbf B_1": "end of the rod on the driver"})
+    d.explain({r"\mathbf B_2": "end of the rod on the follower"})
     rod = _forward(d, driver, follower, loop, modes, stated)
     _draw(d, driver, follower, loop, rod)
     _velocity(d, driver, follower, loop, rod, stated)

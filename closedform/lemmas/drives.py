@@ -60,6 +60,7 @@ def parallelogram_drive(
         proves="M takes the motors to the joints.",
         equal=[(M * angles, sp.Matrix(rows))],
     )
+    d.explain({"M": "derivative of the joints by the motors"})
     coupled = ", ".join(f"{q} = {turned[q]} - {turned[through[q][0]]}" for q in through)
     back = ", ".join(f"{turned[q]} = {through[q][0]} + {q}" for q in through)
     for name, summary, given, found in (

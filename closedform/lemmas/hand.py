@@ -140,6 +140,7 @@ class Hand:
     def state_loop(self) -> Step:
         placed = list(zip(self.numbered, self.centres, strict=True))
         shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
+        self.d.explain(dict.fromkeys(shown, "near end of the rod of a leg"))
         for k, leg in self.numbered:
             if isinstance(leg, Rail):
                 shown[rf"\mathbf n_{k}"] = leg.normal

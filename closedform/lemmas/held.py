@@ -114,6 +114,8 @@ def _in_space(m: Hand, loop: Step) -> None:
         "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
         "cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
+    m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in m.held})
+    m.d.explain({r"\mathbf n_k": "normal of the parallelogram of leg k"})
     m.d.step(
         "The parallelograms",
         "The rod of a leg is a parallelogram: two rods of length l between two bars of length "

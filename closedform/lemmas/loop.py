@@ -354,6 +354,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     if m.rails:
         halved, half = "those of rods halved", "the derivatives, of a rod half of them"
         vectors += " and the normals of the rails"
+    d.explain({f"B_{{{k}{k}}}": "entry of the diagonal of B" for k in labels})
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     adjugate = a.adjugate()
     d.step(

@@ -270,6 +270,8 @@ def _place(m: Tripod) -> Step:
     far = [at.position + arm for arm in at.arms]
     aside = [leg.normal.dot(e[:2, 0]) for leg, e in zip(m.legs, far, strict=True)]
     d.write("psi", r"\psi", "twist of the hand about its own z axis")
+    d.explain({"f": "coefficient of cos(psi) in the equation of the twist"})
+    d.explain({"g": "coefficient of sin(psi) in the equation of the twist"})
     step = d.step(
         "The place of the hand",
         "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and the "

@@ -173,6 +173,7 @@ class Serial:
             ),
             equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
+        d.explain({f"A_{i}": "motion from link to link" for i in range(1, len(self.moves) + 1)})
         _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose, equation="T")
         drawn = serial_skeleton(d, self.groups, q, self.lead, self.last)
         skeleton(d, **drawn, hand_at=self.position)
@@ -311,7 +312,10 @@ class Serial:
             "The arm is singular exactly where a factor that holds a joint vanishes (for links "
             "that have a length): the joints then cannot move the tool in some direction.",
             {**dict(others), name: det},
-            proves="The determinant of J is the stated product, up to a factor without joints.",
+            proves=(
+                "The determinant is the stated product, and what it holds besides the factors "
+                "depends on no joint."
+            ),
             equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
         )
         d.function(

@@ -6,6 +6,7 @@ forward map says.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -89,7 +90,7 @@ def skeleton(
     own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
-    shown: dict[str, sp.Expr] = {}
+    apart: dict[sp.Expr, list[str]] = {}
     bounds: list[sp.Expr] = []
     for at, limits, held in _cases(function, tuple(places), pairs, at_posture):
         bounds += [b for b in limits if b not in bounds]
@@ -100,8 +101,9 @@ def skeleton(
             if length is None:
                 length = sp.sqrt(sp.factor(_still(square, function)))
             equal.append((square, sp.expand(length**2) + rest.get(pair, 0)))
-            ends = (rf"\text{{{name.replace('_', ' ')}}}" for name in pair)
-            shown.setdefault(f"|{' - '.join(ends)}|", length)
+            between = " to ".join(map(_spoken, pair))
+            if between not in apart.setdefault(length, []):
+                apart[length].append(between)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
     closed = "  Where a rod closes a loop, the equation of the loop says so." if rest else ""
@@ -109,7 +111,8 @@ def skeleton(
         "Skeleton",
         "The points through which the links are drawn.  No link changes its length when the joints "
         f"move, and the hand is where {where_from}.{closed}",
-        shown,
+        {},
+        rows=[("Points", "Distance"), *((", ".join(ends), size) for size, ends in apart.items())],
         proves=(
             "The squared distance of each pair of neighbouring points is that of the length"
             f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "
@@ -118,6 +121,11 @@ def skeleton(
         equal=equal,
         nonnegative=bounds,
     )
+
+
+def _spoken(point: str) -> str:
+    """The name of a point in words: ``corner 1`` for ``corner1``."""
+    return re.sub(r"(?<=[a-z]{2})(?=\d)", " ", point.replace("_", " "))
 
 
 def _segments(drawn: Skeleton) -> list[tuple[str, str]]:

@@ -171,6 +171,8 @@ class Derivation(Shown):
     """The points, links and joints that the function ``skeleton`` draws."""
     written: dict[str, Written] = field(default_factory=dict)
     """Symbols that are not written as their name says, or whose meaning no equation gives."""
+    explained: dict[str, str] = field(default_factory=dict)
+    """What names of equations mean (plain text), by their LaTeX."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one or no reason was given."""
 
@@ -240,6 +242,14 @@ class Derivation(Shown):
         if name in self.written:
             raise ValueError(f"{self.name}: the symbol {name} is described twice")
         self.written[name] = Written(latex, meaning)
+
+    def explain(self, meanings: Mapping[str, str]) -> None:
+        """Say what names mean that equations define, as in ``explain({"R_{03}": "..."})``."""
+        for latex, meaning in meanings.items():
+            check_text(f"{self.name}: {latex}", latex, meaning)
+            if latex in self.explained:
+                raise ValueError(f"{self.name}: the symbol {latex} is explained twice")
+            self.explained[latex] = meaning
 
     def couple(self, expr: Any) -> Any:
         """``expr`` with every coupled joint replaced by its coupling."""

@@ -62,6 +62,8 @@ class View:
     limits: Limits | None = None
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""
+    unit: str = ""
+    """That of lengths; none if the dimensions may have any."""
     published: str = ""
     """The mechanism that models this one as its paper does, to be compared with it."""
 
@@ -84,7 +86,9 @@ def standard(view: View) -> list[Figure]:
             "workspace",
             "How many branches reach each point of a section of the workspace, and where branches "
             "are singular.",
-            lambda robot: workspace(robot, view.plane, at=view.at, limits=view.limits),
+            lambda robot: workspace(
+                robot, view.plane, at=view.at, limits=view.limits, unit=view.unit
+            ),
         ),
         Figure(
             "conditioning",
@@ -92,7 +96,7 @@ def standard(view: View) -> list[Figure]:
             "where the mechanism is singular.",
             lambda robot: field_map(
                 robot, "condition", view.measured or view.plane, at=view.at,
-                limits=None if view.measured else view.limits,
+                limits=None if view.measured else view.limits, unit=view.unit,
             ),
         ),
     ]  # fmt: skip

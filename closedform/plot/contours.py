@@ -12,16 +12,16 @@ from matplotlib.path import Path
 
 from closedform.plot.robot import Array
 
-FINE, COARSE = 5e-4, 4e-3
-"""How far a curve may be from its points, in units of the side of the figure; the coarse one takes
-the steps of the grid out of the border of a set."""
+FINE, STEPS = 5e-4, 1.3
+"""How far a curve may be from its points: in units of the side of the figure, and for the border of
+a set, which has the steps of the grid, in units of those."""
 FEWEST = 6
 """Curves of fewer points are specks of the grid."""
 
 
 def curves(ax: Any, x: Array, y: Array, values: Any, level: float, **style: Any) -> int:
     """Draw the curves at which values on a grid have a level; returns how many there are."""
-    tolerance = COARSE if np.asarray(values).dtype == bool else FINE
+    tolerance = STEPS / len(x) if np.asarray(values).dtype == bool else FINE
     numbers = np.ma.masked_invalid(np.asarray(values, dtype=float))
     found = contour_generator(x, y, numbers).lines(level)
     drawn = [thinned(np.asarray(c), x, y, tolerance) for c in found if len(c) >= FEWEST]
@@ -46,7 +46,7 @@ def region(
     points, offsets = filled
     for outline, ends in zip(points, offsets, strict=True):
         rings = [np.asarray(outline)[a:b] for a, b in pairwise(ends)]
-        rings = [thinned(r, x, y, COARSE) for r in rings if len(r) >= FEWEST]
+        rings = [thinned(r, x, y, STEPS / len(x)) for r in rings if len(r) >= FEWEST]
         if rings:
             path = Path.make_compound_path(*(Path(r, closed=True) for r in rings))
             ax.add_patch(PathPatch(path, linewidth=0.3, **style))

@@ -60,6 +60,13 @@ class Diagram:
             markersize=5 if self.spatial else 6.5, markeredgewidth=1.3, zorder=5,
         )  # fmt: skip
 
+    def passive(self, at: ArrayLike, shade: str = INK, size: float = 3.6) -> None:
+        """A joint without a drive: a small circle."""
+        self.ax.plot(
+            *self._here(at).T, "o", color="white", markeredgecolor=shade, markersize=size,
+            markeredgewidth=0.9, zorder=4,
+        )  # fmt: skip
+
     def hand(self, at: ArrayLike, shade: str = COLOURS[0]) -> None:
         self.ax.plot(*self._here(at).T, "D", color=shade, markersize=4.5, zorder=6)
 

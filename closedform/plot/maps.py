@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from closedform.plot.postures import OK, spoken
 from closedform.plot.robot import Array, Robot, positions, singular_values
 from closedform.plot.style import colour, new_axes, styled
-from closedform.plot.symbols import symbol
+from closedform.plot.symbols import equation, symbol
 
 Limits = Sequence[tuple[float, float]]
 SINGULAR = 2
@@ -32,6 +32,8 @@ FEW = 0.002
 """A number of branches that occurs at a smaller share of the points is left out."""
 WIDE = 30
 """Where a line of a legend is broken, in letters."""
+ROUNDS, EDGE = 12, 120
+"""How often a window is opened, and the points along its border that are tried."""
 SHORT = 25
 """A curve of fewer points than this is taken for noise of the grid."""
 
@@ -44,6 +46,7 @@ def workspace(
     at: ArrayLike | None = None,
     params: Any = None,
     limits: Limits | None = None,
+    unit: str = "",
     resolution: int = 400,
     singular: bool = True,
     ax: Any = None,
@@ -60,6 +63,8 @@ def workspace(
         the target that gives the other coordinates; by default the image of a regular posture
     limits
         the lowest and highest value of each of the two; by default what random postures reach
+    unit
+        that of lengths, such as ``m``, for the names of the axes
     resolution
         points along each side
     singular
@@ -68,7 +73,7 @@ def workspace(
         as in :func:`closedform.plot.mechanism`
     """
     r = Robot.of(robot, params)
-    grid = _task_plane(r, plane, at, resolution, limits)
+    grid = _task_plane(r, plane, at, resolution, limits, unit)
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
     ax = new_axes(False) if ax is None else ax
@@ -117,11 +122,16 @@ def _singular_curves(
                     ax.plot(*curve.T, color=colour(k + 1), linewidth=1.3, zorder=3)
                     found = True
         if found:
-            signs.append(Line2D([], [], color=colour(k + 1), label=fill(name, WIDE)))
+            signs.append(Line2D([], [], color=colour(k + 1), label=_broken(name)))
     for curve in _edges(grid, count):
         ax.plot(*curve.T, color="#222222", linewidth=0.8, zorder=2)
-    border = "branches end: " + "; ".join(at_edge) if at_edge else "branches end"
-    return [Line2D([], [], color="#222222", linewidth=0.8, label=fill(border, WIDE)), *signs]
+    border = "branches end: " + "; ".join(map(equation, at_edge)) if at_edge else "branches end"
+    border = border if "$" in border else fill(border, WIDE)
+    return [Line2D([], [], color="#222222", linewidth=0.8, label=border), *signs]
+
+
+def _broken(name: str) -> str:
+    return equation(name) if "=" in name else fill(name, WIDE)
 
 
 def _lines(grid: _Grid, values: Any, level: float) -> Iterator[Array]:
@@ -182,6 +192,7 @@ def field(
     branch: int | str = 0,
     params: Any = None,
     limits: Limits | None = None,
+    unit: str = "",
     resolution: int = 400,
     ax: Any = None,
 ) -> Any:
@@ -198,11 +209,11 @@ def field(
     branch
         over the task: the branch whose postures are measured, each in the assembly mode that
         reaches the target; over two joints, the first assembly mode is
-    at, limits, resolution, params, ax
+    at, limits, unit, resolution, params, ax
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution, limits)
+    grid = _plane(r, plane, at, resolution, limits, unit)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
@@ -226,6 +237,7 @@ def singularities(
     at: ArrayLike | None = None,
     params: Any = None,
     limits: Limits | None = None,
+    unit: str = "",
     resolution: int = 400,
     ax: Any = None,
 ) -> Any:
@@ -236,7 +248,7 @@ def singularities(
     :func:`field`.
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution, limits)
+    grid = _plane(r, plane, at, resolution, limits, unit)
     ax = new_axes(False) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:
@@ -279,6 +291,8 @@ class _Grid:
     joints: bool
     section: str = ""
     """The other coordinates of the position."""
+    unit: str = ""
+    """That of lengths, if it is told."""
 
 
 def _plane(
@@ -287,11 +301,12 @@ def _plane(
     at: ArrayLike | None,
     resolution: int,
     limits: Limits | None,
+    unit: str = "",
 ) -> _Grid:
     """A plane of the task, or of two joints where both names are joints."""
     names = list(r.module.JOINTS)
     if plane is None or not all(p in names for p in plane):
-        return _task_plane(r, plane, at, resolution, limits)
+        return _task_plane(r, plane, at, resolution, limits, unit)
     base = r.posture() if at is None else np.asarray(at, dtype=float)
     places = [names.index(p) for p in plane]
     ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
@@ -307,6 +322,7 @@ def _task_plane(
     at: ArrayLike | None,
     resolution: int,
     limits: Limits | None,
+    unit: str = "",
 ) -> _Grid:
     r.require("ik")
     posture = r.posture()
@@ -322,22 +338,53 @@ def _task_plane(
     hand = r.module.SKELETON.points.index(r.module.SKELETON.hand)
     seen = r.points(r.draw(2000, seed=2))[..., hand, :].reshape(-1, 3)
     seen = seen[np.isfinite(seen).all(1)]
-    sides = [np.linspace(low, high, resolution) for low, high in limits or ()]
-    for name in chosen[len(sides) :]:
-        low, high = np.quantile(seen[:, "xyz".index(name)], (0, 1))
-        margin = 0.08 * (high - low)
-        sides.append(np.linspace(low - margin, high + margin, resolution))
-    flat = np.broadcast_to(target.reshape(-1), (resolution, resolution, target.size)).copy()
+    target = target.copy()
     if at is None:
         for name, k in places.items():
             if name not in chosen and name != "z":
-                flat[..., k] = 0.0
+                target.reshape(-1)[k] = 0.0
+    ends = list(limits or ())
+    for name in chosen[len(ends) :]:
+        low, high = np.quantile(seen[:, "xyz".index(name)], (0, 1))
+        margin = 0.08 * (high - low)
+        ends.append((low - margin, high + margin))
+    if limits is None:
+        ends = _opened(r, target, (places[chosen[0]], places[chosen[1]]), ends)
+    sides = [np.linspace(low, high, resolution) for low, high in ends]
+    flat = np.broadcast_to(target.reshape(-1), (resolution, resolution, target.size)).copy()
     flat[..., places[chosen[0]]] = sides[0]
     flat[..., places[chosen[1]]] = sides[1][:, None]
     targets = flat.reshape(resolution, resolution, *target.shape)
     others = [n for n in places if n not in chosen]
-    section = ", ".join(f"${n} = {flat[0, 0, places[n]] + 0.0:.3g}$" for n in others)
-    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section)
+    section = ", ".join(_coordinate(n, flat[0, 0, places[n]], unit) for n in others)
+    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section, unit)
+
+
+def _coordinate(name: str, value: float, unit: str) -> str:
+    told = f"\\,\\mathrm{{{unit}}}" if unit and value else ""
+    return f"${name} = {value + 0.0:.3g}{told}$"
+
+
+def _opened(
+    r: Robot, target: Array, places: tuple[int, int], ends: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """A window without targets at its border that can be reached; as is, if there is none."""
+    window = [list(e) for e in ends]
+    for _ in range(ROUNDS):
+        touched = False
+        for k in (0, 1):
+            along = np.linspace(*window[1 - k], EDGE)
+            for end in (0, 1):
+                points = np.broadcast_to(target.reshape(-1), (EDGE, target.size)).copy()
+                points[:, places[k]], points[:, places[1 - k]] = window[k][end], along
+                _, status = r.branches(points.reshape(EDGE, *target.shape))
+                if answered(status).any():
+                    touched = True
+                    step = 0.08 * (window[k][1] - window[k][0])
+                    window[k][end] += step if end else -step
+        if not touched:
+            return [(e[0], e[1]) for e in window]
+    return ends
 
 
 def _answers(r: Robot, targets: Array, branch: int | str) -> Array:
@@ -380,7 +427,9 @@ def _quantity(
 
 
 def _name(ax: Any, grid: _Grid) -> None:
-    ax.set(xlabel=symbol(grid.names[0]), ylabel=symbol(grid.names[1]))
+    unit = f" ({grid.unit})" if grid.unit else ""
+    ax.set(xlabel=symbol(grid.names[0]) + unit)
+    ax.set_ylabel(symbol(grid.names[1]) + unit, rotation=90 if unit else 0)
     if not grid.joints:
         ax.set_aspect("equal")
         named = [text for text in (ax.get_title(), grid.section) if text]

@@ -25,6 +25,8 @@ WRIST = 3
 """If branches look alike, they differ in the axes of these last joints."""
 UNDER_A_TITLE = 0.9
 """How much a drawing in space is enlarged below a title, so that it does not reach into it."""
+TITLE = {2: 11, 4: 15}
+"""The size of the names of branches, by columns: a page is as wide as both."""
 OVERLAID = 2
 """More branches than this are drawn side by side."""
 
@@ -196,7 +198,7 @@ def branches(
         )  # fmt: skip
         ends = _show_axes(diagram, along)
         diagram.clean([*frame, *ends], margin=0.02, zoom=UNDER_A_TITLE)
-        panel.set_title(spoken(name), fontsize=9, y=1.0)
+        panel.set_title(spoken(name), fontsize=TITLE[columns], y=1.0)
     return panels[0]
 
 
@@ -306,11 +308,21 @@ def draw(
         if joint.kind == "prismatic":
             _slide(diagram, ends, shade, width, named)
             named = {}
+    for point in _passive(skeleton):
+        diagram.passive(place[point], shade, 1.4 * width)
     for name, joint in skeleton.joints.items():
         if joint.kind == "revolute":
             _, way = (along or {}).get(name, (None, None))
             diagram.revolute(place[joint.points[0]], shade, axis=way)
     diagram.hand(place[skeleton.hand], shade)
+
+
+def _passive(skeleton: Any) -> list[str]:
+    """The points where links meet that have no joint of the module: what turns freely there."""
+    known = {p for joint in skeleton.joints.values() for p in joint.points} | {skeleton.hand}
+    links = [set(link) for link in skeleton.links.values()]
+    met = [p for p in skeleton.points if sum(p in link for link in links) > 1]
+    return [p for p in met if p not in known]
 
 
 def _slide(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[str, Any]) -> None:

@@ -11,21 +11,47 @@ import numpy as np
 from closedform.plot.robot import Array, Robot
 
 GREEK = ("alpha", "beta", "gamma", "theta", "rho", "phi", "psi", "sigma")
-WRITTEN = {"al": r"\alpha l"}
-"""Names whose symbol does not follow from their letters."""
+FUNCTIONS = ("sin", "cos", "tan", "sqrt")
+INDICES = {"al": "a_{l}", "gs": "g_{s}", "lp": "l_{p}", "w": "w"}
+"""Lengths with a letter below."""
+LENGTH = re.compile(r"c(\d)")
+"""A length that papers call c; in the texts a c with a number is a cosine."""
+ARM = re.compile(r"(.*\d)([RL])")
+"""A joint of the right or the left arm."""
 
 
 def symbol(name: str) -> str:
-    """A name such as ``theta2R`` or ``l3`` as a formula."""
-    if name in WRITTEN:
-        return f"${WRITTEN[name]}$"
+    """A name such as ``theta2R`` or ``l3`` as a formula, as the texts write it."""
+    return f"${_formula(name)}$"
+
+
+def _formula(name: str) -> str:
+    if name in INDICES:
+        return INDICES[name]
+    if found := LENGTH.fullmatch(name):
+        return rf"\ell_{{{found[1]}}}"
+    if found := ARM.fullmatch(name):
+        return f"{_formula(found[1])}^{{{found[2]}}}"
     letter = next((g for g in GREEK if name.startswith(g)), name[0])
     rest = name[len(letter) :]
     written = rf"\{letter}" if letter in GREEK else letter
     if not rest:
-        return f"${written}$"
+        return written
     below = re.sub(r"([A-Za-z]{2,})", r"\\mathrm{\1}", rest)
-    return f"${written}_{{{below}}}$"
+    return f"{written}_{{{below}}}"
+
+
+def equation(text: str) -> str:
+    """The name of a singular set; ``sin(theta2) = 0`` is a formula, and ``elbow`` a word."""
+    if "=" not in text:
+        return text
+    text = re.sub(rf"({'|'.join(FUNCTIONS)})\((\w+)\)", r"\1 \2", text)
+    words = re.sub(
+        r"[A-Za-z]\w*",
+        lambda m: rf"\{m[0]}\," if m[0] in FUNCTIONS else _formula(m[0]),
+        text,
+    )
+    return f"${words.replace('*', ' ')}$"
 
 
 def lengths(r: Robot, q: Array, mode: int) -> dict[str, tuple[str, str]]:

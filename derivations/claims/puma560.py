@@ -343,11 +343,11 @@ def configurations(d: Derivation, puma: Puma) -> None:
     position = [a - b for a, b in zip(puma.position, p, strict=True)]
     claim(
         "four arm configurations",
-        "“{four} possible solutions to the first three joints”",
+        "{four} possible solutions to the first three joints",
         lambda n: Count(position, puma.q[:3], n),
     )
     claim(
         "two wrists",
-        "“for each of these four solutions {two} possible solutions to the last three joints”",
+        "for each of these four solutions {two} possible solutions to the last three joints",
         lambda n: Count(list(puma.R36 - sp.Matrix(R)), puma.q[3:], n),
     )

@@ -18,7 +18,7 @@ CONVEX, NON_CONVEX = "plus_minus_plus", "plus_plus_plus"
 ABOVE = ("plus_minus_plus", "plus_plus_plus", "plus_minus_minus", "plus_plus_minus")
 """The four working modes for P above AB, in the order of Figure 4 as far as the text tells."""
 PALE = "#d6e4f0"
-GRID = 360
+GRID = 900
 
 
 def plane(points: np.ndarray, theta1: float = 0.0) -> np.ndarray:

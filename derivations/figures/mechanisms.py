@@ -14,41 +14,53 @@ def degrees(*angles: float) -> tuple[float, ...]:
 
 
 VIEWS = {
-    "planar_2r": View(home=degrees(0, 0), general=degrees(35, 50)),
+    "planar_2r": View(unit="cm", home=degrees(0, 0), general=degrees(35, 50)),
     "spherical_wrist": View(
         home=degrees(0, 0, 0), general=degrees(35, 55, 40), measured=("theta4", "theta5")
     ),
-    "irb260": View(general=degrees(-50, 25, 15, 40)),
+    "irb260": View(unit="m", general=degrees(-50, 25, 15, 40)),
     "hybrid_five_bar": View(
         home=degrees(90, 70, 110), general=degrees(65, 75, 85), plane=("y", "x"), at=(0, 0, 0)
     ),
-    "h6ar": View(home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL),
+    "h6ar": View(
+        unit="m", home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL
+    ),
     "h6ar_loop_closed": View(
+        unit="m",
         home=degrees(0, 60, 30, 60, 30, 0),
         general=degrees(*TWIN),
         faint=VIRTUAL,
         published="h6ar",
     ),
-    "puma560": View(),
+    "puma560": View(unit="m"),
     "stanford_arm": View(
+        unit="m",
         home=(0, 0, 0.35, 0, 0, 0),
         general=(*degrees(-30, 60), 0.45, *degrees(40, 45, 20)),
         limits=((-0.8, 0.8), (-0.8, 0.8)),
     ),
     "scara": View(
-        home=(0, 0, 0.2, 0), general=(*degrees(-20, 60), 0.2, *degrees(40)), plane=("x", "y")
+        unit="m",
+        home=(0, 0, 0.2, 0),
+        general=(*degrees(-20, 60), 0.2, *degrees(40)),
+        plane=("x", "y"),
     ),
-    "irb2400": View(general=degrees(-30, 25, -20, 30, 40, 20), limits=((-1.8, 1.8), (-0.9, 2.4))),
-    "opw_arm": View(general=degrees(-30, 15, 70, 30, 40, 20), limits=((-0.8, 0.8), (-0.2, 1.2))),
-    "ur_arm": View(),
+    "irb2400": View(unit="m", general=degrees(-30, 25, -20, 30, 40, 20)),
+    "opw_arm": View(unit="m", general=degrees(-30, 15, 70, 30, 40, 20)),
+    "ur_arm": View(unit="m"),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
-    "delta": View(home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")),
-    "linear_delta": View(home=(0.4, 0.4, 0.4), general=(0.4, 0.45, 0.36), plane=("x", "y")),
-    "orthoglide": View(
-        home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
+    "delta": View(
+        unit="m", home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")
     ),
-    "three_prs": View(home=(0.5, 0, 0), general=(0.45, *degrees(20, -25))),
+    "linear_delta": View(
+        unit="m", home=(0.4, 0.4, 0.4), general=(0.4, 0.45, 0.36), plane=("x", "y")
+    ),
+    "orthoglide": View(
+        unit="m", home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
+    ),
+    "three_prs": View(unit="m", home=(0.5, 0, 0), general=(0.45, *degrees(20, -25))),
     "spherical_five_bar": View(
+        unit="m",
         home=degrees(110, 70),
         general=degrees(130, 60),
         measured=("theta1", "theta2"),
@@ -56,6 +68,7 @@ VIEWS = {
         faint=("rod0",),
     ),
     "agile_wrist": View(
+        unit="m",
         home=degrees(0, 0, 0),
         general=degrees(20, -15, 25),
         measured=("theta1", "theta2"),
@@ -63,7 +76,9 @@ VIEWS = {
         faint=("ground",),
     ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
-    "slider_crank": View(home=degrees(90), general=degrees(50)),
-    "rpr_planar": View(home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))),
+    "slider_crank": View(unit="m", home=degrees(90), general=degrees(50)),
+    "rpr_planar": View(
+        unit="m", home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))
+    ),
 }
 """For each mechanism; one that is not listed is shown at zero and far from singular."""

@@ -10,7 +10,7 @@ REDDY_BABU = Paper(
     "reddy-babu",
     "Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
-    year="undated; the latest work that it cites is of 2015",
+    year="n.d. (the latest work that it cites is of 2015)",
     source="The text was read from a scan by optical character recognition, without the figures.  "
     "A mistake of the reading may touch single characters: the cosine in the numerator of tan α, "
     "the sum in c12, the last row of T in eq. (9), s_5 in the entry (1,2) of eqs. (14) and (15) "

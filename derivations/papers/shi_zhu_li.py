@@ -11,7 +11,7 @@ SHI_ZHU_LI = Paper(
     "shi-zhu-li",
     "New Method for Kinematic Analysis of a Hybrid Manipulator",
     ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
-    year="undated; the latest work that it cites is of 2005",
+    year="n.d. (the latest work that it cites is of 2005)",
     source="The text was read from a scan by optical character recognition; the drawings were not "
     "available.  What the drawings show is taken from the words and from the equations: the two "
     "loops, the axes of eqs. (1) to (5), and the captions of Figs. 4 to 6.  A mistake of the scan "

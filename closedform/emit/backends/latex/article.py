@@ -19,7 +19,6 @@ from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.claims import Claims, flat
 from closedform.emit.backends.latex.equations import (
-    Numbered,
     Numbers,
     canonical,
     listed,
@@ -53,8 +52,8 @@ BARE: Mapping[str, Any] = {
     "after": "",
 }
 """A function without a listing."""
-LISTED = 3
-"""More equations than this that only name a symbol, such as lengths, are a list without numbers."""
+SENTENCE = 60
+"""The letters of a cell that is broken into lines."""
 PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
 """What keeps its capital in the index: names, and letters of the figure."""
 PARTS = 12
@@ -114,10 +113,7 @@ class Page(Sheet):
         fresh = [run for run in runs(shown) if not self.numbers.is_shown(run)]
         again = [label for run in runs(shown) if (label := self.numbers.is_shown(run))]
         uses = self.used(step, [left for left, _ in shown])
-        listing = len(shown) > LISTED and all(isinstance(v, sp.Symbol) for _, v in step.shown)
-        new = (
-            [Numbered(*e) for run in fresh for e in run] if listing else self.numbers.number(fresh)
-        )
+        new = self.numbers.number(fresh)
         self.labels.append([e.label for e in new if e.label] or again)
         n, proved = len(step.vanishes), step.title in self.proof.steps
         counted = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
@@ -130,7 +126,7 @@ class Page(Sheet):
             "uses": uses,
             "again": reference(again),
             "blocks": blocks(new),
-            "columns": "l" * len(step.rows[0]) if step.rows else "",
+            "columns": "".join(map(column, zip(*step.rows, strict=True))),
             "rows": [[self.cell(cell) for cell in row] for row in step.rows],
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
             "counted": counted,
@@ -262,6 +258,12 @@ class Page(Sheet):
         return rows
 
 
+def column(cells: Sequence[Any]) -> str:
+    """The type of a column of a table: long sentences are broken into lines."""
+    longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
+    return r"L{0.66\linewidth}" if longest > SENTENCE else "l"
+
+
 def indexed(title: str) -> str:
     """The entry of a step in the index: ``inverse!the elbow`` for "Inverse: the elbow"."""
     escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
@@ -323,6 +325,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "errata": page.claims.errata(),
         "paper_source": mixed(derivation.paper.source),
         "claims": page.claims.rows(),
+        "sources": len(derivation.paper.cited) > 1,
     }  # fmt: skip
     legend = page.legend()
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)

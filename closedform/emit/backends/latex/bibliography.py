@@ -25,7 +25,7 @@ def _entry(work: Work) -> dict[str, str]:
         "key": work.key,
         "authors": escape(listed(work.authors)),
         "title": escape(work.title),
-        "published": f"{escape(published[:1].upper() + published[1:])}." if published else "",
+        "published": f"{escape(published)}." if published else "",
     }
 
 

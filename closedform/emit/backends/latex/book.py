@@ -84,6 +84,7 @@ def _paper(found: PaperErrata, chapters: Sequence[Chapter]) -> dict[str, Any]:
     return {
         "title": escape(found.paper.title),
         "cited": bibliography.cited(found.paper),
+        "sources": len(found.paper.cited) > 1,
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in found.verdicts().items() if n),
         "entries": [_entry(e, own) for e in found.entries],
     }

@@ -363,9 +363,13 @@ class Told:
             pair = [s for s in pair if means[s].args[0] == unknown and s in algorithm.needed]
             if pair:
                 self.told |= set(pair)
+                found = [algorithm.value(s) for s in pair]
+                values += found
+                if angle := same_angle([means[s] for s in pair], found):
+                    rows += page.equations(unknown, angle)
+                    continue
                 for s in pair:
                     rows += page.equations(means[s], algorithm.value(s))
-                values += [algorithm.value(s) for s in pair]
                 continue
             value = solving.lemma.solution.get(unknown)
             if value is None:
@@ -393,6 +397,7 @@ class Told:
             if s in found and not MATRIX_ENTRY.fullmatch(str(s.name))
             if algorithm.known.get(s) != algorithm.value(s)
             for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
+            if row[0] != row[1]
         ]
 
     def atoms(self, value: sp.Expr) -> list[sp.Expr]:
@@ -513,6 +518,13 @@ class Told:
             for _, chosen in function.cases()
             for name in names
         }
+
+
+def same_angle(pair: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr | None:
+    """The angle whose sine and cosine are the values, if a whole pair is that of another angle."""
+    angles = {v.args[0] for v in values if isinstance(v, sp.sin | sp.cos)}
+    alike = all(a.func == b.func for a, b in zip(pair, values, strict=True))
+    return angles.pop() if len(pair) == 2 and alike and len(angles) == 1 else None
 
 
 def statement(lemma: Lemma) -> list[str]:

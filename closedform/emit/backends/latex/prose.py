@@ -70,10 +70,21 @@ WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|vanishes)\b)[a-z]")
 """What follows an article at the start of a sentence, and not the matrix A."""
 STATUS = re.compile(r"\b(?:OK|UNREACHABLE|SINGULAR|INVALID|BRANCHES)\b")
-INDEXED = re.compile(r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ])_(\{\w+\}|\d+|[a-z])(?![A-Za-z0-9_])")
-"""A letter with an index, in a quotation."""
+INDEXED = re.compile(
+    r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ]|\([a-z](?:, [a-z])+\))_(\{\^?\w+\}|\d+|[a-z])"
+    r"(?![A-Za-z0-9_])"
+)
+"""A letter with an index, or several in parentheses with one, in a quotation."""
+RAISED = re.compile(r"(?<![A-Za-z0-9_\\])([A-Za-zα-ωϕ])\^(\w)(?!\w)")
+"""A letter with an exponent, in a quotation."""
+TUPLE = re.compile(r"(\([a-z](?:, [a-z])+\))_([A-Z])(?!\w)")
+"""Coordinates with one index, as in ``(x, y, z)_R``."""
+EMPHASIS = re.compile(r"(?<![\w*])\*(\w[\w ]*)\*(?![\w*])")
+"""Words that a quotation sets in italics."""
 CODE = re.compile(r"[a-z]{2,}(?:_[a-z]{2,})+")
 """A name of the code in a sentence."""
+DIFFERENTIAL = re.compile("d([pqx])")
+"""The rate of a target or of the joints."""
 CROSS = r"\[\w\]_×"
 CROSSED = r"[{}]_\times"
 """The matrix of the cross product with a vector."""
@@ -123,6 +134,7 @@ def _subscript(text: str) -> str:
 def escape(text: str) -> str:
     """Plain text; mathematical characters that are missing in LaTeX's fonts become formulas."""
     text = re.sub(r'"([^"]*)"', "“\\1”", text)
+    text = re.sub(r"(?<![\w.])(\d)x(\d)(?!\w)", "\\1×\\2", text)
     parts = re.split(r"([α-ωϕ])(\d+)", text)
     for i, part in enumerate(parts):
         plain = (ESCAPES.get(c) or (f"${UNICODE[c]}$" if c in UNICODE else c) for c in part)
@@ -149,16 +161,33 @@ def mixed(text: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """Plain text in which a letter with an index, as in ``theta_2``, is a formula."""
-    parts = INDEXED.split(text)
+    """Plain text in which ``theta_2``, a letter with an index, is a formula, and ``*a*`` italic."""
+    parts = EMPHASIS.split(text)
+    return "".join(
+        rf"\emph{{{_indexed(part)}}}" if i % 2 else _indexed(part) for i, part in enumerate(parts)
+    )
+
+
+def _indexed(text: str) -> str:
+    text = RAISED.sub(lambda m: f"{m[1]}_{{^{m[2]}}}", text)
+    parts = INDEXED.split(TUPLE.sub(r"\1_{\2}", text))
     letters = [
         "".join(f"{UNICODE[c]} " if c in UNICODE else c for c in part.strip("{}")).strip()
         for part in parts
     ]
     return "".join(
-        f"${letters[i]}_{{{letters[i + 1]}}}$" if i % 3 else escape(part)
+        f"${_letter(letters[i], letters[i + 1])}$" if i % 3 else escape(part)
         for i, part in enumerate(parts)
         if i % 3 != 2
+    )
+
+
+def _letter(letter: str, index: str) -> str:
+    """A letter with its index; ``0p`` has an index before it too, and ``^i`` is an exponent."""
+    before = f"{{}}^{letter[0]}" if letter[0].isdigit() else ""
+    letter = letter[1:] if before else letter
+    return (
+        f"{before}{letter}^{{{index[1:]}}}" if index[0] == "^" else f"{before}{letter}_{{{index}}}"
     )
 
 
@@ -274,7 +303,9 @@ class Prose:
             elif name:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
                 short = short or name in self.derivation.written
-                done.append(written_name(self.derivation, name) if short else rf"\mathrm{{{name}}}")
+                rate = not short and DIFFERENTIAL.fullmatch(name)
+                other = rf"\mathrm{{d}}{rate[1]}" if rate else rf"\mathrm{{{name}}}"
+                done.append(written_name(self.derivation, name) if short else other)
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)

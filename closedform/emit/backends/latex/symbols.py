@@ -35,6 +35,8 @@ from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 
 Printed = Callable[[sp.Symbol], str]
+AUXILIARY = re.compile(r"u_\{\d+\}")
+"""The name of a part of a long expression."""
 
 
 @dataclass
@@ -145,20 +147,29 @@ def table(
     declared = {s.name for s in symbols_declared(derivation)}
     rows: dict[str, list[str]] = {}
     for name, written in derivation.written.items():
-        if name not in declared:
+        if name not in declared and written.meaning:
             rows.setdefault(_form(derivation, name), []).append(prose(written.meaning))
     for form, meaning in (*_inputs(derivation, math), *_signs(derivation)):
         if form not in rows:
             rows[form] = [meaning]
     taken = {_form(derivation, name) for name in declared}
     said = dict(_summaries(derivation))
+    explained = derivation.explained.items()
+    said |= {without_power(canonical(upright(n))): m for n, m in explained}
     for form, label in numbers.defined.items():
         of_a_listed_matrix = form not in rows and _matrix_of(form) in numbers.defined
         if form not in taken and not of_a_listed_matrix:
+            if form not in said and AUXILIARY.fullmatch(form):
+                said[form] = "abbreviation"
             told = rows.setdefault(form, [prose(said[form])] if form in said else [])
             told.append(f"see {reference([label])}")
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
-    return sorted(((f, t) for f, t in cells if t), key=lambda row: (skeleton(row[0]).lower(), row))
+    return sorted(((f, t) for f, t in cells if t), key=lambda row: (_place(row[0]), row))
+
+
+def _place(form: str) -> str:
+    """Where a symbol stands in the table: by its letter, then by its number."""
+    return re.sub(r"\d+", lambda m: m[0].zfill(3), skeleton(form).lower())
 
 
 def _matrix_of(form: str) -> str:
@@ -219,8 +230,9 @@ WIDEST = 20
 def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Neighbours with one meaning in one row, and so those that follow each other by number."""
     done: list[tuple[list[str], str, list[str]]] = []
+    named = re.compile(r"(.*?)see (\\eqref\{[^{}]*\})")
     for form, meaning in rows:
-        label = re.fullmatch(r"see (\\eqref\{(.*):(\d+)\})", meaning)
+        label = named.fullmatch(meaning)
         stem = re.fullmatch(r"(.+)_\{(\d+)\}", form)
         if done:
             forms, common, labels = done[-1]
@@ -229,11 +241,11 @@ def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
                 forms.append(form)
                 continue
             follows = stem and last and (stem[1], int(stem[2])) == (last[1], int(last[2]) + 1)
-            if label and labels and follows:
+            if label and labels and follows and common.startswith(f"{label[1]}see"):
                 forms.append(form)
-                labels.append(label[1])
+                labels.append(label[2])
                 continue
-        done.append(([form], meaning, [label[1]] if label else []))
+        done.append(([form], meaning, [label[2]] if label else []))
     return [_joined(forms, meaning, labels) for forms, meaning, labels in done]
 
 
@@ -248,9 +260,10 @@ def _joined(forms: list[str], meaning: str, labels: list[str]) -> tuple[str, str
         return forms[0], meaning
     if not labels:
         return r",\ ".join(forms), _plural(meaning)
+    what = meaning.partition("see ")[0]
     if len(forms) == 2:
-        return r",\ ".join(forms), f"see {labels[0]} and {labels[1]}"
-    return rf"{forms[0]},\ \ldots,\ {forms[-1]}", f"see {labels[0]}--{labels[-1]}"
+        return r",\ ".join(forms), f"{what}see {labels[0]} and {labels[1]}"
+    return rf"{forms[0]},\ \ldots,\ {forms[-1]}", f"{what}see {labels[0]}--{labels[-1]}"
 
 
 def _plural(meaning: str) -> str:

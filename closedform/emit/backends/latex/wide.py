@@ -117,6 +117,10 @@ class Lines:
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)
+        if value.is_Add and len(value.args) == 4 and all(map(_is_product, value.args)):
+            names = sorted(value.free_symbols, key=str)
+            yield sp.collect(value, names)
+            yield sp.collect(value, names[::-1])
         powers = value.atoms(sp.Pow)
         if any(p.exp.is_negative for p in powers):
             yield sp.together(value)
@@ -284,3 +288,9 @@ def _common(matrix: sp.MatrixBase) -> sp.Expr:
 
 
 __all__ = ["Equation", "Lines"]
+
+
+def _is_product(value: sp.Basic) -> bool:
+    """Whether a term is a product of two symbols, up to its sign."""
+    factor, rest = value.as_coeff_Mul()
+    return abs(factor) == 1 and len(rest.args) == 2 and all(a.is_Symbol for a in rest.args)

@@ -422,6 +422,7 @@ d.function(
     {"q": q, "qdot": rates},
     {"v": velocity},
     source="eq. (23)",
+    equation="v",
 )
 
 # The inverse, which the paper does not give, and the workspace

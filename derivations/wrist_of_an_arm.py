@@ -15,9 +15,9 @@ def wrist_step(
     d.step(
         "Inverse: the wrist",
         "The arm leaves the rotation R_03^T R to the wrist, whose third column gives theta4 and "
-        "theta5.  In the branches with noflip sin(theta5) >= 0; flip turns theta4 and theta6 by pi "
-        "and negates theta5.  Where sin(theta5) = 0 only theta4 + theta6 or "
-        "theta4 - theta6 is determined and we return theta4 = 0.",
+        "theta5.  The branches with noflip in their names have sin(theta5) >= 0; those with flip "
+        "have theta4 and theta6 turned by pi and theta5 negated.  Where sin(theta5) = 0 only "
+        "theta4 + theta6 or theta4 - theta6 is determined and we return theta4 = 0.",
         {"R_{03}": R03, "R_{36}": R36},
         proves=(
             "The rotation of the pose is R_03 R_36, and R_36 is the same if theta4 and theta6 "

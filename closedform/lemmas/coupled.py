@@ -196,7 +196,7 @@ def _velocity(
             ("Its sign distinguishes the working modes.",),
         ),
         ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, (pole,)),
-        ("determinant", "The same as a number.", {"det": B_at / A_at}, (pole,)),
+        ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
         ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
     ]
     export(d, v, rod.modes, functions)

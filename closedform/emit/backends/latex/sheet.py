@@ -118,7 +118,9 @@ class Sheet:
         whole = {left: value for step in self.derivation.steps for left, value in step.shown}
         if not array.shape or (array.size == 1 and name in whole):
             return [name]
-        diagonal = f"{name}_{{11}}" in whole or isinstance(whole.get(name), sp.MatrixBase)
+        value = whole.get(name)
+        square = isinstance(value, sp.MatrixBase) and value.rows == value.cols
+        diagonal = f"{name}_{{11}}" in whole or square
         indices = [f"{k}{k}" if diagonal else str(k) for k in range(1, array.size + 1)]
         return [element(name, k) for k in indices]
 

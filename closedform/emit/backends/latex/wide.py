@@ -104,7 +104,8 @@ class Lines:
         if value not in self._tidied:
 
             def cost(form: sp.Expr) -> float:
-                return self.width(form) - (PRODUCT if form.is_Mul else 0)
+                grouped = form.is_Add and len(form.args) == 2 < len(value.args) == 4
+                return self.width(form) - (PRODUCT if form.is_Mul or grouped else 0)
 
             best = min(self._forms(value), key=cost)
             narrower = cost(best) < cost(value) - GAIN

@@ -373,7 +373,7 @@ def _opened(
     for _ in range(ROUNDS):
         touched = False
         for k in (0, 1):
-            along = np.linspace(*window[1 - k], EDGE)
+            along = np.linspace(window[1 - k][0], window[1 - k][1], EDGE)
             for end in (0, 1):
                 points = np.broadcast_to(target.reshape(-1), (EDGE, target.size)).copy()
                 points[:, places[k]], points[:, places[1 - k]] = window[k][end], along

@@ -70,7 +70,7 @@ VIEWS = {
     "agile_wrist": View(
         unit="m",
         home=degrees(0, 0, 0),
-        general=degrees(20, -15, 25),
+        general=degrees(-30, 40, -35),
         measured=("theta1", "theta2"),
         about="O",
         faint=("ground",),

@@ -621,7 +621,7 @@ _DETERMINANT = _runtime.Kernel(
 
 
 def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """The same as a number.
+    """The Jacobian as a number: B/A.
 
     Parameters
     ----------

@@ -6422,7 +6422,7 @@ const cf_function cf_functions[] = {
       1, four_bar_jacobian_in, 1, four_bar_jacobian_out,
       four_bar_jacobian_one, four_bar_jacobian_many },
     { "four_bar.determinant",
-      "The same as a number.\n"
+      "The Jacobian as a number: B/A.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11078,7 +11078,7 @@ const cf_function cf_functions[] = {
       1, slider_crank_jacobian_in, 1, slider_crank_jacobian_out,
       slider_crank_jacobian_one, slider_crank_jacobian_many },
     { "slider_crank.determinant",
-      "The same as a number.\n"
+      "The Jacobian as a number: B/A.\n"
       "\n"
       "Parameters\n"
       "----------\n"

@@ -170,7 +170,7 @@ void four_bar_jacobian_batch(size_t n, const four_bar_params *params,
     real_t *J, size_t J_stride);
 
 /*
- * The same as a number.
+ * The Jacobian as a number: B/A.
  *
  * Inputs
  * ------

@@ -167,7 +167,7 @@ void slider_crank_jacobian_batch(size_t n, const slider_crank_params *params,
     real_t *J, size_t J_stride);
 
 /*
- * The same as a number.
+ * The Jacobian as a number: B/A.
  *
  * Inputs
  * ------

@@ -521,7 +521,7 @@ const _DETERMINANT = _runtime.kernel({
 });
 
 /**
- * The same as a number.
+ * The Jacobian as a number: B/A.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.

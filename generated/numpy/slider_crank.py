@@ -525,7 +525,7 @@ _DETERMINANT = _runtime.Kernel(
 
 
 def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The same as a number.
+    """The Jacobian as a number: B/A.
 
     Parameters
     ----------

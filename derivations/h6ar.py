@@ -445,13 +445,13 @@ for sine in ("alpha", "beta"):
     whole = p.let(f"whole_{sine}", m.L1 * v[0])
     part = p.let(f"part_{sine}", part)
     to_whole, to_part = map(sign_of, (whole, part))
-    room = p.let(f"room_{sine}", to_whole * whole - to_part * part)
+    margin = p.let(f"margin_{sine}", to_whole * whole - to_part * part)
     slopes = (
         p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate),
         p.let(f"slope_aside_{sine}", m.L1 * (to_whole * v[1] - to_part * seen_rate)),
     )
     size = (fore_size if sine == "alpha" else m.L1) * beside
-    eased = free.easing(sine, room, slopes, size, "a sine is at most 1")
+    eased = free.easing(sine, margin, slopes, size, "a sine is at most 1")
     spent = eased.spent
     turn = p.let(f"turn_{sine}", choose(spent, eased.straight_on(), 0))
     leant = p.let(f"lean_{sine}", choose(spent, free.lean(turn, eased.aside), 0))

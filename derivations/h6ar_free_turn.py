@@ -68,12 +68,12 @@ class FreeTurn:
     def easing(
         self,
         name: str,
-        room: sp.Symbol,
+        margin: sp.Symbol,
         slopes: tuple[sp.Symbol, sp.Symbol],
         scale: sp.Expr,
         meaning: str,
     ) -> Easing:
-        """What makes up for what an area ``room`` of a natural ``scale`` lacks.
+        """What makes up for what an area ``margin`` of a natural ``scale`` lacks.
 
         The area grows by ``slopes`` times the free turn, and times a turn of the upper arm aside.
         Each takes its share, by what the tolerance of the tip lets it bring.
@@ -85,21 +85,23 @@ class FreeTurn:
             (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
             for by, square in zip((sp.Abs(self.tilt), self.m.L1), squares, strict=True)
         ]
-        spent = self.program.vanishes(f"spent_{name}", used_up(room), scale, f"no room: {meaning}")
+        spent = self.program.vanishes(
+            f"spent_{name}", used_up(margin), scale, f"no margin left: {meaning}"
+        )
         heavy = [let(f"heavy_{k}_{name}", choose(spent, e, 1)) for k, e in enumerate(heavy)]
         gains = [
             let(f"gain_{k}_{name}", choose(spent, sp.Abs(s) / e, 0))
             for k, (s, e) in enumerate(zip(slopes, heavy, strict=True))
         ]
         play = let(f"play_{name}", scale + choose(spent, sum(gains), 0))
-        self.program.bound(f"kept_{name}", room, play, meaning)
+        self.program.bound(f"kept_{name}", margin, play, meaning)
         share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
-        share = let(f"share_{name}", choose(spent, sp.Piecewise((share, room < 0), (0, True)), 0))
+        share = let(f"share_{name}", choose(spent, sp.Piecewise((share, margin < 0), (0, True)), 0))
         floors = [scale * e / 2**24 for e in heavy]
-        aside = -sign_of(slopes[1]) * share * room / (sp.Abs(slopes[1]) + floors[1])
+        aside = -sign_of(slopes[1]) * share * margin / (sp.Abs(slopes[1]) + floors[1])
         aside = let(f"aside_{name}", choose(spent, aside, 0))
         return Easing(
-            spent, aside, let(f"lack_{name}", room * (share - 1)), slopes[0], heavy[0], floors[0]
+            spent, aside, let(f"lack_{name}", margin * (share - 1)), slopes[0], heavy[0], floors[0]
         )
 
     def turn(self, name: str, easings: Sequence[tuple[Easing, sp.Expr]]) -> sp.Symbol:

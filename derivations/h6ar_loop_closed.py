@@ -468,7 +468,7 @@ for name, sign in (("right", 1), ("left", -1)):
     nearer = p.let(f"nearer_{name}", N - sign * cross - gap)
     farther = p.let(f"farther_{name}", folding)
     squares[name] = nearer, farther
-    room = p.let(f"room_{name}", sp.Min(nearer, farther))
+    margin = p.let(f"margin_{name}", sp.Min(nearer, farther))
     # the square of the reach changes; near full stretch that is to the other side
     sense = sp.Piecewise((1, nearer <= farther), (-1, True))
     across = h * upper.c - r * upper.s
@@ -478,7 +478,7 @@ for name, sign in (("right", 1), ("left", -1)):
     )
     onward = r * upper.c + h * upper.s - m.L1
     curve = p.let(f"curve_{name}", sense * onward * free.drawn**2 / m.L1)
-    eased = free.easing(name, room, slopes, size * beside, "the arm is long enough")
+    eased = free.easing(name, margin, slopes, size * beside, "the arm is long enough")
     easings.append((eased, curve))
 spent = sp.Or(*(e.spent for e, _ in easings))
 turn = free.turn("both", easings)

@@ -349,7 +349,7 @@ def along_gap(
     spans = gap_size <= sp.Max(second, m.L1)
     # upright, the shorter link has this much to say across the longer one
     across_long = m.L1 * sp.Abs(gap[1]) / size
-    room = let("across_long", sp.Piecewise((across_long, by_fore), (second, True)))
+    margin = let("across_long", sp.Piecewise((across_long, by_fore), (second, True)))
     roots = []
     for name, across in (("_ahead", long_h), ("_behind", -long_h)):
         beyond = let(f"beyond_gap{name}", height - across)
@@ -358,7 +358,7 @@ def along_gap(
         left_r = let(f"left_r{name}", sqrt(sp.Max(0, square)))
         short_r = let(f"short_r{name}", sqrt((shorter - short_h) * (shorter + short_h)))
         lacking = (sp.Abs(beyond) - shorter) * gap_size
-        exists = sp.And(spans, lacking <= room * left_r)
+        exists = sp.And(spans, lacking <= margin * left_r)
         roots.append(Preferred(let(f"root_same{name}", left_r + short_r), exists))
         roots.append(Preferred(let(f"root_apart{name}", sp.Abs(left_r - short_r)), exists))
     return tuple(roots)
@@ -494,7 +494,7 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     needed = (m.d / level - m.gs).xreplace({psi: psi_max, phi: phi_max}) / cos(beta_min)
     span = m.al * cos(beta_min) + m.gs
     rolls = level.has(cos(phi))
-    room, w = real("room", positive=True), real("w", positive=True)
+    margin, w = real("margin", positive=True), real("w", positive=True)
     d.step(
         "Wrist design",
         "The separation angle is that between a wrist link and the base line, so half the base "
@@ -507,7 +507,7 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
             "The cosine of twice the returned half angle is the quotient that equation (10) asks "
             "for."
         ),
-        equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
+        equal=[(cos(2 * atan2(sqrt(margin), sqrt(margin + 2 * w))), w / (w + margin))],
     )
     d.function(
         "minimum_link_length",
@@ -518,22 +518,22 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     )
     p = Program()
     w = p.let("span", span * (cos(phi) if rolls else 1))
-    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough for that roll")
+    margin = p.bound("margin", w - m.d, m.al + m.gs, "the links are long enough for that roll")
     d.function(
         "largest_yaw",
         "The largest yaw at a roll that keeps the separation angle; NaN if there is none.",
         {"phi": phi, "beta_min": beta_min},
-        {"psi": 2 * atan2(sqrt(room), sqrt(w + m.d))},
+        {"psi": 2 * atan2(sqrt(margin), sqrt(w + m.d))},
         program=p,
     )
     p = Program()
     w = p.let("span", span)
-    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough")
+    margin = p.bound("margin", w - m.d, m.al + m.gs, "the links are long enough")
     adjacent = sqrt(w) + sqrt(m.d) if rolls else sqrt(w + m.d)
     d.function(
         "largest_angle",
         "The largest angle that yaw and roll may both have; NaN if there is none.",
         {"beta_min": beta_min},
-        {"angle": 2 * atan2(sqrt(room), adjacent)},
+        {"angle": 2 * atan2(sqrt(margin), adjacent)},
         program=p,
     )

@@ -387,8 +387,8 @@ class _Place:
         """Turned so that the first coordinate of the axis, the one that changes, is as wanted."""
         turn = self.turn
         (ax, _), (dax, _) = self.axis
-        room = turn.let("room", sp.Max(0, (self.most - wanted) * (self.most + wanted)))
-        rest = turn.let("rest", sign_of(dax) * sp.sqrt(room))
+        margin = turn.let("margin", sp.Max(0, (self.most - wanted) * (self.most + wanted)))
+        rest = turn.let("rest", sign_of(dax) * sp.sqrt(margin))
         fixed = self.most <= LAST  # the axis is that of the turn
         return turn.by(
             turn.let("by_s", choose(fixed, 0, (dax * wanted - ax * rest) / self.most**2)),

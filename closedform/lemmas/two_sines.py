@@ -61,15 +61,17 @@ def two_sines(
     parallel = program.vanishes(
         "parallel", aside, 64 * sp.Abs(lean), "both vectors are parallel", free
     )
-    for name, room in (("room_below", aside - across), ("room_above", aside + across)):
-        program.bound(name, room, scale, "a sine is at most 1")
+    for name, margin in (("margin_below", aside - across), ("margin_above", aside + across)):
+        program.bound(name, margin, scale, "a sine is at most 1")
     with_v = sp.Piecewise((ahead, lean >= 0), (-ahead, True))
     whole = program.let("whole_y", choose(parallel, size + sp.Abs(lean), aside))
     part = program.let("part_y", choose(parallel, with_v, across))
     _, sine = _from_sine(program, f"{y}_0", part, whole, scale)
     rest = program.let("rest", ahead - sine * lean)
     left = program.let("left_along", size - sp.Abs(rest))
-    spent = program.vanishes("spent_along", used_up(left), scale, "no room: a sine is at most 1")
+    spent = program.vanishes(
+        "spent_along", used_up(left), scale, "no margin left: a sine is at most 1"
+    )
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
     play = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, play, "a sine is at most 1")

@@ -2185,7 +2185,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 4),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 8),
 )
 
 
@@ -2301,7 +2301,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5, 6), (), 4),
 )
 
 

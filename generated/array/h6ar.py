@@ -12,7 +12,7 @@
 #   jacobian: 108 add, 67 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 39 compare and select, 39 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 compare and select, 39 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 1614 compare and select, 738 add, 33 atan2, 260 divide, 996 multiply, 1 reduce to a turn,
+#   ik: 1674 compare and select, 738 add, 33 atan2, 260 divide, 996 multiply, 1 reduce to a turn,
 #     3 sincos, 76 sqrt
 #   wrist_length: 24 compare and select, 5 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -250,7 +250,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 2),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 4),
 )
 
 
@@ -411,7 +411,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Spec("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 2),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 4),
 )
 
 
@@ -726,7 +726,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (20, 3)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 2),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 4),
 )
 
 
@@ -1039,7 +1039,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -1162,7 +1162,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 5),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 10),
 )
 
 
@@ -1284,7 +1284,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (5, 1)), 2),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (5, 1)), 4),
 )
 
 
@@ -1649,9 +1649,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     p_1_rear_elbow_up = t86 + ahead * ctheta2A_rear_elbow_up
     t199 = t92 - higher * ctheta2A_rear_elbow_up
     t200 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t199
-    room_alpha_rear_elbow_up = t198 - ops.abs(t200)
-    t201 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = ops.max(-t201, room_alpha_rear_elbow_up) <= t97
+    margin_alpha_rear_elbow_up = t198 - ops.abs(t200)
+    t201 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = ops.max(-t201, margin_alpha_rear_elbow_up) <= t97
     t202 = ops.sign(whole_alpha_front_elbow_down)
     t203 = v_2_front_elbow_down * t202
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
@@ -1672,18 +1672,18 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_alpha_rear_elbow_up = ops.select(spent_alpha_rear_elbow_up, t212 / heavy_1_alpha_rear_elbow_up, 0.0)
     t213 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
     t214 = ops.select(spent_alpha_rear_elbow_up, t213, 0.0)
-    t215 = -(ops.feasibility * (t76 + t214)) <= room_alpha_rear_elbow_up
+    t215 = -(ops.feasibility * (t76 + t214)) <= margin_alpha_rear_elbow_up
     t216 = ops.sign(slope_aside_alpha_front_elbow_down)
-    t217 = room_alpha_rear_elbow_up < 0.0
+    t217 = margin_alpha_rear_elbow_up < 0.0
     t218 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     t219 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     t220 = ops.select(t217, t218 / (t119 + t218 + t219), 0.0)
     share_alpha_rear_elbow_up = ops.select(spent_alpha_rear_elbow_up, t220, 0.0)
-    t221 = t216 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    t221 = t216 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
     t222 = t76 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     aside_alpha_rear_elbow_up = ops.select(spent_alpha_rear_elbow_up, -(t221 / (t212 + t222)), 0.0)
     t223 = ops.sign(-t207)
-    t224 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    t224 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     t225 = t76 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
     t226 = 1.0 / (t208 + t225)
     t227 = -(heavy_0_alpha_rear_elbow_up * t224 * t226) <= 9.094947017729282e-13
@@ -1819,9 +1819,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t318 = ahead * stheta2A_front_elbow_down
     t319 = t318 - higher * ctheta2A_rear_elbow_down
     t320 = v_2 * p_1_rear_elbow_down + v_1 * t319
-    room_alpha_rear_elbow_down = t95 - ops.abs(t320)
-    t321 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    spent_alpha_rear_elbow_down = ops.max(-t321, room_alpha_rear_elbow_down) <= t97
+    margin_alpha_rear_elbow_down = t95 - ops.abs(t320)
+    t321 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    spent_alpha_rear_elbow_down = ops.max(-t321, margin_alpha_rear_elbow_down) <= t97
     t322 = ops.sign(-t320)
     t323 = t322 * (v_1 * p_1_rear_elbow_down - v_2 * t319)
     t324 = t100 - t323
@@ -1832,17 +1832,17 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_alpha_rear_elbow_down = ops.select(spent_alpha_rear_elbow_down, t111 / heavy_1_alpha_rear_elbow_down, 0.0)
     t326 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
     t327 = ops.select(spent_alpha_rear_elbow_down, t326, 0.0)
-    t328 = -(ops.feasibility * (t76 + t327)) <= room_alpha_rear_elbow_down
-    t329 = room_alpha_rear_elbow_down < 0.0
+    t328 = -(ops.feasibility * (t76 + t327)) <= margin_alpha_rear_elbow_down
+    t329 = margin_alpha_rear_elbow_down < 0.0
     t330 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     t331 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
     t332 = ops.select(t329, t330 / (t119 + t330 + t331), 0.0)
     share_alpha_rear_elbow_down = ops.select(spent_alpha_rear_elbow_down, t332, 0.0)
-    t333 = t121 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    t333 = t121 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
     t334 = t76 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     aside_alpha_rear_elbow_down = ops.select(spent_alpha_rear_elbow_down, -(t333 / (t111 + t334)), 0.0)
     t335 = ops.sign(-t324)
-    t336 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    t336 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     t337 = t76 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
     t338 = 1.0 / (t325 + t337)
     t339 = -(heavy_0_alpha_rear_elbow_down * t336 * t338)
@@ -2478,573 +2478,606 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t827 = ops.abs(L1 * (t824 + t826))
     heavy_1_beta_2 = ops.select(spent_beta, t790, 1.0)
     gain_1_beta_2 = ops.select(spent_beta, t827 / ops.select(t641, heavy_1_beta_2, 1.0), 0.0)
-    t828 = gain_1_beta_2 * gain_1_beta_2
+    t828 = ops.select(t640, gain_1_beta_2 * gain_1_beta_2, 1.0)
     t829 = t153 * t794
     t830 = L1 - drawn_2
     t831 = ops.abs(drawn_2 * t824 - t826 * t830)
     heavy_0_beta_2 = ops.select(spent_beta, t805, 1.0)
     gain_0_beta_2 = ops.select(spent_beta, t831 / ops.select(t641, heavy_0_beta_2, 1.0), 0.0)
-    t832 = ops.select(t640, t828 + t829 + gain_0_beta_2 * gain_0_beta_2, 1.0)
-    share_beta_2 = ops.select(spent_beta, ops.select(t151, t828 / t832, 0.0), 0.0)
-    t833 = L1 * play_2
-    t834 = t833 * heavy_0_beta_2 * 5.960464477539063e-08
-    t835 = t823 * (1.0 - share_beta_2) * (1.0 / ops.select(t638, t831 + t834, 1.0))
-    turn_beta_2 = ops.select(spent_beta, t150 * ops.select(t160, t835, 0.0), 0.0)
-    t836 = t833 * heavy_1_beta_2 * 5.960464477539063e-08
-    t837 = t823 * share_beta_2 * t161 / ops.select(t639, t827 + t836, 1.0)
-    t838 = turn_beta_2 + ops.select(spent_beta, t837, 0.0)
-    lean_beta_2 = ops.select(spent_beta, t838 - t801 * (drawn_2 * turn_beta_2), 0.0)
-    t839 = ops.atan2(lean_alpha_2, 1.0) + ops.atan2(lean_beta_2, 1.0)
-    t840 = ops.select(folded, 0.0, t765) + t839
-    t841 = t644 | t632
-    t842 = ops.select(t841 | t635, 1.0 + lean_beta_2 * lean_beta_2, 1.0)
-    t843 = ops.sqrt(t842)
-    t844 = 1.0 / ops.select(t841, t843, 1.0)
-    t845 = t844 * (p_1_alpha_2 * lean_beta_2) + t825 * t844
-    t846 = ops.select(spent_beta, t845, t825)
-    t847 = t644 | t635
-    t848 = ops.select(t847, 1.0 + turn_beta_2 * turn_beta_2, 1.0)
-    t849 = 1.0 / ops.select(t847, t843 * ops.sqrt(t848), 1.0)
-    t850 = t849 + t849 * (turn_beta_2 * lean_beta_2)
-    t851 = lean_beta_2 * t849 - turn_beta_2 * t849
-    v_2_beta_2 = ops.select(spent_beta, v_2_alpha_2 * t850 - v_1_alpha_2 * t851, v_2_alpha_2)
-    v_1_beta_2 = ops.select(spent_beta, v_1_alpha_2 * t850 + v_2_alpha_2 * t851, v_1_alpha_2)
-    t852 = v_1_beta_2 * sigma_uv
-    whole_y_2 = ops.select(parallel, L1 + ops.abs(v_2_beta_2), -t852)
-    t853 = p_1_alpha_2 * t844 - t825 * lean_beta_2 * t844
-    t854 = sigma_uv * ops.select(spent_beta, t853, p_1_alpha_2)
-    t855 = ops.select(parallel, t846 * t174, t854)
-    t856 = ops.vanishing * (ops.vanishing * (16.0 * play_2))
-    below_beta_0_2 = ops.max(whole_y_2 + t855, t856)
-    above_beta_0_2 = ops.max(whole_y_2 - t855, t856)
-    t857 = ops.select(t634, below_beta_0_2 + above_beta_0_2, 1.0)
-    t858 = v_2_beta_2 * ((below_beta_0_2 - above_beta_0_2) / t857)
-    left_along_2 = L1 - ops.abs(t846 - t858)
-    t859 = left_along_2 * 0.5 - ops.abs(left_along_2) * 0.5
-    t860 = ops.select(t634, t852 * t852 + v_2_beta_2 * v_2_beta_2, 1.0)
-    t861 = whole_y_2 * (v_2_beta_2 * t859 / t860 * t188)
-    t862 = ops.select(spent_along, t855 + t861, t855)
-    below_beta_2 = ops.max(whole_y_2 + t862, t856)
-    above_beta_2 = ops.max(whole_y_2 - t862, t856)
-    t863 = below_beta_2 - above_beta_2
-    t864 = ops.select(t426, below_beta_2 + above_beta_2, 1.0)
-    t865 = t846 - v_2_beta_2 * (t863 / t864)
-    below_alpha = ops.max(L1 + t865, t856)
-    above_alpha = ops.max(L1 - t865, t856)
-    t866 = ops.select(t426, below_alpha * above_alpha, 1.0)
-    t867 = ops.atan2(below_alpha - above_alpha, ops.select(t426, 2.0 * ops.sqrt(t866), 1.0))
-    t868 = ops.select(failed, ops.nan, ops.wrap(t840 - t867))
-    t869 = ops.atan2(turn_alpha_2, 1.0) + ops.atan2(turn_beta_2, 1.0)
-    t870 = ops.atan2(s_lag_2, ops.select(t624, c_lag_2, 1.0))
-    t871 = ops.select(short, 0.0, ops.atan2(t760, ops.select(t626, t772, 1.0)))
-    t872 = t870 - t871
-    t873 = t869 - (t839 - t872)
-    t874 = ops.select(t426, below_beta_2 * above_beta_2, 1.0)
-    t875 = ops.atan2(t863, ops.select(t426, 2.0 * ops.sqrt(t874), 1.0))
-    t876 = t867 - t875
-    t877 = ops.select(failed, ops.nan, ops.wrap(t873 + t876))
-    t878 = ops.select(failed, ops.nan, ops.wrap(t840 + t867))
-    t879 = ops.select(failed, ops.nan, ops.wrap(t873 - t876))
-    t880 = ops.wrap(principal_pitch)
+    t832 = ops.select(t640, gain_0_beta_2 * gain_0_beta_2, 1.0)
+    t833 = t828 / ops.select(t640, t828 + t829 + t832, 1.0)
+    share_beta_2 = ops.select(spent_beta, ops.select(t151, t833, 0.0), 0.0)
+    t834 = L1 * play_2
+    t835 = t834 * heavy_0_beta_2 * 5.960464477539063e-08
+    t836 = t823 * (1.0 - share_beta_2) * (1.0 / ops.select(t638, t831 + t835, 1.0))
+    turn_beta_2 = ops.select(spent_beta, t150 * ops.select(t160, t836, 0.0), 0.0)
+    t837 = t834 * heavy_1_beta_2 * 5.960464477539063e-08
+    t838 = t823 * share_beta_2 * t161 / ops.select(t639, t827 + t837, 1.0)
+    t839 = turn_beta_2 + ops.select(spent_beta, t838, 0.0)
+    lean_beta_2 = ops.select(spent_beta, t839 - t801 * (drawn_2 * turn_beta_2), 0.0)
+    t840 = ops.atan2(lean_alpha_2, 1.0) + ops.atan2(lean_beta_2, 1.0)
+    t841 = ops.select(folded, 0.0, t765) + t840
+    t842 = t644 | t632
+    t843 = t842 | t635
+    t844 = ops.select(t843, lean_beta_2 * lean_beta_2, 1.0)
+    t845 = ops.sqrt(ops.select(t843, 1.0 + t844, 1.0))
+    t846 = 1.0 / ops.select(t842, t845, 1.0)
+    t847 = ops.select(t644, p_1_alpha_2 * lean_beta_2, 1.0)
+    t848 = ops.select(spent_beta, t846 * t847 + t825 * t846, t825)
+    t849 = t644 | t635
+    t850 = ops.select(t849, turn_beta_2 * turn_beta_2, 1.0)
+    t851 = t845 * ops.sqrt(ops.select(t849, 1.0 + t850, 1.0))
+    t852 = 1.0 / ops.select(t849, t851, 1.0)
+    t853 = ops.select(t849, turn_beta_2 * lean_beta_2, 1.0)
+    t854 = t852 + t852 * t853
+    t855 = lean_beta_2 * t852 - turn_beta_2 * t852
+    t856 = v_2_alpha_2 * t854 - ops.select(t644, v_1_alpha_2 * t855, 1.0)
+    v_2_beta_2 = ops.select(spent_beta, t856, v_2_alpha_2)
+    t857 = v_1_alpha_2 * t854 + ops.select(t635, v_2_alpha_2 * t855, 1.0)
+    t858 = ops.select(spent_beta, t857, v_1_alpha_2) * sigma_uv
+    whole_y_2 = ops.select(parallel, L1 + ops.abs(v_2_beta_2), -t858)
+    t859 = ops.select(t632, t825 * lean_beta_2, 1.0) * t846
+    p_1_beta_2 = ops.select(spent_beta, p_1_alpha_2 * t846 - t859, p_1_alpha_2)
+    t860 = ops.select(parallel, t848 * t174, sigma_uv * p_1_beta_2)
+    t861 = ops.vanishing * (ops.vanishing * (16.0 * play_2))
+    below_beta_0_2 = ops.max(whole_y_2 + t860, t861)
+    above_beta_0_2 = ops.max(whole_y_2 - t860, t861)
+    t862 = ops.select(t634, below_beta_0_2 + above_beta_0_2, 1.0)
+    t863 = v_2_beta_2 * ((below_beta_0_2 - above_beta_0_2) / t862)
+    left_along_2 = L1 - ops.abs(t848 - ops.select(t634, t863, 1.0))
+    t864 = left_along_2 * 0.5 - ops.abs(left_along_2) * 0.5
+    t865 = ops.select(t634, v_2_beta_2 * v_2_beta_2, 1.0)
+    t866 = ops.select(t634, ops.select(t634, t858 * t858, 1.0) + t865, 1.0)
+    t867 = ops.select(t634, v_2_beta_2 * t864, 1.0) / t866
+    t868 = ops.select(spent_along, t860 + whole_y_2 * (t867 * t188), t860)
+    below_beta_2 = ops.max(whole_y_2 + t868, t861)
+    above_beta_2 = ops.max(whole_y_2 - t868, t861)
+    t869 = below_beta_2 - above_beta_2
+    t870 = ops.select(t426, below_beta_2 + above_beta_2, 1.0)
+    t871 = ops.select(t426, v_2_beta_2 * (t869 / t870), 1.0)
+    t872 = t848 - t871
+    below_alpha = ops.max(L1 + t872, t861)
+    above_alpha = ops.max(L1 - t872, t861)
+    t873 = ops.select(t426, below_alpha * above_alpha, 1.0)
+    t874 = ops.atan2(below_alpha - above_alpha, ops.select(t426, 2.0 * ops.sqrt(t873), 1.0))
+    t875 = ops.select(failed, ops.nan, ops.wrap(t841 - t874))
+    t876 = ops.atan2(turn_alpha_2, 1.0) + ops.atan2(turn_beta_2, 1.0)
+    t877 = ops.atan2(s_lag_2, ops.select(t624, c_lag_2, 1.0))
+    t878 = ops.select(short, 0.0, ops.atan2(t760, ops.select(t626, t772, 1.0)))
+    t879 = t877 - t878
+    t880 = t876 - (t840 - t879)
+    t881 = ops.select(t426, below_beta_2 * above_beta_2, 1.0)
+    t882 = ops.select(t426, 2.0 * ops.sqrt(ops.select(t426, t881, 1.0)), 1.0)
+    t883 = t874 - ops.atan2(t869, t882)
+    t884 = ops.select(failed, ops.nan, ops.wrap(t880 + t883))
+    t885 = ops.select(failed, ops.nan, ops.wrap(t841 + t874))
+    t886 = ops.select(failed, ops.nan, ops.wrap(t880 - t883))
+    t887 = ops.wrap(principal_pitch)
     up_front_elbow_down_2 = t758 - t762
     out_front_elbow_down_2 = t763 + t764
-    t881 = ops.select(t592, out_front_elbow_down_2, 1.0)
-    t882 = ops.select(folded, 0.0, ops.atan2(up_front_elbow_down_2, t881))
-    t883 = t565 | t618 | t620
-    t884 = out_front_elbow_down_2 * out_front_elbow_down_2
-    t885 = up_front_elbow_down_2 * up_front_elbow_down_2
-    t886 = ops.select(t883, ops.sqrt(ops.select(t883, t884 + t885, 1.0)), 1.0)
-    t887 = 1.0 / t886
-    t888 = out_front_elbow_down_2 * t887
-    ctheta2A_front_elbow_down_2 = ops.select(folded, 1.0, t888)
-    stheta2A_front_elbow_down_2 = ops.select(folded, 0.0, up_front_elbow_down_2 * t887)
-    t889 = higher_2 * stheta2A_front_elbow_down_2
-    p_1_front_elbow_down_2 = ahead_2 * ctheta2A_front_elbow_down_2 + t889
+    t888 = ops.select(t592, out_front_elbow_down_2, 1.0)
+    t889 = ops.select(folded, 0.0, ops.atan2(up_front_elbow_down_2, t888))
+    t890 = t565 | t618 | t620
+    t891 = out_front_elbow_down_2 * out_front_elbow_down_2
+    t892 = up_front_elbow_down_2 * up_front_elbow_down_2
+    t893 = ops.select(t890, ops.sqrt(ops.select(t890, t891 + t892, 1.0)), 1.0)
+    t894 = 1.0 / t893
+    t895 = out_front_elbow_down_2 * t894
+    ctheta2A_front_elbow_down_2 = ops.select(folded, 1.0, t895)
+    stheta2A_front_elbow_down_2 = ops.select(folded, 0.0, up_front_elbow_down_2 * t894)
+    t896 = higher_2 * stheta2A_front_elbow_down_2
+    p_1_front_elbow_down_2 = ahead_2 * ctheta2A_front_elbow_down_2 + t896
     s_relative_front_elbow_down_2 = t773 + t774
     c_relative_front_elbow_down_2 = t775 - t776
     v_2_front_elbow_down_2 = L2 * s_relative_front_elbow_down_2 + a3 * c_relative_front_elbow_down_2
-    t890 = p_1_front_elbow_down_2 * v_2_front_elbow_down_2
-    t891 = ahead_2 * stheta2A_front_elbow_down_2
-    t892 = t891 - higher_2 * ctheta2A_front_elbow_down_2
+    t897 = p_1_front_elbow_down_2 * v_2_front_elbow_down_2
+    t898 = ahead_2 * stheta2A_front_elbow_down_2
+    t899 = t898 - higher_2 * ctheta2A_front_elbow_down_2
     v_1_front_elbow_down_2 = L2 * c_relative_front_elbow_down_2 - a3 * s_relative_front_elbow_down_2
-    t893 = ops.abs(t890 + t892 * v_1_front_elbow_down_2)
-    t894 = ops.abs(L1 * v_1_front_elbow_down_2)
-    t895 = t893 - t894
-    t896 = v_2_front_elbow_down_2 * t202
-    t897 = ops.abs(L1 * t896)
+    t900 = ops.abs(t897 + t899 * v_1_front_elbow_down_2)
+    t901 = ops.abs(L1 * v_1_front_elbow_down_2)
+    t902 = t900 - t901
+    t903 = v_2_front_elbow_down_2 * t202
+    t904 = ops.abs(L1 * t903)
     heavy_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t790, 1.0)
-    t898 = ops.select(t617, heavy_1_alpha_front_elbow_down_2, 1.0)
-    gain_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t897 / t898, 0.0)
-    t899 = gain_1_alpha_front_elbow_down_2 * gain_1_alpha_front_elbow_down_2
+    t905 = ops.select(t617, heavy_1_alpha_front_elbow_down_2, 1.0)
+    gain_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t904 / t905, 0.0)
+    t906 = gain_1_alpha_front_elbow_down_2 * gain_1_alpha_front_elbow_down_2
     drawn_front_elbow_down_2 = L1 + L_2W_2 * s_relative_front_elbow_down_2 + a_3W_2 * c_relative_front_elbow_down_2
-    t900 = t896 * drawn_front_elbow_down_2
-    t901 = p_1_front_elbow_down_2 * v_1_front_elbow_down_2
-    t902 = t430 * (t901 - v_2_front_elbow_down_2 * t892)
-    t903 = ops.abs(t900 - t902)
-    t904 = 1.0 - t801 * drawn_front_elbow_down_2
-    t905 = ops.select(t693 | t696 | t699 | t701, fore_2 + L1 * (t904 * t904), 1.0)
+    t907 = t903 * drawn_front_elbow_down_2
+    t908 = p_1_front_elbow_down_2 * v_1_front_elbow_down_2
+    t909 = t430 * (t908 - v_2_front_elbow_down_2 * t899)
+    t910 = ops.abs(t907 - t909)
+    t911 = 1.0 - t801 * drawn_front_elbow_down_2
+    t912 = ops.select(t693 | t696 | t699 | t701, fore_2 + L1 * (t911 * t911), 1.0)
     tilt_front_elbow_down_2 = L_2W_2 * c_relative_front_elbow_down_2 - a_3W_2 * s_relative_front_elbow_down_2
-    t906 = t788 * ops.sqrt(t905) / 2000000.0 + ops.abs(tilt_front_elbow_down_2)
-    t907 = t786 * t906
-    heavy_0_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t907, 1.0)
-    t908 = ops.select(t617, heavy_0_alpha_front_elbow_down_2, 1.0)
-    gain_0_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t903 / t908, 0.0)
-    t909 = gain_0_alpha_front_elbow_down_2 * gain_0_alpha_front_elbow_down_2
-    t910 = t899 / ops.select(t616, t795 + t899 + t909, 1.0)
-    share_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, ops.select(t437, t910, 0.0), 0.0)
-    t911 = t809 * heavy_1_alpha_front_elbow_down_2 * 5.960464477539063e-08
-    t912 = t895 * share_alpha_front_elbow_down_2 * t216 / ops.select(t612, t897 + t911, 1.0)
-    aside_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t912, 0.0)
-    lack_alpha_front_elbow_down_2 = t895 * (1.0 - share_alpha_front_elbow_down_2)
-    t913 = t809 * heavy_0_alpha_front_elbow_down_2 * 5.960464477539063e-08
-    t914 = lack_alpha_front_elbow_down_2 * (1.0 / ops.select(t614, t903 + t913, 1.0))
-    turn_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t443 * ops.select(t448, t914, 0.0), 0.0)
-    t915 = aside_alpha_front_elbow_down_2 + turn_alpha_front_elbow_down_2
-    t916 = drawn_front_elbow_down_2 * turn_alpha_front_elbow_down_2
-    lean_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t915 - t801 * t916, 0.0)
-    t917 = ops.atan2(lean_alpha_front_elbow_down_2, 1.0)
-    t918 = lean_alpha_front_elbow_down_2 * lean_alpha_front_elbow_down_2
-    t919 = ops.select(t605 | t606 | t609 | t610, 1.0 + t918, 1.0)
-    t920 = ops.sqrt(t919)
-    t921 = 1.0 / ops.select(t605 | t610, t920, 1.0)
-    t922 = p_1_front_elbow_down_2 * t921 - t892 * lean_alpha_front_elbow_down_2 * t921
-    p_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t922, p_1_front_elbow_down_2)
-    t923 = t606 | t609
-    t924 = turn_alpha_front_elbow_down_2 * turn_alpha_front_elbow_down_2
-    t925 = t920 * ops.sqrt(ops.select(t923, 1.0 + t924, 1.0))
-    t926 = 1.0 / ops.select(t923, t925, 1.0)
-    t927 = turn_alpha_front_elbow_down_2 * lean_alpha_front_elbow_down_2
-    t928 = t926 + t926 * t927
-    t929 = lean_alpha_front_elbow_down_2 * t926 - turn_alpha_front_elbow_down_2 * t926
-    t930 = v_1_front_elbow_down_2 * t928 + v_2_front_elbow_down_2 * t929
-    v_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t930, v_1_front_elbow_down_2)
-    t931 = ops.abs(L1 * p_1_alpha_front_elbow_down_2) - ops.abs(L1 * v_1_alpha_front_elbow_down_2)
-    t932 = v_2_front_elbow_down_2 * t928 - v_1_front_elbow_down_2 * t929
-    v_2_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t932, v_2_front_elbow_down_2)
-    t933 = v_2_alpha_front_elbow_down_2 * t463
-    t934 = p_1_front_elbow_down_2 * lean_alpha_front_elbow_down_2
-    t935 = ops.select(spent_alpha_front_elbow_down, t921 * t934 + t892 * t921, t892)
-    t936 = t935 * t467
-    t937 = ops.abs(L1 * (t933 + t936))
+    t913 = t788 * ops.sqrt(t912) / 2000000.0 + ops.abs(tilt_front_elbow_down_2)
+    t914 = t786 * t913
+    heavy_0_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t914, 1.0)
+    t915 = ops.select(t617, heavy_0_alpha_front_elbow_down_2, 1.0)
+    gain_0_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t910 / t915, 0.0)
+    t916 = gain_0_alpha_front_elbow_down_2 * gain_0_alpha_front_elbow_down_2
+    t917 = t906 / ops.select(t616, t795 + t906 + t916, 1.0)
+    share_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, ops.select(t437, t917, 0.0), 0.0)
+    t918 = t809 * heavy_1_alpha_front_elbow_down_2 * 5.960464477539063e-08
+    t919 = t902 * share_alpha_front_elbow_down_2 * t216 / ops.select(t612, t904 + t918, 1.0)
+    aside_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t919, 0.0)
+    lack_alpha_front_elbow_down_2 = t902 * (1.0 - share_alpha_front_elbow_down_2)
+    t920 = t809 * heavy_0_alpha_front_elbow_down_2 * 5.960464477539063e-08
+    t921 = lack_alpha_front_elbow_down_2 * (1.0 / ops.select(t614, t910 + t920, 1.0))
+    turn_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t443 * ops.select(t448, t921, 0.0), 0.0)
+    t922 = aside_alpha_front_elbow_down_2 + turn_alpha_front_elbow_down_2
+    t923 = drawn_front_elbow_down_2 * turn_alpha_front_elbow_down_2
+    lean_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t922 - t801 * t923, 0.0)
+    t924 = ops.atan2(lean_alpha_front_elbow_down_2, 1.0)
+    t925 = lean_alpha_front_elbow_down_2 * lean_alpha_front_elbow_down_2
+    t926 = ops.select(t605 | t606 | t609 | t610, 1.0 + t925, 1.0)
+    t927 = ops.sqrt(t926)
+    t928 = 1.0 / ops.select(t605 | t610, t927, 1.0)
+    t929 = p_1_front_elbow_down_2 * t928 - t899 * lean_alpha_front_elbow_down_2 * t928
+    p_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t929, p_1_front_elbow_down_2)
+    t930 = t606 | t609
+    t931 = turn_alpha_front_elbow_down_2 * turn_alpha_front_elbow_down_2
+    t932 = t927 * ops.sqrt(ops.select(t930, 1.0 + t931, 1.0))
+    t933 = 1.0 / ops.select(t930, t932, 1.0)
+    t934 = turn_alpha_front_elbow_down_2 * lean_alpha_front_elbow_down_2
+    t935 = t933 + t933 * t934
+    t936 = lean_alpha_front_elbow_down_2 * t933 - turn_alpha_front_elbow_down_2 * t933
+    t937 = v_1_front_elbow_down_2 * t935 + v_2_front_elbow_down_2 * t936
+    v_1_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t937, v_1_front_elbow_down_2)
+    t938 = ops.abs(L1 * p_1_alpha_front_elbow_down_2) - ops.abs(L1 * v_1_alpha_front_elbow_down_2)
+    t939 = v_2_front_elbow_down_2 * t935 - v_1_front_elbow_down_2 * t936
+    v_2_alpha_front_elbow_down_2 = ops.select(spent_alpha_front_elbow_down, t939, v_2_front_elbow_down_2)
+    t940 = v_2_alpha_front_elbow_down_2 * t463
+    t941 = p_1_front_elbow_down_2 * lean_alpha_front_elbow_down_2
+    t942 = ops.select(spent_alpha_front_elbow_down, t928 * t941 + t899 * t928, t899)
+    t943 = t942 * t467
+    t944 = ops.abs(L1 * (t940 + t943))
     heavy_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t790, 1.0)
-    t938 = ops.select(t604, heavy_1_beta_front_elbow_down_2, 1.0)
-    gain_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t937 / t938, 0.0)
-    t939 = gain_1_beta_front_elbow_down_2 * gain_1_beta_front_elbow_down_2
-    t940 = L1 - drawn_front_elbow_down_2
-    t941 = drawn_front_elbow_down_2 * t933 - t936 * t940
-    t942 = ops.abs(t941)
-    heavy_0_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t907, 1.0)
-    t943 = ops.select(t604, heavy_0_beta_front_elbow_down_2, 1.0)
-    gain_0_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t942 / t943, 0.0)
-    t944 = gain_0_beta_front_elbow_down_2 * gain_0_beta_front_elbow_down_2
-    t945 = t939 / ops.select(t603, t829 + t939 + t944, 1.0)
-    share_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, ops.select(t476, t945, 0.0), 0.0)
-    t946 = t833 * heavy_0_beta_front_elbow_down_2 * 5.960464477539063e-08
-    t947 = t931 * (1.0 - share_beta_front_elbow_down_2) * (1.0 / ops.select(t602, t942 + t946, 1.0))
-    turn_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t475 * ops.select(t484, t947, 0.0), 0.0)
-    t948 = t833 * heavy_1_beta_front_elbow_down_2 * 5.960464477539063e-08
-    t949 = t931 * share_beta_front_elbow_down_2 * t485 / ops.select(t600, t937 + t948, 1.0)
-    aside_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t949, 0.0)
-    t950 = turn_beta_front_elbow_down_2 + aside_beta_front_elbow_down_2
-    t951 = drawn_front_elbow_down_2 * turn_beta_front_elbow_down_2
-    lean_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t950 - t801 * t951, 0.0)
-    t952 = t917 + ops.atan2(lean_beta_front_elbow_down_2, 1.0)
-    t953 = t882 + t952
-    t954 = t607 | t595
-    t955 = lean_beta_front_elbow_down_2 * lean_beta_front_elbow_down_2
-    t956 = ops.sqrt(ops.select(t954 | t598, 1.0 + t955, 1.0))
-    t957 = 1.0 / ops.select(t954, t956, 1.0)
-    t958 = p_1_alpha_front_elbow_down_2 * lean_beta_front_elbow_down_2
-    t959 = ops.select(spent_beta_front_elbow_down, t957 * t958 + t935 * t957, t935)
-    t960 = t607 | t598
-    t961 = turn_beta_front_elbow_down_2 * turn_beta_front_elbow_down_2
-    t962 = t956 * ops.sqrt(ops.select(t960, 1.0 + t961, 1.0))
-    t963 = 1.0 / ops.select(t960, t962, 1.0)
-    t964 = turn_beta_front_elbow_down_2 * lean_beta_front_elbow_down_2
-    t965 = t963 + t963 * t964
-    t966 = lean_beta_front_elbow_down_2 * t963 - turn_beta_front_elbow_down_2 * t963
-    t967 = v_2_alpha_front_elbow_down_2 * t965 - v_1_alpha_front_elbow_down_2 * t966
-    v_2_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t967, v_2_alpha_front_elbow_down_2)
-    t968 = v_1_alpha_front_elbow_down_2 * t965 + v_2_alpha_front_elbow_down_2 * t966
-    v_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t968, v_1_alpha_front_elbow_down_2)
-    t969 = v_1_beta_front_elbow_down_2 * sigma_uv_front_elbow_down
-    whole_y_front_elbow_down_2 = ops.select(parallel_front_elbow_down, L1 + ops.abs(v_2_beta_front_elbow_down_2), -t969)
-    t970 = p_1_alpha_front_elbow_down_2 * t957 - t935 * lean_beta_front_elbow_down_2 * t957
-    p_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t970, p_1_alpha_front_elbow_down_2)
-    t971 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down_2
-    t972 = ops.select(parallel_front_elbow_down, t959 * t507, t971)
-    below_beta_0_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 + t972, t856)
-    above_beta_0_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 - t972, t856)
-    t973 = below_beta_0_front_elbow_down_2 - above_beta_0_front_elbow_down_2
+    t945 = ops.select(t604, heavy_1_beta_front_elbow_down_2, 1.0)
+    gain_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t944 / t945, 0.0)
+    t946 = gain_1_beta_front_elbow_down_2 * gain_1_beta_front_elbow_down_2
+    t947 = ops.select(t603, t946, 1.0)
+    t948 = L1 - drawn_front_elbow_down_2
+    t949 = drawn_front_elbow_down_2 * t940 - t943 * t948
+    t950 = ops.abs(t949)
+    heavy_0_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t914, 1.0)
+    t951 = ops.select(t604, heavy_0_beta_front_elbow_down_2, 1.0)
+    gain_0_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t950 / t951, 0.0)
+    t952 = gain_0_beta_front_elbow_down_2 * gain_0_beta_front_elbow_down_2
+    t953 = ops.select(t603, t829 + t947 + ops.select(t603, t952, 1.0), 1.0)
+    share_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, ops.select(t476, t947 / t953, 0.0), 0.0)
+    t954 = t834 * heavy_0_beta_front_elbow_down_2 * 5.960464477539063e-08
+    t955 = t938 * (1.0 - share_beta_front_elbow_down_2) * (1.0 / ops.select(t602, t950 + t954, 1.0))
+    turn_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t475 * ops.select(t484, t955, 0.0), 0.0)
+    t956 = t834 * heavy_1_beta_front_elbow_down_2 * 5.960464477539063e-08
+    t957 = t938 * share_beta_front_elbow_down_2 * t485 / ops.select(t600, t944 + t956, 1.0)
+    aside_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t957, 0.0)
+    t958 = turn_beta_front_elbow_down_2 + aside_beta_front_elbow_down_2
+    t959 = drawn_front_elbow_down_2 * turn_beta_front_elbow_down_2
+    lean_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t958 - t801 * t959, 0.0)
+    t960 = t924 + ops.atan2(lean_beta_front_elbow_down_2, 1.0)
+    t961 = t889 + t960
+    t962 = t607 | t595
+    t963 = t962 | t598
+    t964 = lean_beta_front_elbow_down_2 * lean_beta_front_elbow_down_2
+    t965 = ops.select(t963, 1.0 + ops.select(t963, t964, 1.0), 1.0)
+    t966 = ops.sqrt(t965)
+    t967 = 1.0 / ops.select(t962, t966, 1.0)
+    t968 = p_1_alpha_front_elbow_down_2 * lean_beta_front_elbow_down_2
+    t969 = t967 * ops.select(t607, t968, 1.0) + t942 * t967
+    t970 = ops.select(spent_beta_front_elbow_down, t969, t942)
+    t971 = t607 | t598
+    t972 = turn_beta_front_elbow_down_2 * turn_beta_front_elbow_down_2
+    t973 = ops.select(t971, 1.0 + ops.select(t971, t972, 1.0), 1.0)
+    t974 = 1.0 / ops.select(t971, t966 * ops.sqrt(t973), 1.0)
+    t975 = turn_beta_front_elbow_down_2 * lean_beta_front_elbow_down_2
+    t976 = t974 + t974 * ops.select(t971, t975, 1.0)
+    t977 = lean_beta_front_elbow_down_2 * t974 - turn_beta_front_elbow_down_2 * t974
+    t978 = ops.select(t607, v_1_alpha_front_elbow_down_2 * t977, 1.0)
+    v_2_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, v_2_alpha_front_elbow_down_2 * t976 - t978, v_2_alpha_front_elbow_down_2)
+    t979 = ops.select(t598, v_2_alpha_front_elbow_down_2 * t977, 1.0)
+    v_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, v_1_alpha_front_elbow_down_2 * t976 + t979, v_1_alpha_front_elbow_down_2)
+    t980 = v_1_beta_front_elbow_down_2 * sigma_uv_front_elbow_down
+    whole_y_front_elbow_down_2 = ops.select(parallel_front_elbow_down, L1 + ops.abs(v_2_beta_front_elbow_down_2), -t980)
+    t981 = ops.select(t595, t942 * lean_beta_front_elbow_down_2, 1.0)
+    t982 = p_1_alpha_front_elbow_down_2 * t967 - t981 * t967
+    p_1_beta_front_elbow_down_2 = ops.select(spent_beta_front_elbow_down, t982, p_1_alpha_front_elbow_down_2)
+    t983 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down_2
+    t984 = ops.select(parallel_front_elbow_down, t970 * t507, t983)
+    below_beta_0_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 + t984, t861)
+    above_beta_0_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 - t984, t861)
+    t985 = below_beta_0_front_elbow_down_2 - above_beta_0_front_elbow_down_2
     total_beta_0_front_elbow_down_2 = below_beta_0_front_elbow_down_2 + above_beta_0_front_elbow_down_2
-    t974 = ops.select(t597, total_beta_0_front_elbow_down_2, 1.0)
-    t975 = t959 - v_2_beta_front_elbow_down_2 * (t973 / t974)
-    left_along_front_elbow_down_2 = L1 - ops.abs(t975)
-    t976 = left_along_front_elbow_down_2 * 0.5 - ops.abs(left_along_front_elbow_down_2) * 0.5
-    t977 = v_2_beta_front_elbow_down_2 * v_2_beta_front_elbow_down_2
-    t978 = v_2_beta_front_elbow_down_2 * t976 / ops.select(t597, t969 * t969 + t977, 1.0)
-    t979 = t972 + whole_y_front_elbow_down_2 * (t978 * t521)
-    t980 = ops.select(spent_along_front_elbow_down, t979, t972)
-    below_beta_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 + t980, t856)
-    above_beta_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 - t980, t856)
-    t981 = below_beta_front_elbow_down_2 - above_beta_front_elbow_down_2
+    t986 = ops.select(t597, total_beta_0_front_elbow_down_2, 1.0)
+    t987 = ops.select(t597, v_2_beta_front_elbow_down_2 * (t985 / t986), 1.0)
+    left_along_front_elbow_down_2 = L1 - ops.abs(t970 - t987)
+    t988 = left_along_front_elbow_down_2 * 0.5 - ops.abs(left_along_front_elbow_down_2) * 0.5
+    t989 = ops.select(t597, v_2_beta_front_elbow_down_2 * t988, 1.0)
+    t990 = v_2_beta_front_elbow_down_2 * v_2_beta_front_elbow_down_2
+    t991 = ops.select(t597, t980 * t980, 1.0) + ops.select(t597, t990, 1.0)
+    t992 = whole_y_front_elbow_down_2 * (t989 / ops.select(t597, t991, 1.0) * t521)
+    t993 = ops.select(spent_along_front_elbow_down, t984 + t992, t984)
+    below_beta_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 + t993, t861)
+    above_beta_front_elbow_down_2 = ops.max(whole_y_front_elbow_down_2 - t993, t861)
+    t994 = below_beta_front_elbow_down_2 - above_beta_front_elbow_down_2
     total_beta_front_elbow_down_2 = below_beta_front_elbow_down_2 + above_beta_front_elbow_down_2
-    t982 = ops.select(t532, total_beta_front_elbow_down_2, 1.0)
-    t983 = t959 - v_2_beta_front_elbow_down_2 * (t981 / t982)
-    below_alpha_front_elbow_down = ops.max(L1 + t983, t856)
-    above_alpha_front_elbow_down = ops.max(L1 - t983, t856)
-    t984 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t985 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
-    t986 = ops.select(t532, 2.0 * ops.sqrt(ops.select(t532, t985, 1.0)), 1.0)
-    t987 = ops.atan2(t984, t986)
-    t988 = ops.select(failed_4, ops.nan, ops.wrap(t953 - t987))
-    t989 = ops.atan2(turn_alpha_front_elbow_down_2, 1.0)
-    t990 = t989 + ops.atan2(turn_beta_front_elbow_down_2, 1.0)
-    t991 = t870 + t871
-    t992 = t990 - (t952 - t991)
-    t993 = below_beta_front_elbow_down_2 * above_beta_front_elbow_down_2
-    t994 = ops.select(t532, 2.0 * ops.sqrt(ops.select(t532, t993, 1.0)), 1.0)
-    t995 = t987 - ops.atan2(t981, t994)
-    t996 = ops.select(failed_4, ops.nan, ops.wrap(t992 + t995))
-    t997 = ops.select(failed_4, ops.nan, ops.wrap(t953 + t987))
-    t998 = ops.select(failed_4, ops.nan, ops.wrap(t992 - t995))
-    t999 = ops.wrap(-ops.select(nowhere, 0.0, t536 + t754))
-    t1000 = ops.atan2(up_2, ops.select(t566, -out_3, 1.0))
+    t995 = ops.select(t532, total_beta_front_elbow_down_2, 1.0)
+    t996 = ops.select(t532, v_2_beta_front_elbow_down_2 * (t994 / t995), 1.0)
+    t997 = t970 - t996
+    below_alpha_front_elbow_down = ops.max(L1 + t997, t861)
+    above_alpha_front_elbow_down = ops.max(L1 - t997, t861)
+    t998 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t999 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t1000 = ops.select(t532, 2.0 * ops.sqrt(ops.select(t532, t999, 1.0)), 1.0)
+    t1001 = ops.atan2(t998, t1000)
+    t1002 = ops.select(failed_4, ops.nan, ops.wrap(t961 - t1001))
+    t1003 = ops.atan2(turn_alpha_front_elbow_down_2, 1.0)
+    t1004 = t1003 + ops.atan2(turn_beta_front_elbow_down_2, 1.0)
+    t1005 = t877 + t878
+    t1006 = t1004 - (t960 - t1005)
+    t1007 = below_beta_front_elbow_down_2 * above_beta_front_elbow_down_2
+    t1008 = ops.select(t532, ops.select(t532, t1007, 1.0), 1.0)
+    t1009 = ops.atan2(t994, ops.select(t532, 2.0 * ops.sqrt(t1008), 1.0))
+    t1010 = t1001 - t1009
+    t1011 = ops.select(failed_4, ops.nan, ops.wrap(t1006 + t1010))
+    t1012 = ops.select(failed_4, ops.nan, ops.wrap(t961 + t1001))
+    t1013 = ops.select(failed_4, ops.nan, ops.wrap(t1006 - t1010))
+    t1014 = ops.wrap(-ops.select(nowhere, 0.0, t536 + t754))
+    t1015 = ops.atan2(up_2, ops.select(t566, -out_3, 1.0))
     ctheta2A_rear_elbow_up_2 = ops.select(folded, 1.0, -t769)
     p_1_rear_elbow_up_2 = t770 + ahead_2 * ctheta2A_rear_elbow_up_2
-    t1001 = t777 - higher_2 * ctheta2A_rear_elbow_up_2
-    t1002 = v_2_front_elbow_down_2 * p_1_rear_elbow_up_2 + v_1_front_elbow_down_2 * t1001
-    room_alpha_rear_elbow_up_2 = t894 - ops.abs(t1002)
+    t1016 = t777 - higher_2 * ctheta2A_rear_elbow_up_2
+    t1017 = v_2_front_elbow_down_2 * p_1_rear_elbow_up_2 + v_1_front_elbow_down_2 * t1016
+    margin_alpha_rear_elbow_up_2 = t901 - ops.abs(t1017)
     heavy_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t790, 1.0)
-    t1003 = ops.select(t589, heavy_1_alpha_rear_elbow_up_2, 1.0)
-    gain_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t897 / t1003, 0.0)
-    t1004 = gain_1_alpha_rear_elbow_up_2 * gain_1_alpha_rear_elbow_up_2
-    t1005 = v_1_front_elbow_down_2 * p_1_rear_elbow_up_2 - v_2_front_elbow_down_2 * t1001
-    t1006 = ops.abs(t900 - t205 * t1005)
-    heavy_0_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t907, 1.0)
-    t1007 = ops.select(t589, heavy_0_alpha_rear_elbow_up_2, 1.0)
-    gain_0_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1006 / t1007, 0.0)
-    t1008 = gain_0_alpha_rear_elbow_up_2 * gain_0_alpha_rear_elbow_up_2
-    t1009 = t1004 / ops.select(t588, t795 + t1004 + t1008, 1.0)
-    share_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, ops.select(t217, t1009, 0.0), 0.0)
-    t1010 = t216 * room_alpha_rear_elbow_up_2 * share_alpha_rear_elbow_up_2
-    t1011 = t809 * heavy_1_alpha_rear_elbow_up_2 * 5.960464477539063e-08
-    t1012 = -(t1010 / ops.select(t585, t897 + t1011, 1.0))
-    aside_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1012, 0.0)
-    t1013 = room_alpha_rear_elbow_up_2 * (1.0 - share_alpha_rear_elbow_up_2)
-    t1014 = t809 * heavy_0_alpha_rear_elbow_up_2 * 5.960464477539063e-08
-    t1015 = t1013 * (1.0 / ops.select(t587, t1006 + t1014, 1.0))
-    turn_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t223 * ops.select(t229, -t1015, 0.0), 0.0)
-    t1016 = aside_alpha_rear_elbow_up_2 + turn_alpha_rear_elbow_up_2
-    t1017 = drawn_front_elbow_down_2 * turn_alpha_rear_elbow_up_2
-    lean_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1016 - t801 * t1017, 0.0)
-    t1018 = lean_alpha_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
-    t1019 = ops.select(t578 | t579 | t582 | t583, 1.0 + t1018, 1.0)
-    t1020 = ops.sqrt(t1019)
-    t1021 = 1.0 / ops.select(t578 | t583, t1020, 1.0)
-    t1022 = p_1_rear_elbow_up_2 * t1021 - t1001 * lean_alpha_rear_elbow_up_2 * t1021
-    p_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1022, p_1_rear_elbow_up_2)
-    t1023 = t579 | t582
-    t1024 = turn_alpha_rear_elbow_up_2 * turn_alpha_rear_elbow_up_2
-    t1025 = ops.sqrt(ops.select(t1023, 1.0 + t1024, 1.0))
-    t1026 = 1.0 / ops.select(t1023, t1020 * t1025, 1.0)
-    t1027 = turn_alpha_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
-    t1028 = t1026 + t1026 * t1027
-    t1029 = lean_alpha_rear_elbow_up_2 * t1026 - turn_alpha_rear_elbow_up_2 * t1026
-    t1030 = v_1_front_elbow_down_2 * t1028 + v_2_front_elbow_down_2 * t1029
-    v_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1030, v_1_front_elbow_down_2)
-    t1031 = ops.abs(L1 * p_1_alpha_rear_elbow_up_2) - ops.abs(L1 * v_1_alpha_rear_elbow_up_2)
-    t1032 = v_2_front_elbow_down_2 * t1028 - v_1_front_elbow_down_2 * t1029
-    v_2_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1032, v_2_front_elbow_down_2)
-    t1033 = v_2_alpha_rear_elbow_up_2 * t244
-    t1034 = p_1_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
-    t1035 = ops.select(spent_alpha_rear_elbow_up, t1021 * t1034 + t1001 * t1021, t1001)
-    t1036 = t1035 * t249
-    t1037 = ops.abs(L1 * (t1033 + t1036))
+    t1018 = ops.select(t589, heavy_1_alpha_rear_elbow_up_2, 1.0)
+    gain_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t904 / t1018, 0.0)
+    t1019 = gain_1_alpha_rear_elbow_up_2 * gain_1_alpha_rear_elbow_up_2
+    t1020 = v_1_front_elbow_down_2 * p_1_rear_elbow_up_2 - v_2_front_elbow_down_2 * t1016
+    t1021 = ops.abs(t907 - t205 * t1020)
+    heavy_0_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t914, 1.0)
+    t1022 = ops.select(t589, heavy_0_alpha_rear_elbow_up_2, 1.0)
+    gain_0_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1021 / t1022, 0.0)
+    t1023 = gain_0_alpha_rear_elbow_up_2 * gain_0_alpha_rear_elbow_up_2
+    t1024 = t1019 / ops.select(t588, t795 + t1019 + t1023, 1.0)
+    share_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, ops.select(t217, t1024, 0.0), 0.0)
+    t1025 = t216 * margin_alpha_rear_elbow_up_2 * share_alpha_rear_elbow_up_2
+    t1026 = t809 * heavy_1_alpha_rear_elbow_up_2 * 5.960464477539063e-08
+    t1027 = -(t1025 / ops.select(t585, t904 + t1026, 1.0))
+    aside_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1027, 0.0)
+    t1028 = margin_alpha_rear_elbow_up_2 * (1.0 - share_alpha_rear_elbow_up_2)
+    t1029 = t809 * heavy_0_alpha_rear_elbow_up_2 * 5.960464477539063e-08
+    t1030 = t1028 * (1.0 / ops.select(t587, t1021 + t1029, 1.0))
+    turn_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t223 * ops.select(t229, -t1030, 0.0), 0.0)
+    t1031 = aside_alpha_rear_elbow_up_2 + turn_alpha_rear_elbow_up_2
+    t1032 = drawn_front_elbow_down_2 * turn_alpha_rear_elbow_up_2
+    lean_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1031 - t801 * t1032, 0.0)
+    t1033 = lean_alpha_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
+    t1034 = ops.select(t578 | t579 | t582 | t583, 1.0 + t1033, 1.0)
+    t1035 = ops.sqrt(t1034)
+    t1036 = 1.0 / ops.select(t578 | t583, t1035, 1.0)
+    t1037 = p_1_rear_elbow_up_2 * t1036 - t1016 * lean_alpha_rear_elbow_up_2 * t1036
+    p_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1037, p_1_rear_elbow_up_2)
+    t1038 = t579 | t582
+    t1039 = turn_alpha_rear_elbow_up_2 * turn_alpha_rear_elbow_up_2
+    t1040 = ops.sqrt(ops.select(t1038, 1.0 + t1039, 1.0))
+    t1041 = 1.0 / ops.select(t1038, t1035 * t1040, 1.0)
+    t1042 = turn_alpha_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
+    t1043 = t1041 + t1041 * t1042
+    t1044 = lean_alpha_rear_elbow_up_2 * t1041 - turn_alpha_rear_elbow_up_2 * t1041
+    t1045 = v_1_front_elbow_down_2 * t1043 + v_2_front_elbow_down_2 * t1044
+    v_1_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1045, v_1_front_elbow_down_2)
+    t1046 = ops.abs(L1 * p_1_alpha_rear_elbow_up_2) - ops.abs(L1 * v_1_alpha_rear_elbow_up_2)
+    t1047 = v_2_front_elbow_down_2 * t1043 - v_1_front_elbow_down_2 * t1044
+    v_2_alpha_rear_elbow_up_2 = ops.select(spent_alpha_rear_elbow_up, t1047, v_2_front_elbow_down_2)
+    t1048 = v_2_alpha_rear_elbow_up_2 * t244
+    t1049 = p_1_rear_elbow_up_2 * lean_alpha_rear_elbow_up_2
+    t1050 = ops.select(spent_alpha_rear_elbow_up, t1036 * t1049 + t1016 * t1036, t1016)
+    t1051 = t1050 * t249
+    t1052 = ops.abs(L1 * (t1048 + t1051))
     heavy_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t790, 1.0)
-    t1038 = ops.select(t577, heavy_1_beta_rear_elbow_up_2, 1.0)
-    gain_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1037 / t1038, 0.0)
-    t1039 = gain_1_beta_rear_elbow_up_2 * gain_1_beta_rear_elbow_up_2
-    t1040 = drawn_front_elbow_down_2 * t1033 - t940 * t1036
-    t1041 = ops.abs(t1040)
-    heavy_0_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t907, 1.0)
-    t1042 = ops.select(t577, heavy_0_beta_rear_elbow_up_2, 1.0)
-    gain_0_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1041 / t1042, 0.0)
-    t1043 = gain_0_beta_rear_elbow_up_2 * gain_0_beta_rear_elbow_up_2
-    t1044 = t1039 / ops.select(t576, t829 + t1039 + t1043, 1.0)
-    share_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, ops.select(t258, t1044, 0.0), 0.0)
-    t1045 = t833 * heavy_0_beta_rear_elbow_up_2 * 5.960464477539063e-08
-    t1046 = t1031 * (1.0 - share_beta_rear_elbow_up_2) * (1.0 / ops.select(t575, t1041 + t1045, 1.0))
-    turn_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t257 * ops.select(t266, t1046, 0.0), 0.0)
-    t1047 = t833 * heavy_1_beta_rear_elbow_up_2 * 5.960464477539063e-08
-    t1048 = t1031 * share_beta_rear_elbow_up_2 * t267 / ops.select(t573, t1037 + t1047, 1.0)
-    aside_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1048, 0.0)
-    t1049 = turn_beta_rear_elbow_up_2 + aside_beta_rear_elbow_up_2
-    t1050 = drawn_front_elbow_down_2 * turn_beta_rear_elbow_up_2
-    lean_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1049 - t801 * t1050, 0.0)
-    t1051 = ops.atan2(lean_alpha_rear_elbow_up_2, 1.0) + ops.atan2(lean_beta_rear_elbow_up_2, 1.0)
-    t1052 = ops.select(folded, 0.0, t1000) + t1051
-    t1053 = t580 | t568
-    t1054 = lean_beta_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
-    t1055 = ops.sqrt(ops.select(t1053 | t571, 1.0 + t1054, 1.0))
-    t1056 = 1.0 / ops.select(t1053, t1055, 1.0)
-    t1057 = p_1_alpha_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
-    t1058 = ops.select(spent_beta_rear_elbow_up, t1056 * t1057 + t1035 * t1056, t1035)
-    t1059 = t580 | t571
-    t1060 = turn_beta_rear_elbow_up_2 * turn_beta_rear_elbow_up_2
-    t1061 = ops.sqrt(ops.select(t1059, 1.0 + t1060, 1.0))
-    t1062 = 1.0 / ops.select(t1059, t1055 * t1061, 1.0)
-    t1063 = turn_beta_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
-    t1064 = t1062 + t1062 * t1063
-    t1065 = lean_beta_rear_elbow_up_2 * t1062 - turn_beta_rear_elbow_up_2 * t1062
-    t1066 = v_2_alpha_rear_elbow_up_2 * t1064 - v_1_alpha_rear_elbow_up_2 * t1065
-    v_2_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1066, v_2_alpha_rear_elbow_up_2)
-    t1067 = v_1_alpha_rear_elbow_up_2 * t1064 + v_2_alpha_rear_elbow_up_2 * t1065
-    v_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1067, v_1_alpha_rear_elbow_up_2)
-    t1068 = v_1_beta_rear_elbow_up_2 * sigma_uv_rear_elbow_up
-    whole_y_rear_elbow_up_2 = ops.select(parallel_rear_elbow_up, L1 + ops.abs(v_2_beta_rear_elbow_up_2), -t1068)
-    t1069 = p_1_alpha_rear_elbow_up_2 * t1056 - t1035 * lean_beta_rear_elbow_up_2 * t1056
-    p_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1069, p_1_alpha_rear_elbow_up_2)
-    t1070 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up_2
-    t1071 = ops.select(parallel_rear_elbow_up, t1058 * t289, t1070)
-    below_beta_0_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 + t1071, t856)
-    above_beta_0_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 - t1071, t856)
-    t1072 = below_beta_0_rear_elbow_up_2 - above_beta_0_rear_elbow_up_2
+    t1053 = ops.select(t577, heavy_1_beta_rear_elbow_up_2, 1.0)
+    gain_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1052 / t1053, 0.0)
+    t1054 = gain_1_beta_rear_elbow_up_2 * gain_1_beta_rear_elbow_up_2
+    t1055 = ops.select(t576, t1054, 1.0)
+    t1056 = drawn_front_elbow_down_2 * t1048 - t948 * t1051
+    t1057 = ops.abs(t1056)
+    heavy_0_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t914, 1.0)
+    t1058 = ops.select(t577, heavy_0_beta_rear_elbow_up_2, 1.0)
+    gain_0_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1057 / t1058, 0.0)
+    t1059 = gain_0_beta_rear_elbow_up_2 * gain_0_beta_rear_elbow_up_2
+    t1060 = ops.select(t576, t829 + t1055 + ops.select(t576, t1059, 1.0), 1.0)
+    share_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, ops.select(t258, t1055 / t1060, 0.0), 0.0)
+    t1061 = t834 * heavy_0_beta_rear_elbow_up_2 * 5.960464477539063e-08
+    t1062 = t1046 * (1.0 - share_beta_rear_elbow_up_2) * (1.0 / ops.select(t575, t1057 + t1061, 1.0))
+    turn_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t257 * ops.select(t266, t1062, 0.0), 0.0)
+    t1063 = t834 * heavy_1_beta_rear_elbow_up_2 * 5.960464477539063e-08
+    t1064 = t1046 * share_beta_rear_elbow_up_2 * t267 / ops.select(t573, t1052 + t1063, 1.0)
+    aside_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1064, 0.0)
+    t1065 = turn_beta_rear_elbow_up_2 + aside_beta_rear_elbow_up_2
+    t1066 = drawn_front_elbow_down_2 * turn_beta_rear_elbow_up_2
+    lean_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1065 - t801 * t1066, 0.0)
+    t1067 = ops.atan2(lean_alpha_rear_elbow_up_2, 1.0) + ops.atan2(lean_beta_rear_elbow_up_2, 1.0)
+    t1068 = ops.select(folded, 0.0, t1015) + t1067
+    t1069 = t580 | t568
+    t1070 = t1069 | t571
+    t1071 = lean_beta_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
+    t1072 = ops.select(t1070, 1.0 + ops.select(t1070, t1071, 1.0), 1.0)
+    t1073 = ops.sqrt(t1072)
+    t1074 = 1.0 / ops.select(t1069, t1073, 1.0)
+    t1075 = p_1_alpha_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
+    t1076 = t1074 * ops.select(t580, t1075, 1.0) + t1050 * t1074
+    t1077 = ops.select(spent_beta_rear_elbow_up, t1076, t1050)
+    t1078 = t580 | t571
+    t1079 = turn_beta_rear_elbow_up_2 * turn_beta_rear_elbow_up_2
+    t1080 = ops.select(t1078, 1.0 + ops.select(t1078, t1079, 1.0), 1.0)
+    t1081 = ops.select(t1078, t1073 * ops.sqrt(t1080), 1.0)
+    t1082 = 1.0 / t1081
+    t1083 = turn_beta_rear_elbow_up_2 * lean_beta_rear_elbow_up_2
+    t1084 = t1082 + t1082 * ops.select(t1078, t1083, 1.0)
+    t1085 = lean_beta_rear_elbow_up_2 * t1082 - turn_beta_rear_elbow_up_2 * t1082
+    t1086 = ops.select(t580, v_1_alpha_rear_elbow_up_2 * t1085, 1.0)
+    v_2_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, v_2_alpha_rear_elbow_up_2 * t1084 - t1086, v_2_alpha_rear_elbow_up_2)
+    t1087 = ops.select(t571, v_2_alpha_rear_elbow_up_2 * t1085, 1.0)
+    v_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, v_1_alpha_rear_elbow_up_2 * t1084 + t1087, v_1_alpha_rear_elbow_up_2)
+    t1088 = v_1_beta_rear_elbow_up_2 * sigma_uv_rear_elbow_up
+    whole_y_rear_elbow_up_2 = ops.select(parallel_rear_elbow_up, L1 + ops.abs(v_2_beta_rear_elbow_up_2), -t1088)
+    t1089 = ops.select(t568, t1050 * lean_beta_rear_elbow_up_2, 1.0)
+    t1090 = p_1_alpha_rear_elbow_up_2 * t1074 - t1089 * t1074
+    p_1_beta_rear_elbow_up_2 = ops.select(spent_beta_rear_elbow_up, t1090, p_1_alpha_rear_elbow_up_2)
+    t1091 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up_2
+    t1092 = ops.select(parallel_rear_elbow_up, t1077 * t289, t1091)
+    below_beta_0_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 + t1092, t861)
+    above_beta_0_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 - t1092, t861)
+    t1093 = below_beta_0_rear_elbow_up_2 - above_beta_0_rear_elbow_up_2
     total_beta_0_rear_elbow_up_2 = below_beta_0_rear_elbow_up_2 + above_beta_0_rear_elbow_up_2
-    t1073 = ops.select(t570, total_beta_0_rear_elbow_up_2, 1.0)
-    t1074 = t1058 - v_2_beta_rear_elbow_up_2 * (t1072 / t1073)
-    left_along_rear_elbow_up_2 = L1 - ops.abs(t1074)
-    t1075 = left_along_rear_elbow_up_2 * 0.5 - ops.abs(left_along_rear_elbow_up_2) * 0.5
-    t1076 = v_2_beta_rear_elbow_up_2 * v_2_beta_rear_elbow_up_2
-    t1077 = v_2_beta_rear_elbow_up_2 * t1075 / ops.select(t570, t1068 * t1068 + t1076, 1.0)
-    t1078 = t1071 + whole_y_rear_elbow_up_2 * (t1077 * t303)
-    t1079 = ops.select(spent_along_rear_elbow_up, t1078, t1071)
-    below_beta_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 + t1079, t856)
-    above_beta_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 - t1079, t856)
-    t1080 = below_beta_rear_elbow_up_2 - above_beta_rear_elbow_up_2
+    t1094 = ops.select(t570, total_beta_0_rear_elbow_up_2, 1.0)
+    t1095 = ops.select(t570, v_2_beta_rear_elbow_up_2 * (t1093 / t1094), 1.0)
+    left_along_rear_elbow_up_2 = L1 - ops.abs(t1077 - t1095)
+    t1096 = left_along_rear_elbow_up_2 * 0.5 - ops.abs(left_along_rear_elbow_up_2) * 0.5
+    t1097 = ops.select(t570, v_2_beta_rear_elbow_up_2 * t1096, 1.0)
+    t1098 = v_2_beta_rear_elbow_up_2 * v_2_beta_rear_elbow_up_2
+    t1099 = ops.select(t570, t1088 * t1088, 1.0) + ops.select(t570, t1098, 1.0)
+    t1100 = whole_y_rear_elbow_up_2 * (t1097 / ops.select(t570, t1099, 1.0) * t303)
+    t1101 = ops.select(spent_along_rear_elbow_up, t1092 + t1100, t1092)
+    below_beta_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 + t1101, t861)
+    above_beta_rear_elbow_up_2 = ops.max(whole_y_rear_elbow_up_2 - t1101, t861)
+    t1102 = below_beta_rear_elbow_up_2 - above_beta_rear_elbow_up_2
     total_beta_rear_elbow_up_2 = below_beta_rear_elbow_up_2 + above_beta_rear_elbow_up_2
-    t1081 = ops.select(t313, total_beta_rear_elbow_up_2, 1.0)
-    t1082 = t1058 - v_2_beta_rear_elbow_up_2 * (t1080 / t1081)
-    below_alpha_rear_elbow_up = ops.max(L1 + t1082, t856)
-    above_alpha_rear_elbow_up = ops.max(L1 - t1082, t856)
-    t1083 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t1084 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    t1085 = ops.select(t313, 2.0 * ops.sqrt(ops.select(t313, t1084, 1.0)), 1.0)
-    t1086 = ops.atan2(t1083, t1085)
-    t1087 = ops.select(failed_2, ops.nan, ops.wrap(t1052 - t1086))
-    t1088 = ops.atan2(turn_alpha_rear_elbow_up_2, 1.0) + ops.atan2(turn_beta_rear_elbow_up_2, 1.0)
-    t1089 = t1088 + (t991 - t1051)
-    t1090 = below_beta_rear_elbow_up_2 * above_beta_rear_elbow_up_2
-    t1091 = ops.select(t313, 2.0 * ops.sqrt(ops.select(t313, t1090, 1.0)), 1.0)
-    t1092 = t1086 - ops.atan2(t1080, t1091)
-    t1093 = ops.select(failed_2, ops.nan, ops.wrap(t1089 + t1092))
-    t1094 = ops.select(failed_2, ops.nan, ops.wrap(t1052 + t1086))
-    t1095 = ops.select(failed_2, ops.nan, ops.wrap(t1089 - t1092))
-    t1096 = ops.select(t539, -out_front_elbow_down_2, 1.0)
-    t1097 = ops.select(folded, 0.0, ops.atan2(up_front_elbow_down_2, t1096))
-    ctheta2A_rear_elbow_down_2 = ops.select(folded, 1.0, -t888)
-    p_1_rear_elbow_down_2 = t889 + ahead_2 * ctheta2A_rear_elbow_down_2
-    t1098 = t891 - higher_2 * ctheta2A_rear_elbow_down_2
-    t1099 = v_2_2 * p_1_rear_elbow_down_2 + v_1_2 * t1098
-    room_alpha_rear_elbow_down_2 = t779 - ops.abs(t1099)
+    t1103 = ops.select(t313, total_beta_rear_elbow_up_2, 1.0)
+    t1104 = ops.select(t313, v_2_beta_rear_elbow_up_2 * (t1102 / t1103), 1.0)
+    t1105 = t1077 - t1104
+    below_alpha_rear_elbow_up = ops.max(L1 + t1105, t861)
+    above_alpha_rear_elbow_up = ops.max(L1 - t1105, t861)
+    t1106 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t1107 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t1108 = ops.select(t313, 2.0 * ops.sqrt(ops.select(t313, t1107, 1.0)), 1.0)
+    t1109 = ops.atan2(t1106, t1108)
+    t1110 = ops.select(failed_2, ops.nan, ops.wrap(t1068 - t1109))
+    t1111 = ops.atan2(turn_alpha_rear_elbow_up_2, 1.0) + ops.atan2(turn_beta_rear_elbow_up_2, 1.0)
+    t1112 = t1111 + (t1005 - t1067)
+    t1113 = below_beta_rear_elbow_up_2 * above_beta_rear_elbow_up_2
+    t1114 = ops.select(t313, ops.select(t313, t1113, 1.0), 1.0)
+    t1115 = ops.atan2(t1102, ops.select(t313, 2.0 * ops.sqrt(t1114), 1.0))
+    t1116 = t1109 - t1115
+    t1117 = ops.select(failed_2, ops.nan, ops.wrap(t1112 + t1116))
+    t1118 = ops.select(failed_2, ops.nan, ops.wrap(t1068 + t1109))
+    t1119 = ops.select(failed_2, ops.nan, ops.wrap(t1112 - t1116))
+    t1120 = ops.select(t539, -out_front_elbow_down_2, 1.0)
+    t1121 = ops.select(folded, 0.0, ops.atan2(up_front_elbow_down_2, t1120))
+    ctheta2A_rear_elbow_down_2 = ops.select(folded, 1.0, -t895)
+    p_1_rear_elbow_down_2 = t896 + ahead_2 * ctheta2A_rear_elbow_down_2
+    t1122 = t898 - higher_2 * ctheta2A_rear_elbow_down_2
+    t1123 = v_2_2 * p_1_rear_elbow_down_2 + v_1_2 * t1122
+    margin_alpha_rear_elbow_down_2 = t779 - ops.abs(t1123)
     heavy_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t790, 1.0)
-    t1100 = ops.select(t563, heavy_1_alpha_rear_elbow_down_2, 1.0)
-    gain_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t782 / t1100, 0.0)
-    t1101 = gain_1_alpha_rear_elbow_down_2 * gain_1_alpha_rear_elbow_down_2
-    t1102 = v_1_2 * p_1_rear_elbow_down_2 - v_2_2 * t1098
-    t1103 = ops.abs(t796 - t322 * t1102)
+    t1124 = ops.select(t563, heavy_1_alpha_rear_elbow_down_2, 1.0)
+    gain_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t782 / t1124, 0.0)
+    t1125 = gain_1_alpha_rear_elbow_down_2 * gain_1_alpha_rear_elbow_down_2
+    t1126 = v_1_2 * p_1_rear_elbow_down_2 - v_2_2 * t1122
+    t1127 = ops.abs(t796 - t322 * t1126)
     heavy_0_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t805, 1.0)
-    t1104 = ops.select(t563, heavy_0_alpha_rear_elbow_down_2, 1.0)
-    gain_0_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1103 / t1104, 0.0)
-    t1105 = gain_0_alpha_rear_elbow_down_2 * gain_0_alpha_rear_elbow_down_2
-    t1106 = t1101 / ops.select(t562, t795 + t1101 + t1105, 1.0)
-    share_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, ops.select(t329, t1106, 0.0), 0.0)
-    t1107 = t121 * room_alpha_rear_elbow_down_2 * share_alpha_rear_elbow_down_2
-    t1108 = t809 * heavy_1_alpha_rear_elbow_down_2 * 5.960464477539063e-08
-    t1109 = -(t1107 / ops.select(t558, t782 + t1108, 1.0))
-    aside_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1109, 0.0)
-    t1110 = room_alpha_rear_elbow_down_2 * (1.0 - share_alpha_rear_elbow_down_2)
-    t1111 = t809 * heavy_0_alpha_rear_elbow_down_2 * 5.960464477539063e-08
-    t1112 = t1110 * (1.0 / ops.select(t560, t1103 + t1111, 1.0))
-    turn_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t335 * ops.select(t341, -t1112, 0.0), 0.0)
-    t1113 = aside_alpha_rear_elbow_down_2 + turn_alpha_rear_elbow_down_2
-    t1114 = t801 * (drawn_2 * turn_alpha_rear_elbow_down_2)
-    lean_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1113 - t1114, 0.0)
-    t1115 = lean_alpha_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
-    t1116 = ops.select(t551 | t552 | t555 | t556, 1.0 + t1115, 1.0)
-    t1117 = ops.sqrt(t1116)
-    t1118 = 1.0 / ops.select(t551 | t556, t1117, 1.0)
-    t1119 = p_1_rear_elbow_down_2 * t1118 - t1098 * lean_alpha_rear_elbow_down_2 * t1118
-    p_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1119, p_1_rear_elbow_down_2)
-    t1120 = t552 | t555
-    t1121 = turn_alpha_rear_elbow_down_2 * turn_alpha_rear_elbow_down_2
-    t1122 = ops.sqrt(ops.select(t1120, 1.0 + t1121, 1.0))
-    t1123 = 1.0 / ops.select(t1120, t1117 * t1122, 1.0)
-    t1124 = turn_alpha_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
-    t1125 = t1123 + t1123 * t1124
-    t1126 = lean_alpha_rear_elbow_down_2 * t1123 - turn_alpha_rear_elbow_down_2 * t1123
-    v_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, v_1_2 * t1125 + v_2_2 * t1126, v_1_2)
-    t1127 = ops.abs(L1 * p_1_alpha_rear_elbow_down_2) - ops.abs(L1 * v_1_alpha_rear_elbow_down_2)
-    v_2_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, v_2_2 * t1125 - v_1_2 * t1126, v_2_2)
-    t1128 = v_2_alpha_rear_elbow_down_2 * t354
-    t1129 = p_1_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
-    t1130 = ops.select(spent_alpha_rear_elbow_down, t1118 * t1129 + t1098 * t1118, t1098)
-    t1131 = t1130 * t358
-    t1132 = ops.abs(L1 * (t1128 + t1131))
+    t1128 = ops.select(t563, heavy_0_alpha_rear_elbow_down_2, 1.0)
+    gain_0_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1127 / t1128, 0.0)
+    t1129 = gain_0_alpha_rear_elbow_down_2 * gain_0_alpha_rear_elbow_down_2
+    t1130 = t1125 / ops.select(t562, t795 + t1125 + t1129, 1.0)
+    share_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, ops.select(t329, t1130, 0.0), 0.0)
+    t1131 = t121 * margin_alpha_rear_elbow_down_2 * share_alpha_rear_elbow_down_2
+    t1132 = t809 * heavy_1_alpha_rear_elbow_down_2 * 5.960464477539063e-08
+    t1133 = -(t1131 / ops.select(t558, t782 + t1132, 1.0))
+    aside_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1133, 0.0)
+    t1134 = margin_alpha_rear_elbow_down_2 * (1.0 - share_alpha_rear_elbow_down_2)
+    t1135 = t809 * heavy_0_alpha_rear_elbow_down_2 * 5.960464477539063e-08
+    t1136 = t1134 * (1.0 / ops.select(t560, t1127 + t1135, 1.0))
+    turn_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t335 * ops.select(t341, -t1136, 0.0), 0.0)
+    t1137 = aside_alpha_rear_elbow_down_2 + turn_alpha_rear_elbow_down_2
+    t1138 = t801 * (drawn_2 * turn_alpha_rear_elbow_down_2)
+    lean_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1137 - t1138, 0.0)
+    t1139 = lean_alpha_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
+    t1140 = ops.select(t551 | t552 | t555 | t556, 1.0 + t1139, 1.0)
+    t1141 = ops.sqrt(t1140)
+    t1142 = 1.0 / ops.select(t551 | t556, t1141, 1.0)
+    t1143 = p_1_rear_elbow_down_2 * t1142 - t1122 * lean_alpha_rear_elbow_down_2 * t1142
+    p_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, t1143, p_1_rear_elbow_down_2)
+    t1144 = t552 | t555
+    t1145 = turn_alpha_rear_elbow_down_2 * turn_alpha_rear_elbow_down_2
+    t1146 = ops.sqrt(ops.select(t1144, 1.0 + t1145, 1.0))
+    t1147 = 1.0 / ops.select(t1144, t1141 * t1146, 1.0)
+    t1148 = turn_alpha_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
+    t1149 = t1147 + t1147 * t1148
+    t1150 = lean_alpha_rear_elbow_down_2 * t1147 - turn_alpha_rear_elbow_down_2 * t1147
+    v_1_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, v_1_2 * t1149 + v_2_2 * t1150, v_1_2)
+    t1151 = ops.abs(L1 * p_1_alpha_rear_elbow_down_2) - ops.abs(L1 * v_1_alpha_rear_elbow_down_2)
+    v_2_alpha_rear_elbow_down_2 = ops.select(spent_alpha_rear_elbow_down, v_2_2 * t1149 - v_1_2 * t1150, v_2_2)
+    t1152 = v_2_alpha_rear_elbow_down_2 * t354
+    t1153 = p_1_rear_elbow_down_2 * lean_alpha_rear_elbow_down_2
+    t1154 = ops.select(spent_alpha_rear_elbow_down, t1142 * t1153 + t1122 * t1142, t1122)
+    t1155 = t1154 * t358
+    t1156 = ops.abs(L1 * (t1152 + t1155))
     heavy_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t790, 1.0)
-    t1133 = ops.select(t550, heavy_1_beta_rear_elbow_down_2, 1.0)
-    gain_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1132 / t1133, 0.0)
-    t1134 = gain_1_beta_rear_elbow_down_2 * gain_1_beta_rear_elbow_down_2
-    t1135 = ops.abs(drawn_2 * t1128 - t830 * t1131)
+    t1157 = ops.select(t550, heavy_1_beta_rear_elbow_down_2, 1.0)
+    gain_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1156 / t1157, 0.0)
+    t1158 = gain_1_beta_rear_elbow_down_2 * gain_1_beta_rear_elbow_down_2
+    t1159 = ops.select(t549, t1158, 1.0)
+    t1160 = ops.abs(drawn_2 * t1152 - t830 * t1155)
     heavy_0_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t805, 1.0)
-    t1136 = ops.select(t550, heavy_0_beta_rear_elbow_down_2, 1.0)
-    gain_0_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1135 / t1136, 0.0)
-    t1137 = gain_0_beta_rear_elbow_down_2 * gain_0_beta_rear_elbow_down_2
-    t1138 = t1134 / ops.select(t549, t829 + t1134 + t1137, 1.0)
-    share_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, ops.select(t367, t1138, 0.0), 0.0)
-    t1139 = t833 * heavy_0_beta_rear_elbow_down_2 * 5.960464477539063e-08
-    t1140 = t1127 * (1.0 - share_beta_rear_elbow_down_2) * (1.0 / ops.select(t548, t1135 + t1139, 1.0))
-    turn_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t366 * ops.select(t375, t1140, 0.0), 0.0)
-    t1141 = t833 * heavy_1_beta_rear_elbow_down_2 * 5.960464477539063e-08
-    t1142 = t1127 * share_beta_rear_elbow_down_2 * t376 / ops.select(t546, t1132 + t1141, 1.0)
-    aside_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1142, 0.0)
-    t1143 = turn_beta_rear_elbow_down_2 + aside_beta_rear_elbow_down_2
-    t1144 = t801 * (drawn_2 * turn_beta_rear_elbow_down_2)
-    lean_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1143 - t1144, 0.0)
-    t1145 = ops.atan2(lean_alpha_rear_elbow_down_2, 1.0) + ops.atan2(lean_beta_rear_elbow_down_2, 1.0)
-    t1146 = t1097 + t1145
-    t1147 = t553 | t541
-    t1148 = lean_beta_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
-    t1149 = ops.sqrt(ops.select(t1147 | t544, 1.0 + t1148, 1.0))
-    t1150 = 1.0 / ops.select(t1147, t1149, 1.0)
-    t1151 = p_1_alpha_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
-    t1152 = ops.select(spent_beta_rear_elbow_down, t1150 * t1151 + t1130 * t1150, t1130)
-    t1153 = t553 | t544
-    t1154 = turn_beta_rear_elbow_down_2 * turn_beta_rear_elbow_down_2
-    t1155 = ops.sqrt(ops.select(t1153, 1.0 + t1154, 1.0))
-    t1156 = 1.0 / ops.select(t1153, t1149 * t1155, 1.0)
-    t1157 = turn_beta_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
-    t1158 = t1156 + t1156 * t1157
-    t1159 = lean_beta_rear_elbow_down_2 * t1156 - turn_beta_rear_elbow_down_2 * t1156
-    t1160 = v_2_alpha_rear_elbow_down_2 * t1158 - v_1_alpha_rear_elbow_down_2 * t1159
-    v_2_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1160, v_2_alpha_rear_elbow_down_2)
-    t1161 = v_1_alpha_rear_elbow_down_2 * t1158 + v_2_alpha_rear_elbow_down_2 * t1159
-    v_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1161, v_1_alpha_rear_elbow_down_2)
-    t1162 = v_1_beta_rear_elbow_down_2 * sigma_uv_rear_elbow_down
-    whole_y_rear_elbow_down_2 = ops.select(parallel_rear_elbow_down, L1 + ops.abs(v_2_beta_rear_elbow_down_2), -t1162)
-    t1163 = p_1_alpha_rear_elbow_down_2 * t1150 - t1130 * lean_beta_rear_elbow_down_2 * t1150
-    p_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1163, p_1_alpha_rear_elbow_down_2)
-    t1164 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down_2
-    t1165 = ops.select(parallel_rear_elbow_down, t1152 * t398, t1164)
-    below_beta_0_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 + t1165, t856)
-    above_beta_0_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 - t1165, t856)
-    t1166 = below_beta_0_rear_elbow_down_2 - above_beta_0_rear_elbow_down_2
+    t1161 = ops.select(t550, heavy_0_beta_rear_elbow_down_2, 1.0)
+    gain_0_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1160 / t1161, 0.0)
+    t1162 = gain_0_beta_rear_elbow_down_2 * gain_0_beta_rear_elbow_down_2
+    t1163 = ops.select(t549, t829 + t1159 + ops.select(t549, t1162, 1.0), 1.0)
+    share_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, ops.select(t367, t1159 / t1163, 0.0), 0.0)
+    t1164 = t834 * heavy_0_beta_rear_elbow_down_2 * 5.960464477539063e-08
+    t1165 = t1151 * (1.0 - share_beta_rear_elbow_down_2) * (1.0 / ops.select(t548, t1160 + t1164, 1.0))
+    turn_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t366 * ops.select(t375, t1165, 0.0), 0.0)
+    t1166 = t834 * heavy_1_beta_rear_elbow_down_2 * 5.960464477539063e-08
+    t1167 = t1151 * share_beta_rear_elbow_down_2 * t376 / ops.select(t546, t1156 + t1166, 1.0)
+    aside_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1167, 0.0)
+    t1168 = turn_beta_rear_elbow_down_2 + aside_beta_rear_elbow_down_2
+    t1169 = t801 * (drawn_2 * turn_beta_rear_elbow_down_2)
+    lean_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1168 - t1169, 0.0)
+    t1170 = ops.atan2(lean_alpha_rear_elbow_down_2, 1.0) + ops.atan2(lean_beta_rear_elbow_down_2, 1.0)
+    t1171 = t1121 + t1170
+    t1172 = t553 | t541
+    t1173 = t1172 | t544
+    t1174 = lean_beta_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
+    t1175 = ops.select(t1173, 1.0 + ops.select(t1173, t1174, 1.0), 1.0)
+    t1176 = ops.sqrt(t1175)
+    t1177 = 1.0 / ops.select(t1172, t1176, 1.0)
+    t1178 = p_1_alpha_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
+    t1179 = t1177 * ops.select(t553, t1178, 1.0) + t1154 * t1177
+    t1180 = ops.select(spent_beta_rear_elbow_down, t1179, t1154)
+    t1181 = t553 | t544
+    t1182 = turn_beta_rear_elbow_down_2 * turn_beta_rear_elbow_down_2
+    t1183 = ops.select(t1181, 1.0 + ops.select(t1181, t1182, 1.0), 1.0)
+    t1184 = ops.select(t1181, t1176 * ops.sqrt(t1183), 1.0)
+    t1185 = 1.0 / t1184
+    t1186 = turn_beta_rear_elbow_down_2 * lean_beta_rear_elbow_down_2
+    t1187 = t1185 + t1185 * ops.select(t1181, t1186, 1.0)
+    t1188 = lean_beta_rear_elbow_down_2 * t1185 - turn_beta_rear_elbow_down_2 * t1185
+    t1189 = ops.select(t553, v_1_alpha_rear_elbow_down_2 * t1188, 1.0)
+    v_2_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, v_2_alpha_rear_elbow_down_2 * t1187 - t1189, v_2_alpha_rear_elbow_down_2)
+    t1190 = ops.select(t544, v_2_alpha_rear_elbow_down_2 * t1188, 1.0)
+    v_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, v_1_alpha_rear_elbow_down_2 * t1187 + t1190, v_1_alpha_rear_elbow_down_2)
+    t1191 = v_1_beta_rear_elbow_down_2 * sigma_uv_rear_elbow_down
+    whole_y_rear_elbow_down_2 = ops.select(parallel_rear_elbow_down, L1 + ops.abs(v_2_beta_rear_elbow_down_2), -t1191)
+    t1192 = ops.select(t541, t1154 * lean_beta_rear_elbow_down_2, 1.0)
+    t1193 = p_1_alpha_rear_elbow_down_2 * t1177 - t1192 * t1177
+    p_1_beta_rear_elbow_down_2 = ops.select(spent_beta_rear_elbow_down, t1193, p_1_alpha_rear_elbow_down_2)
+    t1194 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down_2
+    t1195 = ops.select(parallel_rear_elbow_down, t1180 * t398, t1194)
+    below_beta_0_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 + t1195, t861)
+    above_beta_0_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 - t1195, t861)
+    t1196 = below_beta_0_rear_elbow_down_2 - above_beta_0_rear_elbow_down_2
     total_beta_0_rear_elbow_down_2 = below_beta_0_rear_elbow_down_2 + above_beta_0_rear_elbow_down_2
-    t1167 = ops.select(t543, total_beta_0_rear_elbow_down_2, 1.0)
-    t1168 = t1152 - v_2_beta_rear_elbow_down_2 * (t1166 / t1167)
-    left_along_rear_elbow_down_2 = L1 - ops.abs(t1168)
-    t1169 = left_along_rear_elbow_down_2 * 0.5 - ops.abs(left_along_rear_elbow_down_2) * 0.5
-    t1170 = v_2_beta_rear_elbow_down_2 * v_2_beta_rear_elbow_down_2
-    t1171 = v_2_beta_rear_elbow_down_2 * t1169 / ops.select(t543, t1162 * t1162 + t1170, 1.0)
-    t1172 = t1165 + whole_y_rear_elbow_down_2 * (t1171 * t412)
-    t1173 = ops.select(spent_along_rear_elbow_down, t1172, t1165)
-    below_beta_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 + t1173, t856)
-    above_beta_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 - t1173, t856)
-    t1174 = below_beta_rear_elbow_down_2 - above_beta_rear_elbow_down_2
+    t1197 = ops.select(t543, total_beta_0_rear_elbow_down_2, 1.0)
+    t1198 = ops.select(t543, v_2_beta_rear_elbow_down_2 * (t1196 / t1197), 1.0)
+    left_along_rear_elbow_down_2 = L1 - ops.abs(t1180 - t1198)
+    t1199 = left_along_rear_elbow_down_2 * 0.5 - ops.abs(left_along_rear_elbow_down_2) * 0.5
+    t1200 = ops.select(t543, v_2_beta_rear_elbow_down_2 * t1199, 1.0)
+    t1201 = v_2_beta_rear_elbow_down_2 * v_2_beta_rear_elbow_down_2
+    t1202 = ops.select(t543, t1191 * t1191, 1.0) + ops.select(t543, t1201, 1.0)
+    t1203 = whole_y_rear_elbow_down_2 * (t1200 / ops.select(t543, t1202, 1.0) * t412)
+    t1204 = ops.select(spent_along_rear_elbow_down, t1195 + t1203, t1195)
+    below_beta_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 + t1204, t861)
+    above_beta_rear_elbow_down_2 = ops.max(whole_y_rear_elbow_down_2 - t1204, t861)
+    t1205 = below_beta_rear_elbow_down_2 - above_beta_rear_elbow_down_2
     total_beta_rear_elbow_down_2 = below_beta_rear_elbow_down_2 + above_beta_rear_elbow_down_2
-    t1175 = ops.select(t423, total_beta_rear_elbow_down_2, 1.0)
-    t1176 = t1152 - v_2_beta_rear_elbow_down_2 * (t1174 / t1175)
-    below_alpha_rear_elbow_down = ops.max(L1 + t1176, t856)
-    above_alpha_rear_elbow_down = ops.max(L1 - t1176, t856)
-    t1177 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t1178 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    t1179 = ops.select(t423, 2.0 * ops.sqrt(ops.select(t423, t1178, 1.0)), 1.0)
-    t1180 = ops.atan2(t1177, t1179)
-    t1181 = ops.select(failed_3, ops.nan, ops.wrap(t1146 - t1180))
-    t1182 = ops.atan2(turn_alpha_rear_elbow_down_2, 1.0) + ops.atan2(turn_beta_rear_elbow_down_2, 1.0)
-    t1183 = t1182 + (t872 - t1145)
-    t1184 = below_beta_rear_elbow_down_2 * above_beta_rear_elbow_down_2
-    t1185 = ops.select(t423, 2.0 * ops.sqrt(ops.select(t423, t1184, 1.0)), 1.0)
-    t1186 = t1180 - ops.atan2(t1174, t1185)
-    t1187 = ops.select(failed_3, ops.nan, ops.wrap(t1183 + t1186))
-    t1188 = ops.select(failed_3, ops.nan, ops.wrap(t1146 + t1180))
-    t1189 = ops.select(failed_3, ops.nan, ops.wrap(t1183 - t1186))
-    t1190 = (wrist <= al * ops.determined) | nowhere | folded
-    t1191 = t1190 | short
-    t1192 = spent_along | spent_alpha | spent_beta
-    t1193 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t1194 = t1193 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    t1195 = t1194 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    t1196 = t1195 * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
+    t1206 = ops.select(t423, total_beta_rear_elbow_down_2, 1.0)
+    t1207 = ops.select(t423, v_2_beta_rear_elbow_down_2 * (t1205 / t1206), 1.0)
+    t1208 = t1180 - t1207
+    below_alpha_rear_elbow_down = ops.max(L1 + t1208, t861)
+    above_alpha_rear_elbow_down = ops.max(L1 - t1208, t861)
+    t1209 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t1210 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t1211 = ops.select(t423, 2.0 * ops.sqrt(ops.select(t423, t1210, 1.0)), 1.0)
+    t1212 = ops.atan2(t1209, t1211)
+    t1213 = ops.select(failed_3, ops.nan, ops.wrap(t1171 - t1212))
+    t1214 = ops.atan2(turn_alpha_rear_elbow_down_2, 1.0) + ops.atan2(turn_beta_rear_elbow_down_2, 1.0)
+    t1215 = t1214 + (t879 - t1170)
+    t1216 = below_beta_rear_elbow_down_2 * above_beta_rear_elbow_down_2
+    t1217 = ops.select(t423, ops.select(t423, t1216, 1.0), 1.0)
+    t1218 = ops.atan2(t1205, ops.select(t423, 2.0 * ops.sqrt(t1217), 1.0))
+    t1219 = t1212 - t1218
+    t1220 = ops.select(failed_3, ops.nan, ops.wrap(t1215 + t1219))
+    t1221 = ops.select(failed_3, ops.nan, ops.wrap(t1171 + t1212))
+    t1222 = ops.select(failed_3, ops.nan, ops.wrap(t1215 - t1219))
+    t1223 = (wrist <= al * ops.determined) | nowhere | folded
+    t1224 = t1223 | short
+    t1225 = spent_along | spent_alpha | spent_beta
+    t1226 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t1227 = t1226 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    t1228 = t1227 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    t1229 = t1228 * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
     below_alpha_2 = ops.max(t195, t178)
     above_alpha_2 = ops.max(t197, t178)
-    t1197 = (below_alpha_2 - above_alpha_2) / (below_alpha_2 + above_alpha_2)
-    t1198 = ops.abs(p_1_beta + v_1_beta * t193) + ops.abs(t194 - L1 * t1197)
-    t1199 = 1125899906842624.0 * ops.select(t1192, t1198, 0.0)
-    t1200 = ops.select(t1192, t1196, 1.0) <= ops.determined * t1199
-    t1201 = ops.status(invalid, unreachable, t1191 | parallel | t1200)
-    t1202 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t1203 = t1202 | spent_beta_front_elbow_down
-    t1204 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t527
+    t1230 = (below_alpha_2 - above_alpha_2) / (below_alpha_2 + above_alpha_2)
+    t1231 = ops.abs(p_1_beta + v_1_beta * t193) + ops.abs(t194 - L1 * t1230)
+    t1232 = 1125899906842624.0 * ops.select(t1225, t1231, 0.0)
+    t1233 = ops.select(t1225, t1229, 1.0) <= ops.determined * t1232
+    t1234 = ops.status(invalid, unreachable, t1224 | parallel | t1233)
+    t1235 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t1236 = t1235 | spent_beta_front_elbow_down
+    t1237 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t527
     below_alpha_front_elbow_down_2 = ops.max(t529, t178)
     above_alpha_front_elbow_down_2 = ops.max(t531, t178)
-    t1205 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
+    t1238 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
     total_alpha_front_elbow_down = below_alpha_front_elbow_down_2 + above_alpha_front_elbow_down_2
-    t1206 = t528 - L1 * (t1205 / total_alpha_front_elbow_down)
-    missed_front_elbow_down = ops.select(t1203, ops.abs(t1204) + ops.abs(t1206), 0.0)
-    t1207 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
-    t1208 = t1191 | parallel_front_elbow_down | (ops.select(t1203, t1196, 1.0) <= t1207)
-    t1209 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t1210 = t1209 | spent_beta_rear_elbow_up
-    t1211 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t308
+    t1239 = t528 - L1 * (t1238 / total_alpha_front_elbow_down)
+    missed_front_elbow_down = ops.select(t1236, ops.abs(t1237) + ops.abs(t1239), 0.0)
+    t1240 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
+    t1241 = t1224 | parallel_front_elbow_down | (ops.select(t1236, t1229, 1.0) <= t1240)
+    t1242 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t1243 = t1242 | spent_beta_rear_elbow_up
+    t1244 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t308
     below_alpha_rear_elbow_up_2 = ops.max(t310, t178)
     above_alpha_rear_elbow_up_2 = ops.max(t312, t178)
-    t1212 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
+    t1245 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up_2 + above_alpha_rear_elbow_up_2
-    t1213 = t309 - L1 * (t1212 / total_alpha_rear_elbow_up)
-    missed_rear_elbow_up = ops.select(t1210, ops.abs(t1211) + ops.abs(t1213), 0.0)
-    t1214 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
-    t1215 = t1191 | parallel_rear_elbow_up | (ops.select(t1210, t1196, 1.0) <= t1214)
-    t1216 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t1217 = t1216 | spent_beta_rear_elbow_down
-    t1218 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t418
+    t1246 = t309 - L1 * (t1245 / total_alpha_rear_elbow_up)
+    missed_rear_elbow_up = ops.select(t1243, ops.abs(t1244) + ops.abs(t1246), 0.0)
+    t1247 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
+    t1248 = t1224 | parallel_rear_elbow_up | (ops.select(t1243, t1229, 1.0) <= t1247)
+    t1249 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t1250 = t1249 | spent_beta_rear_elbow_down
+    t1251 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t418
     below_alpha_rear_elbow_down_2 = ops.max(t420, t178)
     above_alpha_rear_elbow_down_2 = ops.max(t422, t178)
-    t1219 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
+    t1252 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down_2 + above_alpha_rear_elbow_down_2
-    t1220 = t419 - L1 * (t1219 / total_alpha_rear_elbow_down)
-    missed_rear_elbow_down = ops.select(t1217, ops.abs(t1218) + ops.abs(t1220), 0.0)
-    t1221 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
-    t1222 = t1191 | parallel_rear_elbow_down | (ops.select(t1217, t1196, 1.0) <= t1221)
+    t1253 = t419 - L1 * (t1252 / total_alpha_rear_elbow_down)
+    missed_rear_elbow_down = ops.select(t1250, ops.abs(t1251) + ops.abs(t1253), 0.0)
+    t1254 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
+    t1255 = t1224 | parallel_rear_elbow_down | (ops.select(t1250, t1229, 1.0) <= t1254)
     return (
         ops.select(failed, ops.nan, t755),
-        t868,
-        t877,
-        t878,
-        t879,
-        ops.select(failed, ops.nan, t880),
+        t875,
+        t884,
+        t885,
+        t886,
+        ops.select(failed, ops.nan, t887),
         ops.select(failed_4, ops.nan, t755),
-        t988,
-        t996,
-        t997,
-        t998,
-        ops.select(failed_4, ops.nan, t880),
-        ops.select(failed_2, ops.nan, t999),
-        t1087,
-        t1093,
-        t1094,
-        t1095,
-        ops.select(failed_2, ops.nan, t880),
-        ops.select(failed_3, ops.nan, t999),
-        t1181,
-        t1187,
-        t1188,
-        t1189,
-        ops.select(failed_3, ops.nan, t880),
-        t1201,
-        ops.status(invalid, unreachable_4, t1208),
-        ops.status(invalid, unreachable_2, t1215),
-        ops.status(invalid, unreachable_3, t1222),
+        t1002,
+        t1011,
+        t1012,
+        t1013,
+        ops.select(failed_4, ops.nan, t887),
+        ops.select(failed_2, ops.nan, t1014),
+        t1110,
+        t1117,
+        t1118,
+        t1119,
+        ops.select(failed_2, ops.nan, t887),
+        ops.select(failed_3, ops.nan, t1014),
+        t1213,
+        t1220,
+        t1221,
+        t1222,
+        ops.select(failed_3, ops.nan, t887),
+        t1234,
+        ops.status(invalid, unreachable_4, t1241),
+        ops.status(invalid, unreachable_2, t1248),
+        ops.status(invalid, unreachable_3, t1255),
     )
 
 
@@ -3055,7 +3088,6 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (4, 6)), _runtime.Spec("status", (4,), "status")),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 4),
 )
 
 
@@ -3139,7 +3171,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Spec("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
-    _runtime.Size((2, 3, 4), ((0, 1),), 2),
+    _runtime.Size((2, 3, 4), ((0, 1),), 4),
 )
 
 

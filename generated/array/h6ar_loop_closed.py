@@ -9,10 +9,10 @@
 #   skeleton: 133 compare and select, 136 add, 27 divide, 203 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 119 compare and select, 190 add, 59 divide, 323 multiply, 6 sincos, 8 sqrt
+#   jacobian: 131 compare and select, 190 add, 59 divide, 323 multiply, 6 sincos, 8 sqrt
 #   determinant: 85 compare and select, 94 add, 28 divide, 157 multiply, 5 sincos, 8 sqrt
 #   singularities: 89 compare and select, 94 add, 27 divide, 147 multiply, 5 sincos, 8 sqrt
-#   ik: 2445 compare and select, 990 add, 28 atan2, 267 divide, 1467 multiply, 1 reduce to a turn,
+#   ik: 2469 compare and select, 990 add, 28 atan2, 267 divide, 1467 multiply, 1 reduce to a turn,
 #     3 sincos, 70 sqrt
 #   wrist_length: 25 compare and select, 6 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -325,7 +325,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 4),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 8),
 )
 
 
@@ -567,7 +567,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Spec("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 4),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 8),
 )
 
 
@@ -876,7 +876,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (18, 3)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1)), 4),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1)), 8),
 )
 
 
@@ -1247,112 +1247,116 @@ def _jacobian(
     t124 = ops.select(t57, d * (1.0 + t81 / ops.select(t57, t52, 1.0)), 1.0)
     t125 = 1.0 / t124
     inner_52 = t125 * t119
-    t126 = c1 * t114
+    t126 = ops.select(t57, t109 * inner_42, 1.0) + t123 * inner_52
+    t127 = c1 * t114
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t127 = L2 * ctheta23A - a3 * stheta23A
-    rate_12 = (virtual_11 * t113 + t127 * mid_22) / t117
-    t128 = t109 * inner_42 + t123 * inner_52 + t126 * rate_12
+    t128 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (virtual_11 * t113 + t128 * mid_22) / t117
     t129 = ctheta23A * t97 - stheta23A * t95
     outer_13 = c1 * t129
-    t130 = ops.select(failed, ops.nan, -(t128 + t118 * outer_13))
-    t131 = (mid_13 * virtual_11 - mid_23 * t127) / t117
+    t130 = ops.select(failed, ops.nan, -(t126 + t127 * rate_12 + t118 * outer_13))
+    t131 = (mid_13 * virtual_11 - mid_23 * t128) / t117
     rate_23 = (mid_13 * outer_32 + mid_23 * t114) / t117
     line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t84 * rate_23
     t132 = mid_23 * ctheta23A - mid_13 * stheta23A + t80 * rate_23
     t133 = t112 * line_13 + turn_12 * t132
-    t134 = t125 * line_13
-    t135 = t126 * t131 + t133 * t109 + t134 * t123 + rate_23 * outer_13
-    t136 = s2L_half * c2L_half
-    t137 = t136 + t136
-    t138 = c2L_half * c2L_half - s2L_half * s2L_half
-    c2L3L = t36 * t138 - t35 * t137
-    s2L3L = t36 * t137 + t35 * t138
+    t134 = t127 * t131 + ops.select(t57, t133 * t109, 1.0)
+    t135 = t125 * line_13
+    t136 = ops.select(failed, ops.nan, t134 + t135 * t123 + rate_23 * outer_13)
+    t137 = s2L_half * c2L_half
+    t138 = t137 + t137
+    t139 = c2L_half * c2L_half - s2L_half * s2L_half
+    c2L3L = t36 * t139 - t35 * t138
+    s2L3L = t36 * t138 + t35 * t139
     mid_15 = L2 * c2L3L * 0.5 - a3 * s2L3L * 0.5
-    gap_14 = L1 * t137 * 0.5 - mid_15
+    gap_14 = L1 * t138 * 0.5 - mid_15
     mid_25 = L2 * s2L3L * 0.5 + a3 * c2L3L * 0.5
-    mid_24 = L1 * t138 * 0.5 + mid_25
-    t139 = (outer_32 * gap_14 - t114 * mid_24) / t117
-    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t84 * t139
-    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t80 * t139
-    t140 = t112 * line_14 - turn_12 * line_24
-    t141 = t125 * line_14
-    rate_14 = (virtual_11 * gap_14 + t127 * mid_24) / t117
-    t142 = t109 * t140 + t123 * t141 - t126 * rate_14 - outer_13 * t139
-    t143 = (mid_15 * virtual_11 - mid_25 * t127) / t117
+    mid_24 = L1 * t139 * 0.5 + mid_25
+    t140 = (outer_32 * gap_14 - t114 * mid_24) / t117
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t84 * t140
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t80 * t140
+    t141 = t112 * line_14 - turn_12 * line_24
+    t142 = t125 * line_14
+    t143 = ops.select(t57, t109 * t141, 1.0) + t123 * t142
+    rate_14 = (virtual_11 * gap_14 + t128 * mid_24) / t117
+    t144 = ops.select(failed, ops.nan, t143 - t127 * rate_14 - outer_13 * t140)
+    t145 = (mid_15 * virtual_11 - mid_25 * t128) / t117
     rate_25 = (mid_15 * outer_32 + mid_25 * t114) / t117
-    t144 = mid_15 * ctheta23A + mid_25 * stheta23A - t84 * rate_25
+    t146 = mid_15 * ctheta23A + mid_25 * stheta23A - t84 * rate_25
     line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t80 * rate_25
-    inner_45 = t112 * t144 + turn_12 * line_25
-    inner_55 = t125 * t144
-    t145 = t126 * t143 - inner_45 * t109 - inner_55 * t123
-    t146 = ops.select(failed, ops.nan, t145 + rate_25 * outer_13)
-    t147 = t88 * t83 - t56 * t87
-    t148 = t88 * c_phi + t56 * t93
-    t149 = t56 * t105 - ctheta23A * t148
-    t150 = ops.select(failed, ops.nan, s1 * t147 - c1 * t149)
-    t151 = s1 * t91
-    t152 = c1 * t87 - s1 * t106
-    outer_24 = c1 * t99 + s1 * t102 + t104 * t152 / t108
-    t153 = ctheta23A * t151 + c1 * t94 + t121 * t152 / t122
-    t154 = s1 * t114
-    t155 = inner_42 * outer_24 - inner_52 * t153 - t154 * rate_12
+    inner_45 = t112 * t146 + turn_12 * line_25
+    t147 = t127 * t145 - ops.select(t57, inner_45 * t109, 1.0)
+    inner_55 = t125 * t146
+    t148 = ops.select(failed, ops.nan, t147 - inner_55 * t123 + rate_25 * outer_13)
+    t149 = t88 * t83 - t56 * t87
+    t150 = t88 * c_phi + t56 * t93
+    t151 = t56 * t105 - ctheta23A * t150
+    t152 = ops.select(failed, ops.nan, s1 * t149 - c1 * t151)
+    t153 = s1 * t91
+    t154 = c1 * t87 - s1 * t106
+    outer_24 = c1 * t99 + s1 * t102 + t104 * t154 / t108
+    t155 = ctheta23A * t153 + c1 * t94 + t121 * t154 / t122
+    t156 = ops.select(t57, inner_42 * outer_24, 1.0) - inner_52 * t155
+    t157 = s1 * t114
     outer_23 = s1 * t129
-    t156 = ops.select(failed, ops.nan, t155 - t118 * outer_23)
-    t157 = t131 * t154 - t133 * outer_24 + t134 * t153 + rate_23 * outer_23
-    t158 = t140 * outer_24 - t141 * t153 + t154 * rate_14
-    t159 = ops.select(failed, ops.nan, -(t158 + t139 * outer_23))
-    t160 = t143 * t154 + inner_45 * outer_24 - inner_55 * t153
-    t161 = ops.select(failed, ops.nan, t160 + rate_25 * outer_23)
-    t162 = ops.select(failed, ops.nan, -(c1 * t147 + s1 * t149))
-    t163 = ops.select(failed, ops.nan, 0.0)
-    t164 = ctheta23A * c_psi
-    t165 = t164 + stheta23A * t93
-    t166 = stheta23A * t100 - ctheta23A * t101 + t104 * t165 / t108
-    t167 = stheta23A * t91 + t121 * t165 / t122
-    t168 = inner_42 * t166 - inner_52 * t167 + outer_32 * rate_12
-    t169 = ops.select(failed, ops.nan, t168 - outer_33 * t118)
-    t170 = rate_23 * outer_33 - (outer_32 * t131 + t133 * t166 - t134 * t167)
-    t171 = t140 * t166 - t141 * t167 - outer_32 * rate_14
-    t172 = ops.select(failed, ops.nan, -(t171 + outer_33 * t139))
-    t173 = outer_32 * t143 - inner_45 * t166 + inner_55 * t167
-    t174 = ops.select(failed, ops.nan, rate_25 * outer_33 - t173)
-    t175 = ops.select(failed, ops.nan, t56 * t164 + stheta23A * t148)
+    t158 = ops.select(failed, ops.nan, t156 - t157 * rate_12 - t118 * outer_23)
+    t159 = t131 * t157 - ops.select(t57, t133 * outer_24, 1.0)
+    t160 = ops.select(failed, ops.nan, t159 + t135 * t155 + rate_23 * outer_23)
+    t161 = ops.select(t57, t141 * outer_24, 1.0) - t142 * t155
+    t162 = ops.select(failed, ops.nan, -(t161 + t157 * rate_14 + t140 * outer_23))
+    t163 = t145 * t157 + ops.select(t57, inner_45 * outer_24, 1.0)
+    t164 = ops.select(failed, ops.nan, t163 - inner_55 * t155 + rate_25 * outer_23)
+    t165 = ops.select(failed, ops.nan, -(c1 * t149 + s1 * t151))
+    t166 = ops.select(failed, ops.nan, 0.0)
+    t167 = ctheta23A * c_psi
+    t168 = t167 + stheta23A * t93
+    t169 = stheta23A * t100 - ctheta23A * t101 + t104 * t168 / t108
+    t170 = stheta23A * t91 + t121 * t168 / t122
+    t171 = ops.select(t57, inner_42 * t169, 1.0) - inner_52 * t170
+    t172 = ops.select(failed, ops.nan, t171 + outer_32 * rate_12 - outer_33 * t118)
+    t173 = outer_32 * t131 + ops.select(t57, t133 * t169, 1.0)
+    t174 = ops.select(failed, ops.nan, rate_23 * outer_33 - (t173 - t135 * t170))
+    t175 = ops.select(t57, t141 * t169, 1.0) - t142 * t170
+    t176 = -(t175 - outer_32 * rate_14 + outer_33 * t140)
+    t177 = outer_32 * t145 - ops.select(t57, inner_45 * t169, 1.0)
+    t178 = rate_25 * outer_33 - (t177 + inner_55 * t170)
+    t179 = ops.select(failed, ops.nan, t56 * t167 + stheta23A * t150)
     return (
         ops.select(failed, ops.nan, t92 - s1 * t98),
         t130,
-        ops.select(failed, ops.nan, t135),
-        ops.select(failed, ops.nan, t142),
-        t146,
-        t150,
-        ops.select(failed, ops.nan, t151 + c1 * t98),
-        t156,
-        ops.select(failed, ops.nan, t157),
-        t159,
-        t161,
+        t136,
+        t144,
+        t148,
+        t152,
+        ops.select(failed, ops.nan, t153 + c1 * t98),
+        t158,
+        t160,
         t162,
-        t163,
-        t169,
-        ops.select(failed, ops.nan, t170),
+        t164,
+        t165,
+        t166,
         t172,
         t174,
-        t175,
-        t163,
+        ops.select(failed, ops.nan, t176),
+        ops.select(failed, ops.nan, t178),
+        t179,
+        t166,
         ops.select(failed, ops.nan, inner_42),
         ops.select(failed, ops.nan, -t133),
-        ops.select(failed, ops.nan, -t140),
-        ops.select(failed, ops.nan, inner_45),
-        t163,
-        t163,
-        ops.select(failed, ops.nan, inner_52),
-        ops.select(failed, ops.nan, -t134),
         ops.select(failed, ops.nan, -t141),
+        ops.select(failed, ops.nan, inner_45),
+        t166,
+        t166,
+        ops.select(failed, ops.nan, inner_52),
+        ops.select(failed, ops.nan, -t135),
+        ops.select(failed, ops.nan, -t142),
         ops.select(failed, ops.nan, inner_55),
-        t163,
-        t163,
-        t163,
-        t163,
-        t163,
-        t163,
+        t166,
+        t166,
+        t166,
+        t166,
+        t166,
+        t166,
         ops.select(failed, ops.nan, 1.0),
     )
 
@@ -1364,7 +1368,6 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -1572,7 +1575,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 7),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 14),
 )
 
 
@@ -1781,7 +1784,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
+    _runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -1960,8 +1963,8 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     N_mid = t28 * ops.select(t75, small_mid, large_mid)
     t79 = gap - N_mid
     nearer_right = t78 - t79
-    room_right = ops.min(farther_right, nearer_right)
-    t80 = ops.max(-(room_right * 9.094947017729282e-13), room_right)
+    margin_right = ops.min(farther_right, nearer_right)
+    t80 = ops.max(-(margin_right * 9.094947017729282e-13), margin_right)
     t81 = ops.vanishing * t50
     spent_right = t80 <= t81
     t82 = ops.select(nearer_right <= farther_right, 1.0, -1.0)
@@ -1984,15 +1987,15 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     heavy_1_right = ops.select(spent_right, t94, 1.0)
     gain_1_right = ops.select(spent_right, t93 / heavy_1_right, 0.0)
     t95 = ops.select(spent_right, gain_0_right + gain_1_right, 0.0)
-    t96 = -(ops.feasibility * (t50 + t95)) <= room_right
+    t96 = -(ops.feasibility * (t50 + t95)) <= margin_right
     h_left_0 = point_21 + t67
     r_left_0 = point_11 + t69
     t97 = h_left_0 * h_left_0 + r_left_0 * r_left_0
     t98 = t51 * t97 < t71
     farther_left = ops.select(t98, t97 - t74, t77 + t78)
     t99 = t78 + t79
-    room_left = ops.min(farther_left, -t99)
-    t100 = ops.max(-(room_left * 9.094947017729282e-13), room_left)
+    margin_left = ops.min(farther_left, -t99)
+    t100 = ops.max(-(margin_left * 9.094947017729282e-13), margin_left)
     spent_left = t100 <= t81
     t101 = ops.select(-t99 <= farther_left, 1.0, -1.0)
     t102 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t101
@@ -2004,15 +2007,15 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     heavy_1_left = ops.select(spent_left, t94, 1.0)
     gain_1_left = ops.select(spent_left, t104 / heavy_1_left, 0.0)
     t105 = ops.select(spent_left, gain_0_left + gain_1_left, 0.0)
-    t106 = -(ops.feasibility * (t50 + t105)) <= room_left
+    t106 = -(ops.feasibility * (t50 + t105)) <= margin_left
     t107 = -(ops.feasibility * t50)
     t108 = spent_left | spent_right
-    t109 = room_left < 0.0
+    t109 = margin_left < 0.0
     t110 = gain_1_left * gain_1_left
     t111 = t51 * (play * play)
     t112 = t110 / (t110 + t111 + gain_0_left * gain_0_left)
     share_left = ops.select(spent_left, ops.select(t109, t112, 0.0), 0.0)
-    t113 = room_left * (1.0 - share_left)
+    t113 = margin_left * (1.0 - share_left)
     t114 = slope_left <= 0.0
     t115 = heavy_0_left * t113
     t116 = drawn * drawn
@@ -2036,11 +2039,11 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     far_back_1_both = ops.select(t108, ops.select(t132, t131, 0.0), 0.0)
     t133 = ops.select(t114, ops.select(t124, t123 * t125, 0.0), ops.select(t126, far_back_1_both, 0.0))
     t134 = slope_right <= 0.0
-    t135 = room_right < 0.0
+    t135 = margin_right < 0.0
     t136 = gain_1_right * gain_1_right
     t137 = t136 / (t111 + t136 + gain_0_right * gain_0_right)
     share_right = ops.select(spent_right, ops.select(t135, t137, 0.0), 0.0)
-    t138 = room_right * (1.0 - share_right)
+    t138 = margin_right * (1.0 - share_right)
     t139 = heavy_0_right * t138
     t140 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
     t141 = t87 * (t82 * t116 * t140)
@@ -2104,10 +2107,10 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     turn_both = ops.select(t108, t188, 0.0)
     t189 = ops.sign(-t103)
     t190 = t104 + t50 * heavy_1_left * 5.960464477539063e-08
-    aside_left = ops.select(spent_left, -(room_left * share_left * t189 / t190), 0.0)
+    aside_left = ops.select(spent_left, -(margin_left * share_left * t189 / t190), 0.0)
     t191 = ops.sign(-t92)
     t192 = t93 + t50 * heavy_1_right * 5.960464477539063e-08
-    aside_right = ops.select(spent_right, -(room_right * share_right * t191 / t192), 0.0)
+    aside_right = ops.select(spent_right, -(margin_right * share_right * t191 / t192), 0.0)
     t193 = ops.abs(aside_left) <= ops.abs(aside_right)
     t194 = turn_both + ops.select(t193, aside_right, aside_left)
     lean = ops.select(t108, t194 - t87 * (drawn * turn_both), 0.0)
@@ -2179,9 +2182,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     N_mid_front_elbow_down_alike = t28 * t235
     t236 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     nearer_right_rear_elbow_up_alike = t234 + t236
-    room_right_rear_elbow_up_alike = ops.min(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t237 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t238 = ops.max(-t237, room_right_rear_elbow_up_alike)
+    margin_right_rear_elbow_up_alike = ops.min(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t237 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t238 = ops.max(-t237, margin_right_rear_elbow_up_alike)
     spent_right_rear_elbow_up_alike = t238 <= t81
     t239 = L1 + L_2W * s_relative_front_elbow_down_alike
     drawn_front_elbow_down_alike = t239 + a_3W * c_relative_front_elbow_down_alike
@@ -2205,7 +2208,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_right_rear_elbow_up_alike = ops.select(spent_right_rear_elbow_up_alike, t251 / heavy_1_right_rear_elbow_up_alike, 0.0)
     t252 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
     t253 = ops.select(spent_right_rear_elbow_up_alike, t252, 0.0)
-    t254 = -(ops.feasibility * (t50 + t253)) <= room_right_rear_elbow_up_alike
+    t254 = -(ops.feasibility * (t50 + t253)) <= margin_right_rear_elbow_up_alike
     h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t221
     t255 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
     r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t225
@@ -2214,9 +2217,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t258 = t51 * t257 < t228
     farther_left_rear_elbow_up_alike = ops.select(t258, t257 - t74, t233 + t234)
     t259 = t234 - t236
-    room_left_rear_elbow_up_alike = ops.min(farther_left_rear_elbow_up_alike, -t259)
-    t260 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t261 = ops.max(-t260, room_left_rear_elbow_up_alike)
+    margin_left_rear_elbow_up_alike = ops.min(farther_left_rear_elbow_up_alike, -t259)
+    t260 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t261 = ops.max(-t260, margin_left_rear_elbow_up_alike)
     spent_left_rear_elbow_up_alike = t261 <= t81
     t262 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
     t263 = t262 - stheta2A * r_left_0_rear_elbow_up_alike
@@ -2232,14 +2235,14 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_left_rear_elbow_up_alike = ops.select(spent_left_rear_elbow_up_alike, t268 / heavy_1_left_rear_elbow_up_alike, 0.0)
     t269 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
     t270 = ops.select(spent_left_rear_elbow_up_alike, t269, 0.0)
-    t271 = -(ops.feasibility * (t50 + t270)) <= room_left_rear_elbow_up_alike
+    t271 = -(ops.feasibility * (t50 + t270)) <= margin_left_rear_elbow_up_alike
     t272 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
-    t273 = room_left_rear_elbow_up_alike < 0.0
+    t273 = margin_left_rear_elbow_up_alike < 0.0
     t274 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
     t275 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
     t276 = ops.select(t273, t274 / (t111 + t274 + t275), 0.0)
     share_left_rear_elbow_up_alike = ops.select(spent_left_rear_elbow_up_alike, t276, 0.0)
-    t277 = room_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t277 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
     t278 = slope_left_rear_elbow_up_alike <= 0.0
     t279 = heavy_0_left_rear_elbow_up_alike * t277
     t280 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
@@ -2266,12 +2269,12 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t299 = ops.select(t292, far_back_1_both_rear_elbow_up_alike, 0.0)
     t300 = ops.select(t278, ops.select(t290, t289 * t291, 0.0), t299)
     t301 = slope_right_rear_elbow_up_alike <= 0.0
-    t302 = room_right_rear_elbow_up_alike < 0.0
+    t302 = margin_right_rear_elbow_up_alike < 0.0
     t303 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
     t304 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
     t305 = ops.select(t302, t303 / (t111 + t303 + t304), 0.0)
     share_right_rear_elbow_up_alike = ops.select(spent_right_rear_elbow_up_alike, t305, 0.0)
-    t306 = room_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t306 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
     t307 = heavy_0_right_rear_elbow_up_alike * t306
     t308 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
     t309 = L1 - t308 - stheta2A * h_right_0_rear_elbow_up_alike
@@ -2346,11 +2349,11 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t370 = ops.select(t272, ops.min(t338, t340), 0.0) <= ops.select(t272, ops.min(t367, t369), 0.0)
     t371 = ops.select(t370, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
     turn_both_rear_elbow_up_alike = ops.select(t272, t371, 0.0)
-    t372 = room_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    t372 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
     t373 = ops.sign(-t267)
     t374 = t50 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
     aside_left_rear_elbow_up_alike = ops.select(spent_left_rear_elbow_up_alike, -(t372 * t373 / (t268 + t374)), 0.0)
-    t375 = room_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    t375 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
     t376 = ops.sign(-t250)
     t377 = t50 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
     aside_right_rear_elbow_up_alike = ops.select(spent_right_rear_elbow_up_alike, -(t375 * t376 / (t251 + t377)), 0.0)
@@ -2435,9 +2438,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     farther_right_rear_elbow_down_alike = ops.select(t432, t430 - t74, t433 - t434)
     t435 = N_mid - gap_rear_elbow_down_alike
     nearer_right_rear_elbow_down_alike = t434 + t435
-    room_right_rear_elbow_down_alike = ops.min(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t436 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t437 = ops.max(-t436, room_right_rear_elbow_down_alike)
+    margin_right_rear_elbow_down_alike = ops.min(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
+    t436 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t437 = ops.max(-t436, margin_right_rear_elbow_down_alike)
     spent_right_rear_elbow_down_alike = t437 <= t81
     t438 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
     t439 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
@@ -2454,7 +2457,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_right_rear_elbow_down_alike = ops.select(spent_right_rear_elbow_down_alike, t445 / heavy_1_right_rear_elbow_down_alike, 0.0)
     t446 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
     t447 = ops.select(spent_right_rear_elbow_down_alike, t446, 0.0)
-    t448 = -(ops.feasibility * (t50 + t447)) <= room_right_rear_elbow_down_alike
+    t448 = -(ops.feasibility * (t50 + t447)) <= margin_right_rear_elbow_down_alike
     h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t423
     t449 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
     r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t428
@@ -2463,9 +2466,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t452 = t51 * t451 < t431
     farther_left_rear_elbow_down_alike = ops.select(t452, t451 - t74, t433 + t434)
     t453 = t434 - t435
-    room_left_rear_elbow_down_alike = ops.min(farther_left_rear_elbow_down_alike, -t453)
-    t454 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t455 = ops.max(-t454, room_left_rear_elbow_down_alike)
+    margin_left_rear_elbow_down_alike = ops.min(farther_left_rear_elbow_down_alike, -t453)
+    t454 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t455 = ops.max(-t454, margin_left_rear_elbow_down_alike)
     spent_left_rear_elbow_down_alike = t455 <= t81
     t456 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
     t457 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
@@ -2481,14 +2484,14 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_left_rear_elbow_down_alike = ops.select(spent_left_rear_elbow_down_alike, t462 / heavy_1_left_rear_elbow_down_alike, 0.0)
     t463 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
     t464 = ops.select(spent_left_rear_elbow_down_alike, t463, 0.0)
-    t465 = -(ops.feasibility * (t50 + t464)) <= room_left_rear_elbow_down_alike
+    t465 = -(ops.feasibility * (t50 + t464)) <= margin_left_rear_elbow_down_alike
     t466 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
-    t467 = room_left_rear_elbow_down_alike < 0.0
+    t467 = margin_left_rear_elbow_down_alike < 0.0
     t468 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
     t469 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
     t470 = ops.select(t467, t468 / (t111 + t468 + t469), 0.0)
     share_left_rear_elbow_down_alike = ops.select(spent_left_rear_elbow_down_alike, t470, 0.0)
-    t471 = room_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t471 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
     t472 = slope_left_rear_elbow_down_alike <= 0.0
     t473 = heavy_0_left_rear_elbow_down_alike * t471
     t474 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
@@ -2514,12 +2517,12 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t492 = ops.select(t485, far_back_1_both_rear_elbow_down_alike, 0.0)
     t493 = ops.select(t472, ops.select(t483, t482 * t484, 0.0), t492)
     t494 = slope_right_rear_elbow_down_alike <= 0.0
-    t495 = room_right_rear_elbow_down_alike < 0.0
+    t495 = margin_right_rear_elbow_down_alike < 0.0
     t496 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
     t497 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
     t498 = ops.select(t495, t496 / (t111 + t496 + t497), 0.0)
     share_right_rear_elbow_down_alike = ops.select(spent_right_rear_elbow_down_alike, t498, 0.0)
-    t499 = room_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t499 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
     t500 = heavy_0_right_rear_elbow_down_alike * t499
     t501 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
     t502 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
@@ -2594,11 +2597,11 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t563 = ops.select(t466, ops.min(t531, t533), 0.0) <= ops.select(t466, ops.min(t560, t562), 0.0)
     t564 = ops.select(t563, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
     turn_both_rear_elbow_down_alike = ops.select(t466, t564, 0.0)
-    t565 = room_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    t565 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
     t566 = ops.sign(-t461)
     t567 = t50 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
     aside_left_rear_elbow_down_alike = ops.select(spent_left_rear_elbow_down_alike, -(t565 * t566 / (t462 + t567)), 0.0)
-    t568 = room_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    t568 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
     t569 = ops.sign(-t444)
     t570 = t50 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
     aside_right_rear_elbow_down_alike = ops.select(spent_right_rear_elbow_down_alike, -(t568 * t569 / (t445 + t570)), 0.0)
@@ -2684,9 +2687,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     farther_right_front_elbow_down_alike = ops.select(t630, t628 - t74, t631 - t632)
     t633 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
     nearer_right_front_elbow_down_alike = t632 - t633
-    room_right_front_elbow_down_alike = ops.min(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t634 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t635 = ops.max(-t634, room_right_front_elbow_down_alike)
+    margin_right_front_elbow_down_alike = ops.min(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t634 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t635 = ops.max(-t634, margin_right_front_elbow_down_alike)
     spent_right_front_elbow_down_alike = t635 <= t81
     t636 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
     t637 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
@@ -2703,7 +2706,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_right_front_elbow_down_alike = ops.select(spent_right_front_elbow_down_alike, t643 / heavy_1_right_front_elbow_down_alike, 0.0)
     t644 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
     t645 = ops.select(spent_right_front_elbow_down_alike, t644, 0.0)
-    t646 = -(ops.feasibility * (t50 + t645)) <= room_right_front_elbow_down_alike
+    t646 = -(ops.feasibility * (t50 + t645)) <= margin_right_front_elbow_down_alike
     h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t621
     t647 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
     r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t626
@@ -2712,9 +2715,9 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t650 = t51 * t649 < t629
     farther_left_front_elbow_down_alike = ops.select(t650, t649 - t74, t631 + t632)
     t651 = t632 + t633
-    room_left_front_elbow_down_alike = ops.min(farther_left_front_elbow_down_alike, -t651)
-    t652 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t653 = ops.max(-t652, room_left_front_elbow_down_alike)
+    margin_left_front_elbow_down_alike = ops.min(farther_left_front_elbow_down_alike, -t651)
+    t652 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t653 = ops.max(-t652, margin_left_front_elbow_down_alike)
     spent_left_front_elbow_down_alike = t653 <= t81
     t654 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
     t655 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
@@ -2730,14 +2733,14 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     gain_1_left_front_elbow_down_alike = ops.select(spent_left_front_elbow_down_alike, t660 / heavy_1_left_front_elbow_down_alike, 0.0)
     t661 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
     t662 = ops.select(spent_left_front_elbow_down_alike, t661, 0.0)
-    t663 = -(ops.feasibility * (t50 + t662)) <= room_left_front_elbow_down_alike
+    t663 = -(ops.feasibility * (t50 + t662)) <= margin_left_front_elbow_down_alike
     t664 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
-    t665 = room_left_front_elbow_down_alike < 0.0
+    t665 = margin_left_front_elbow_down_alike < 0.0
     t666 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
     t667 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
     t668 = ops.select(t665, t666 / (t111 + t666 + t667), 0.0)
     share_left_front_elbow_down_alike = ops.select(spent_left_front_elbow_down_alike, t668, 0.0)
-    t669 = room_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t669 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
     t670 = slope_left_front_elbow_down_alike <= 0.0
     t671 = heavy_0_left_front_elbow_down_alike * t669
     t672 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
@@ -2763,12 +2766,12 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t690 = ops.select(t683, far_back_1_both_front_elbow_down_alike, 0.0)
     t691 = ops.select(t670, ops.select(t681, t680 * t682, 0.0), t690)
     t692 = slope_right_front_elbow_down_alike <= 0.0
-    t693 = room_right_front_elbow_down_alike < 0.0
+    t693 = margin_right_front_elbow_down_alike < 0.0
     t694 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
     t695 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
     t696 = ops.select(t693, t694 / (t111 + t694 + t695), 0.0)
     share_right_front_elbow_down_alike = ops.select(spent_right_front_elbow_down_alike, t696, 0.0)
-    t697 = room_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t697 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
     t698 = heavy_0_right_front_elbow_down_alike * t697
     t699 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
     t700 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
@@ -2843,11 +2846,11 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t761 = ops.select(t664, ops.min(t729, t731), 0.0) <= ops.select(t664, ops.min(t758, t760), 0.0)
     t762 = ops.select(t761, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
     turn_both_front_elbow_down_alike = ops.select(t664, t762, 0.0)
-    t763 = room_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    t763 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
     t764 = ops.sign(-t659)
     t765 = t50 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
     aside_left_front_elbow_down_alike = ops.select(spent_left_front_elbow_down_alike, -(t763 * t764 / (t660 + t765)), 0.0)
-    t766 = room_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    t766 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
     t767 = ops.sign(-t642)
     t768 = t50 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
     aside_right_front_elbow_down_alike = ops.select(spent_right_front_elbow_down_alike, -(t766 * t767 / (t643 + t768)), 0.0)
@@ -3316,7 +3319,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     N_mid_2 = t28 * ops.select(t75, small_mid_2, large_mid_2)
     t1158 = gap_2 - N_mid_2
     t1159 = t1157 + t1158
-    room_left_2 = ops.min(farther_left_2, -t1159)
+    margin_left_2 = ops.min(farther_left_2, -t1159)
     t1160 = ctheta2A_2 * h_left_0_2 - stheta2A_2 * r_left_0_2
     t1161 = t1160 * t101
     t1162 = ops.abs(t28 * t1161)
@@ -3367,7 +3370,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1196 = t1181 + t1182 + gain_0_left_2 * gain_0_left_2
     t1197 = ops.select(t109, t1181 / ops.select(t1022, t1196, 1.0), 0.0)
     share_left_2 = ops.select(spent_left, t1197, 0.0)
-    t1198 = room_left_2 * (1.0 - share_left_2)
+    t1198 = margin_left_2 * (1.0 - share_left_2)
     t1199 = 2.0 * t1198
     t1200 = size_2 * play_2
     t1201 = t1200 * heavy_0_left_2
@@ -3389,7 +3392,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1214 = h_right_0_2 * h_right_0_2 + r_right_0_2 * r_right_0_2
     farther_right_2 = ops.select(t72, t1214 - t1149, t1156 - t1157)
     nearer_right_2 = t1157 - t1158
-    room_right_2 = ops.min(farther_right_2, nearer_right_2)
+    margin_right_2 = ops.min(farther_right_2, nearer_right_2)
     t1215 = ctheta2A_2 * h_right_0_2 - stheta2A_2 * r_right_0_2
     t1216 = t1215 * t82
     t1217 = ops.abs(t28 * t1216)
@@ -3404,7 +3407,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1221 = t1182 + t1219 + gain_0_right_2 * gain_0_right_2
     t1222 = ops.select(t135, t1219 / ops.select(t1014, t1221, 1.0), 0.0)
     share_right_2 = ops.select(spent_right, t1222, 0.0)
-    t1223 = room_right_2 * (1.0 - share_right_2)
+    t1223 = margin_right_2 * (1.0 - share_right_2)
     t1224 = 2.0 * t1223
     t1225 = t1200 * heavy_0_right_2
     t1226 = t1225 * 5.960464477539063e-08
@@ -3435,19 +3438,19 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1245 = ops.select(t187, ops.select(t108, t1238, 0.0), -ops.select(t108, t1244, 0.0))
     turn_both_2 = ops.select(t108, t1245, 0.0)
     t1246 = t1200 * heavy_1_right_2 * 5.960464477539063e-08
-    t1247 = room_right_2 * share_right_2 * t191 / ops.select(t996, t1217 + t1246, 1.0)
+    t1247 = margin_right_2 * share_right_2 * t191 / ops.select(t996, t1217 + t1246, 1.0)
     t1248 = t1200 * heavy_1_left_2 * 5.960464477539063e-08
-    t1249 = room_left_2 * share_left_2 * t189 / ops.select(t997, t1162 + t1248, 1.0)
+    t1249 = margin_left_2 * share_left_2 * t189 / ops.select(t997, t1162 + t1248, 1.0)
     t1250 = ops.select(t193, ops.select(spent_right, -t1247, 0.0), ops.select(spent_left, -t1249, 0.0))
     t1251 = turn_both_2 + t1250 - t1190 * (drawn_2 * turn_both_2)
     lean_2 = ops.select(t108, t1251, 0.0)
-    t1252 = lean_2 * lean_2
+    t1252 = ops.select(t994, lean_2 * lean_2, 1.0)
     t1253 = 1.0 + t1252
     t1254 = ops.select(t994, ops.sqrt(ops.select(t994, t1253, 1.0)), 1.0)
     t1255 = 1.0 / t1254
     t1256 = 1.0 / ops.select(t994, t1253 * (1.0 + t1255), 1.0)
     swing_21_2 = t1255 * (elbow_11_2 * lean_2) - t1256 * (elbow_21_2 * t1252)
-    t1257 = turn_both_2 * turn_both_2
+    t1257 = ops.select(t994, turn_both_2 * turn_both_2, 1.0)
     t1258 = 1.0 + t1257
     t1259 = ops.select(t994, ops.sqrt(ops.select(t994, t1258, 1.0)), 1.0)
     t1260 = 1.0 / t1259
@@ -3459,938 +3462,949 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1264 = 2.0 * fore_arm_2
     t1265 = elbow_11_2 * t1252 * t1256 + t1255 * (elbow_21_2 * lean_2)
     t1266 = t1265 - t1257 * t1263 * t1261 - t1260 * (turn_both_2 * t1262)
-    t1267 = more_right_21_2 * (more_right_21_2 + 2.0 * h_right_0_2)
-    change_right_2 = ops.select(t108, t1266 * (t1266 - 2.0 * r_right_0_2) + t1267, 0.0)
-    t1268 = ops.vanishing * (ops.vanishing * (16.0 * (L1 * fore_arm_2)))
-    M_right = ops.max(farther_right_2 + change_right_2, t1268)
-    N_right = ops.max(nearer_right_2 - change_right_2, t1268)
-    t1269 = 1.0 / ops.select(t991, M_right + N_right, 1.0)
-    ahead_1_right = ops.select(short_right, size_2, t1148 + t1264 * M_right * t1269)
+    t1267 = ops.select(t993, t1266 * (t1266 - 2.0 * r_right_0_2), 1.0)
+    t1268 = more_right_21_2 * (more_right_21_2 + 2.0 * h_right_0_2)
+    change_right_2 = ops.select(t108, t1267 + ops.select(t993, t1268, 1.0), 0.0)
+    t1269 = ops.vanishing * (ops.vanishing * (16.0 * (L1 * fore_arm_2)))
+    M_right = ops.max(farther_right_2 + change_right_2, t1269)
+    N_right = ops.max(nearer_right_2 - change_right_2, t1269)
+    t1270 = 1.0 / ops.select(t991, M_right + N_right, 1.0)
+    ahead_1_right = ops.select(short_right, size_2, t1148 + t1264 * M_right * t1270)
     r_right_2 = ops.select(t108, r_right_0_2 - t1266, r_right_0_2)
-    t1270 = t76 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
-    t1271 = ops.select(t108, t1270, t76)
-    sigma_right = ops.sign(-t1271)
-    t1272 = 2.0 * sigma_right
-    t1273 = ops.sqrt(ops.select(t992, M_right * N_right, 1.0))
-    s_bend_right = ops.select(short_right, 0.0, t1269 * (t1272 * t1273))
-    t1274 = fore_arm_2 * s_bend_right
-    up_right = h_right_2 * ahead_1_right - r_right_2 * t1274
-    out_right = r_right_2 * ahead_1_right + h_right_2 * t1274
-    t1275 = ops.atan2(up_right, ops.select(t983, out_right, 1.0))
-    t1276 = ops.wrap_cut(ops.select(folded_right, t1121, t1275))
-    t1277 = ops.select(failed, ops.nan, t1276)
-    t1278 = 1.0 / ops.select(t1145, fore_arm_2, 1.0)
-    t1279 = ops.select(t1144, ops.select(bare_right, 1.0, a3 * t1278), 1.0)
-    t1280 = ops.atan2(ops.select(bare_right, 0.0, L2 * t1278), t1279)
-    t1281 = ops.atan2(2.0 * t1273, ops.select(t984, M_right - N_right, 1.0))
-    t1282 = ops.select(short_right, 0.0, sigma_right * t1281)
-    t1283 = ops.select(failed, ops.nan, ops.wrap(t1280 + t1282))
-    t1284 = elbow_21_2 - h_left_0_2
-    t1285 = elbow_11_2 - r_left_0_2
-    more_left_21_2 = swing_21_2 + t1261 * (t1257 * t1284) - t1260 * (turn_both_2 * t1285)
+    t1271 = t76 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    t1272 = ops.select(t108, t1271, t76)
+    sigma_right = ops.sign(-t1272)
+    t1273 = 2.0 * sigma_right
+    t1274 = ops.sqrt(ops.select(t992, M_right * N_right, 1.0))
+    s_bend_right = ops.select(short_right, 0.0, t1270 * (t1273 * t1274))
+    t1275 = fore_arm_2 * s_bend_right
+    up_right = h_right_2 * ahead_1_right - r_right_2 * t1275
+    out_right = r_right_2 * ahead_1_right + h_right_2 * t1275
+    t1276 = ops.atan2(up_right, ops.select(t983, out_right, 1.0))
+    t1277 = ops.wrap_cut(ops.select(folded_right, t1121, t1276))
+    t1278 = ops.select(failed, ops.nan, t1277)
+    t1279 = 1.0 / ops.select(t1145, fore_arm_2, 1.0)
+    t1280 = ops.select(t1144, ops.select(bare_right, 1.0, a3 * t1279), 1.0)
+    t1281 = ops.atan2(ops.select(bare_right, 0.0, L2 * t1279), t1280)
+    t1282 = ops.atan2(2.0 * t1274, ops.select(t984, M_right - N_right, 1.0))
+    t1283 = ops.select(short_right, 0.0, sigma_right * t1282)
+    t1284 = ops.select(failed, ops.nan, ops.wrap(t1281 + t1283))
+    t1285 = elbow_21_2 - h_left_0_2
+    t1286 = elbow_11_2 - r_left_0_2
+    more_left_21_2 = swing_21_2 + t1261 * (t1257 * t1285) - t1260 * (turn_both_2 * t1286)
     h_left_2 = ops.select(t108, h_left_0_2 + more_left_21_2, h_left_0_2)
-    t1286 = t1265 - t1261 * (t1257 * t1285) - t1260 * (turn_both_2 * t1284)
-    t1287 = more_left_21_2 * (more_left_21_2 + 2.0 * h_left_0_2)
-    change_left_2 = ops.select(t108, t1286 * (t1286 - 2.0 * r_left_0_2) + t1287, 0.0)
+    t1287 = t1265 - t1261 * (t1257 * t1286) - t1260 * (turn_both_2 * t1285)
+    t1288 = ops.select(t990, t1287 * (t1287 - 2.0 * r_left_0_2), 1.0)
+    t1289 = more_left_21_2 * (more_left_21_2 + 2.0 * h_left_0_2)
+    change_left_2 = ops.select(t108, t1288 + ops.select(t990, t1289, 1.0), 0.0)
     M_left = ops.max(farther_left_2 + change_left_2, 0.0)
     N_left = ops.max(-(t1159 + change_left_2), 0.0)
-    t1288 = 1.0 / ops.select(t988, M_left + N_left, 1.0)
-    ahead_1_left = ops.select(short_right, size_2, t1148 + t1264 * M_left * t1288)
-    t1289 = h_left_2 * ahead_1_left
-    r_left = ops.select(t108, r_left_0_2 - t1286, r_left_0_2)
-    t1290 = ops.sqrt(ops.select(t989, M_left * N_left, 1.0))
-    s_bend_left = ops.select(short_right, 0.0, t1288 * (t1272 * t1290))
-    t1291 = fore_arm_2 * s_bend_left
-    t1292 = r_left * t1291
-    t1293 = r_left * ahead_1_left
-    t1294 = h_left_2 * t1291
-    t1295 = ops.atan2(t1289 - t1292, ops.select(t986, t1293 + t1294, 1.0))
-    t1296 = ops.wrap_cut(ops.select(folded_left, t1121, t1295))
-    t1297 = ops.atan2(2.0 * t1290, ops.select(t984, M_left - N_left, 1.0))
-    t1298 = ops.select(short_right, 0.0, sigma_right * t1297)
-    t1299 = ops.select(failed, ops.nan, ops.wrap(t1280 + t1298))
-    t1300 = ops.wrap(principal_pitch)
-    t1301 = ops.select(failed, ops.nan, t1300)
-    t1302 = ops.atan2(t1289 + t1292, ops.select(t986, t1293 - t1294, 1.0))
-    t1303 = ops.wrap_cut(ops.select(folded_left, t1121, t1302))
-    t1304 = ops.select(failed, ops.nan, ops.wrap(t1280 - t1298))
-    t1305 = ops.select(failed_4, ops.nan, t1106)
+    t1290 = 1.0 / ops.select(t988, M_left + N_left, 1.0)
+    ahead_1_left = ops.select(short_right, size_2, t1148 + t1264 * M_left * t1290)
+    t1291 = h_left_2 * ahead_1_left
+    r_left = ops.select(t108, r_left_0_2 - t1287, r_left_0_2)
+    t1292 = ops.sqrt(ops.select(t989, M_left * N_left, 1.0))
+    s_bend_left = ops.select(short_right, 0.0, t1290 * (t1273 * t1292))
+    t1293 = fore_arm_2 * s_bend_left
+    t1294 = r_left * t1293
+    t1295 = r_left * ahead_1_left
+    t1296 = h_left_2 * t1293
+    t1297 = ops.atan2(t1291 - t1294, ops.select(t986, t1295 + t1296, 1.0))
+    t1298 = ops.wrap_cut(ops.select(folded_left, t1121, t1297))
+    t1299 = ops.atan2(2.0 * t1292, ops.select(t984, M_left - N_left, 1.0))
+    t1300 = ops.select(short_right, 0.0, sigma_right * t1299)
+    t1301 = ops.select(failed, ops.nan, ops.wrap(t1281 + t1300))
+    t1302 = ops.wrap(principal_pitch)
+    t1303 = ops.select(failed, ops.nan, t1302)
+    t1304 = ops.atan2(t1291 + t1294, ops.select(t986, t1295 - t1296, 1.0))
+    t1305 = ops.wrap_cut(ops.select(folded_left, t1121, t1304))
+    t1306 = ops.select(failed, ops.nan, ops.wrap(t1281 - t1300))
+    t1307 = ops.select(failed_4, ops.nan, t1106)
     up_front_elbow_down_alike_2 = t1110 - t1113
-    t1306 = t866 | t962 | t967
+    t1308 = t866 | t962 | t967
     out_front_elbow_down_alike_2 = t1115 + t1116
-    t1307 = out_front_elbow_down_alike_2 * out_front_elbow_down_alike_2
-    t1308 = up_front_elbow_down_alike_2 * up_front_elbow_down_alike_2
-    norm_front_elbow_down_alike = ops.sqrt(ops.select(t1306, t1307 + t1308, 1.0))
-    t1309 = ops.select(t1306, norm_front_elbow_down_alike, 1.0)
-    t1310 = 1.0 / t1309
-    stheta2A_front_elbow_down_alike_2 = ops.select(folded, 0.0, up_front_elbow_down_alike_2 * t1310)
-    t1311 = (t809 & folded_right_front_elbow_down_alike) | (t809 & folded_left_front_elbow_down_alike)
-    t1312 = out_front_elbow_down_alike_2 * t1310
-    ctheta2A_front_elbow_down_alike_2 = ops.select(folded, 1.0, t1312)
-    t1313 = ops.select(t1311, ctheta2A_front_elbow_down_alike_2, 1.0)
-    t1314 = ops.atan2(stheta2A_front_elbow_down_alike_2, t1313)
+    t1309 = out_front_elbow_down_alike_2 * out_front_elbow_down_alike_2
+    t1310 = up_front_elbow_down_alike_2 * up_front_elbow_down_alike_2
+    norm_front_elbow_down_alike = ops.sqrt(ops.select(t1308, t1309 + t1310, 1.0))
+    t1311 = ops.select(t1308, norm_front_elbow_down_alike, 1.0)
+    t1312 = 1.0 / t1311
+    stheta2A_front_elbow_down_alike_2 = ops.select(folded, 0.0, up_front_elbow_down_alike_2 * t1312)
+    t1313 = (t809 & folded_right_front_elbow_down_alike) | (t809 & folded_left_front_elbow_down_alike)
+    t1314 = out_front_elbow_down_alike_2 * t1312
+    ctheta2A_front_elbow_down_alike_2 = ops.select(folded, 1.0, t1314)
+    t1315 = ops.select(t1313, ctheta2A_front_elbow_down_alike_2, 1.0)
+    t1316 = ops.atan2(stheta2A_front_elbow_down_alike_2, t1315)
     elbow_21_front_elbow_down_alike_2 = L1 * stheta2A_front_elbow_down_alike_2
     c_relative_front_elbow_down_alike_2 = t1123 - t1124
-    t1315 = ctheta2A_front_elbow_down_alike_2 * c_relative_front_elbow_down_alike_2
+    t1317 = ctheta2A_front_elbow_down_alike_2 * c_relative_front_elbow_down_alike_2
     s_relative_front_elbow_down_alike_2 = t1125 + t1126
-    t1316 = stheta2A_front_elbow_down_alike_2 * s_relative_front_elbow_down_alike_2
-    ctheta23A_front_elbow_down_alike_2 = t1315 - t1316
-    t1317 = elbow_21_front_elbow_down_alike_2 - L2 * ctheta23A_front_elbow_down_alike_2
-    t1318 = stheta2A_front_elbow_down_alike_2 * c_relative_front_elbow_down_alike_2
-    t1319 = ctheta2A_front_elbow_down_alike_2 * s_relative_front_elbow_down_alike_2
-    stheta23A_front_elbow_down_alike_2 = t1318 + t1319
-    point_21_front_elbow_down_alike_2 = t1317 + a3 * stheta23A_front_elbow_down_alike_2
-    t1320 = t1138 * (t_psi_2 * ctheta23A_front_elbow_down_alike_2)
-    t1321 = t1320 + t_phi_2 * stheta23A_front_elbow_down_alike_2
-    t1322 = d * t1321
-    h_right_0_front_elbow_down_alike_2 = point_21_front_elbow_down_alike_2 - t1322
-    h_left_0_front_elbow_down_alike_2 = point_21_front_elbow_down_alike_2 + t1322
-    t1323 = h_left_0_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
+    t1318 = stheta2A_front_elbow_down_alike_2 * s_relative_front_elbow_down_alike_2
+    ctheta23A_front_elbow_down_alike_2 = t1317 - t1318
+    t1319 = elbow_21_front_elbow_down_alike_2 - L2 * ctheta23A_front_elbow_down_alike_2
+    t1320 = stheta2A_front_elbow_down_alike_2 * c_relative_front_elbow_down_alike_2
+    t1321 = ctheta2A_front_elbow_down_alike_2 * s_relative_front_elbow_down_alike_2
+    stheta23A_front_elbow_down_alike_2 = t1320 + t1321
+    point_21_front_elbow_down_alike_2 = t1319 + a3 * stheta23A_front_elbow_down_alike_2
+    t1322 = t1138 * (t_psi_2 * ctheta23A_front_elbow_down_alike_2)
+    t1323 = t1322 + t_phi_2 * stheta23A_front_elbow_down_alike_2
+    t1324 = d * t1323
+    h_right_0_front_elbow_down_alike_2 = point_21_front_elbow_down_alike_2 - t1324
+    h_left_0_front_elbow_down_alike_2 = point_21_front_elbow_down_alike_2 + t1324
+    t1325 = h_left_0_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
     elbow_11_front_elbow_down_alike_2 = L1 * ctheta2A_front_elbow_down_alike_2
-    t1324 = elbow_11_front_elbow_down_alike_2 + L2 * stheta23A_front_elbow_down_alike_2
-    point_11_front_elbow_down_alike_2 = t1324 + a3 * ctheta23A_front_elbow_down_alike_2
-    t1325 = t1138 * (t_psi_2 * stheta23A_front_elbow_down_alike_2)
-    t1326 = t_phi_2 * ctheta23A_front_elbow_down_alike_2 - t1325
-    t1327 = d * t1326
-    r_left_0_front_elbow_down_alike_2 = point_11_front_elbow_down_alike_2 + t1327
-    t1328 = r_left_0_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
-    gap_front_elbow_down_alike_2 = t1327 * t1327 + t1322 * t1322
+    t1326 = elbow_11_front_elbow_down_alike_2 + L2 * stheta23A_front_elbow_down_alike_2
+    point_11_front_elbow_down_alike_2 = t1326 + a3 * ctheta23A_front_elbow_down_alike_2
+    t1327 = t1138 * (t_psi_2 * stheta23A_front_elbow_down_alike_2)
+    t1328 = t_phi_2 * ctheta23A_front_elbow_down_alike_2 - t1327
+    t1329 = d * t1328
+    r_left_0_front_elbow_down_alike_2 = point_11_front_elbow_down_alike_2 + t1329
+    t1330 = r_left_0_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
+    gap_front_elbow_down_alike_2 = t1329 * t1329 + t1324 * t1324
     straight_mid_front_elbow_down_alike_2 = L2 * s_relative_front_elbow_down_alike_2 + a3 * c_relative_front_elbow_down_alike_2
-    t1329 = ops.abs(straight_mid_front_elbow_down_alike_2)
-    large_mid_front_elbow_down_alike_2 = fore_arm_2 + t1329
-    t1330 = L2 * c_relative_front_elbow_down_alike_2 - a3 * s_relative_front_elbow_down_alike_2
-    t1331 = t873 | t879 | t884 | t885 | t888 | t892 | t897
-    t1332 = t1331 | t901 | t905 | t910 | t915 | t920 | t927
-    t1333 = t1332 | t932 | t933 | t936 | t940 | t945 | t949
-    t1334 = ops.select(((t1333 | t953 | t958) & t230) | t982, large_mid_front_elbow_down_alike_2, 1.0)
-    small_mid_front_elbow_down_alike_2 = t1330 * t1330 / t1334
-    t1335 = ops.select(t230, large_mid_front_elbow_down_alike_2, small_mid_front_elbow_down_alike_2)
-    M_mid_front_elbow_down_alike_2 = t28 * t1335
-    t1336 = gap_front_elbow_down_alike_2 + M_mid_front_elbow_down_alike_2
-    t1337 = 2.0 * point_11_front_elbow_down_alike_2 * t1327
-    t1338 = 2.0 * point_21_front_elbow_down_alike_2 * t1322
-    t1339 = t1337 + t1338
-    farther_left_front_elbow_down_alike_2 = ops.select(t650, t1323 + t1328 - t1149, t1336 + t1339)
-    t1340 = ops.select(t230, small_mid_front_elbow_down_alike_2, large_mid_front_elbow_down_alike_2)
-    N_mid_front_elbow_down_alike_2 = t28 * t1340
-    t1341 = gap_front_elbow_down_alike_2 - N_mid_front_elbow_down_alike_2
-    t1342 = t1339 + t1341
-    room_left_front_elbow_down_alike_2 = ops.min(farther_left_front_elbow_down_alike_2, -t1342)
-    t1343 = ctheta2A_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
-    t1344 = stheta2A_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
-    t1345 = (t1343 - t1344) * t656
-    t1346 = ops.abs(t28 * t1345)
+    t1331 = ops.abs(straight_mid_front_elbow_down_alike_2)
+    large_mid_front_elbow_down_alike_2 = fore_arm_2 + t1331
+    t1332 = L2 * c_relative_front_elbow_down_alike_2 - a3 * s_relative_front_elbow_down_alike_2
+    t1333 = t873 | t879 | t884 | t885 | t888 | t892 | t897
+    t1334 = t1333 | t901 | t905 | t910 | t915 | t920 | t927
+    t1335 = t1334 | t932 | t933 | t936 | t940 | t945 | t949
+    t1336 = ops.select(((t1335 | t953 | t958) & t230) | t982, large_mid_front_elbow_down_alike_2, 1.0)
+    small_mid_front_elbow_down_alike_2 = t1332 * t1332 / t1336
+    t1337 = ops.select(t230, large_mid_front_elbow_down_alike_2, small_mid_front_elbow_down_alike_2)
+    M_mid_front_elbow_down_alike_2 = t28 * t1337
+    t1338 = gap_front_elbow_down_alike_2 + M_mid_front_elbow_down_alike_2
+    t1339 = 2.0 * point_11_front_elbow_down_alike_2 * t1329
+    t1340 = 2.0 * point_21_front_elbow_down_alike_2 * t1324
+    t1341 = t1339 + t1340
+    farther_left_front_elbow_down_alike_2 = ops.select(t650, t1325 + t1330 - t1149, t1338 + t1341)
+    t1342 = ops.select(t230, small_mid_front_elbow_down_alike_2, large_mid_front_elbow_down_alike_2)
+    N_mid_front_elbow_down_alike_2 = t28 * t1342
+    t1343 = gap_front_elbow_down_alike_2 - N_mid_front_elbow_down_alike_2
+    t1344 = t1341 + t1343
+    margin_left_front_elbow_down_alike_2 = ops.min(farther_left_front_elbow_down_alike_2, -t1344)
+    t1345 = ctheta2A_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
+    t1346 = stheta2A_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
+    t1347 = (t1345 - t1346) * t656
+    t1348 = ops.abs(t28 * t1347)
     heavy_1_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1179, 1.0)
-    t1347 = ops.select(t961, heavy_1_left_front_elbow_down_alike_2, 1.0)
-    gain_1_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1346 / t1347, 0.0)
-    t1348 = gain_1_left_front_elbow_down_alike_2 * gain_1_left_front_elbow_down_alike_2
-    t1349 = L1 + L_2W_2 * s_relative_front_elbow_down_alike_2
-    drawn_front_elbow_down_alike_2 = t1349 + a_3W_2 * c_relative_front_elbow_down_alike_2
-    t1350 = 2.0 * drawn_front_elbow_down_alike_2
-    slope_left_front_elbow_down_alike_2 = t1350 * t1345
-    t1351 = 1.0 - t1190 * drawn_front_elbow_down_alike_2
-    t1352 = ops.select(t1056 | t1057 | t1058 | t1059, fore_2 + L1 * (t1351 * t1351), 1.0)
+    t1349 = ops.select(t961, heavy_1_left_front_elbow_down_alike_2, 1.0)
+    gain_1_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1348 / t1349, 0.0)
+    t1350 = gain_1_left_front_elbow_down_alike_2 * gain_1_left_front_elbow_down_alike_2
+    t1351 = L1 + L_2W_2 * s_relative_front_elbow_down_alike_2
+    drawn_front_elbow_down_alike_2 = t1351 + a_3W_2 * c_relative_front_elbow_down_alike_2
+    t1352 = 2.0 * drawn_front_elbow_down_alike_2
+    slope_left_front_elbow_down_alike_2 = t1352 * t1347
+    t1353 = 1.0 - t1190 * drawn_front_elbow_down_alike_2
+    t1354 = ops.select(t1056 | t1057 | t1058 | t1059, fore_2 + L1 * (t1353 * t1353), 1.0)
     tilt_front_elbow_down_alike_2 = L_2W_2 * c_relative_front_elbow_down_alike_2 - a_3W_2 * s_relative_front_elbow_down_alike_2
-    t1353 = t1178 * ops.sqrt(t1352) / 2000000.0 + ops.abs(tilt_front_elbow_down_alike_2)
-    t1354 = t1175 * t1353
-    heavy_0_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1354, 1.0)
-    t1355 = ops.select(t961, heavy_0_left_front_elbow_down_alike_2, 1.0)
-    t1356 = ops.abs(slope_left_front_elbow_down_alike_2) / t1355
-    gain_0_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1356, 0.0)
-    t1357 = gain_0_left_front_elbow_down_alike_2 * gain_0_left_front_elbow_down_alike_2
-    t1358 = t1348 / ops.select(t960, t1182 + t1348 + t1357, 1.0)
-    share_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, ops.select(t665, t1358, 0.0), 0.0)
-    t1359 = room_left_front_elbow_down_alike_2 * (1.0 - share_left_front_elbow_down_alike_2)
-    t1360 = 2.0 * t1359
-    t1361 = t1200 * heavy_0_left_front_elbow_down_alike_2
-    t1362 = t1361 * 5.960464477539063e-08
-    t1363 = drawn_front_elbow_down_alike_2 * drawn_front_elbow_down_alike_2
-    t1364 = ctheta2A_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
-    t1365 = stheta2A_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
-    t1366 = t1190 * (t656 * t1363 * (L1 - t1364 - t1365))
-    t1367 = slope_left_front_elbow_down_alike_2 * slope_left_front_elbow_down_alike_2
-    t1368 = ops.select(t958, ops.max(0.0, 4.0 * t1359 * t1366 + t1367), 1.0)
-    root_on_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.sqrt(t1368), 0.0)
-    t1369 = slope_left_front_elbow_down_alike_2 + root_on_1_both_front_elbow_down_alike_2
-    t1370 = t1360 * (1.0 / ops.select(t940, t1362 + t1369, 1.0))
-    t1371 = slope_left_front_elbow_down_alike_2 - root_on_1_both_front_elbow_down_alike_2
-    t1372 = t1361 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1366)
-    t1373 = 1.0 / ops.select(t942 | t956, t1372, 1.0)
-    far_on_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t737, -(t1371 * t1373), 0.0), 0.0)
-    t1374 = ops.select(t683, far_on_1_both_front_elbow_down_alike_2, 0.0)
-    t1375 = ops.select(t732, ops.select(t734, -t1370, 0.0), t1374)
-    t1376 = h_right_0_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
-    r_right_0_front_elbow_down_alike_2 = point_11_front_elbow_down_alike_2 - t1327
-    t1377 = r_right_0_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
-    farther_right_front_elbow_down_alike_2 = ops.select(t630, t1376 + t1377 - t1149, t1336 - t1339)
-    nearer_right_front_elbow_down_alike_2 = t1339 - t1341
-    room_right_front_elbow_down_alike_2 = ops.min(farther_right_front_elbow_down_alike_2, nearer_right_front_elbow_down_alike_2)
-    t1378 = ctheta2A_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
-    t1379 = stheta2A_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
-    t1380 = (t1378 - t1379) * t639
-    t1381 = ops.abs(t28 * t1380)
+    t1355 = t1178 * ops.sqrt(t1354) / 2000000.0 + ops.abs(tilt_front_elbow_down_alike_2)
+    t1356 = t1175 * t1355
+    heavy_0_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1356, 1.0)
+    t1357 = ops.select(t961, heavy_0_left_front_elbow_down_alike_2, 1.0)
+    t1358 = ops.abs(slope_left_front_elbow_down_alike_2) / t1357
+    gain_0_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, t1358, 0.0)
+    t1359 = gain_0_left_front_elbow_down_alike_2 * gain_0_left_front_elbow_down_alike_2
+    t1360 = t1350 / ops.select(t960, t1182 + t1350 + t1359, 1.0)
+    share_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, ops.select(t665, t1360, 0.0), 0.0)
+    t1361 = margin_left_front_elbow_down_alike_2 * (1.0 - share_left_front_elbow_down_alike_2)
+    t1362 = 2.0 * t1361
+    t1363 = t1200 * heavy_0_left_front_elbow_down_alike_2
+    t1364 = t1363 * 5.960464477539063e-08
+    t1365 = drawn_front_elbow_down_alike_2 * drawn_front_elbow_down_alike_2
+    t1366 = ctheta2A_front_elbow_down_alike_2 * r_left_0_front_elbow_down_alike_2
+    t1367 = stheta2A_front_elbow_down_alike_2 * h_left_0_front_elbow_down_alike_2
+    t1368 = t1190 * (t656 * t1365 * (L1 - t1366 - t1367))
+    t1369 = slope_left_front_elbow_down_alike_2 * slope_left_front_elbow_down_alike_2
+    t1370 = ops.select(t958, ops.max(0.0, 4.0 * t1361 * t1368 + t1369), 1.0)
+    root_on_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.sqrt(t1370), 0.0)
+    t1371 = slope_left_front_elbow_down_alike_2 + root_on_1_both_front_elbow_down_alike_2
+    t1372 = t1362 * (1.0 / ops.select(t940, t1364 + t1371, 1.0))
+    t1373 = slope_left_front_elbow_down_alike_2 - root_on_1_both_front_elbow_down_alike_2
+    t1374 = t1363 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1368)
+    t1375 = 1.0 / ops.select(t942 | t956, t1374, 1.0)
+    far_on_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t737, -(t1373 * t1375), 0.0), 0.0)
+    t1376 = ops.select(t683, far_on_1_both_front_elbow_down_alike_2, 0.0)
+    t1377 = ops.select(t732, ops.select(t734, -t1372, 0.0), t1376)
+    t1378 = h_right_0_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
+    r_right_0_front_elbow_down_alike_2 = point_11_front_elbow_down_alike_2 - t1329
+    t1379 = r_right_0_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
+    farther_right_front_elbow_down_alike_2 = ops.select(t630, t1378 + t1379 - t1149, t1338 - t1341)
+    nearer_right_front_elbow_down_alike_2 = t1341 - t1343
+    margin_right_front_elbow_down_alike_2 = ops.min(farther_right_front_elbow_down_alike_2, nearer_right_front_elbow_down_alike_2)
+    t1380 = ctheta2A_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
+    t1381 = stheta2A_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
+    t1382 = (t1380 - t1381) * t639
+    t1383 = ops.abs(t28 * t1382)
     heavy_1_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1179, 1.0)
-    t1382 = ops.select(t952, heavy_1_right_front_elbow_down_alike_2, 1.0)
-    gain_1_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1381 / t1382, 0.0)
-    t1383 = gain_1_right_front_elbow_down_alike_2 * gain_1_right_front_elbow_down_alike_2
-    slope_right_front_elbow_down_alike_2 = t1380 * t1350
-    t1384 = ops.abs(slope_right_front_elbow_down_alike_2)
-    heavy_0_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1354, 1.0)
-    t1385 = ops.select(t952, heavy_0_right_front_elbow_down_alike_2, 1.0)
-    gain_0_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1384 / t1385, 0.0)
-    t1386 = gain_0_right_front_elbow_down_alike_2 * gain_0_right_front_elbow_down_alike_2
-    t1387 = t1383 / ops.select(t951, t1182 + t1383 + t1386, 1.0)
-    share_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, ops.select(t693, t1387, 0.0), 0.0)
-    t1388 = room_right_front_elbow_down_alike_2 * (1.0 - share_right_front_elbow_down_alike_2)
-    t1389 = 2.0 * t1388
-    t1390 = t1200 * heavy_0_right_front_elbow_down_alike_2
-    t1391 = t1390 * 5.960464477539063e-08
-    t1392 = ctheta2A_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
-    t1393 = stheta2A_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
-    t1394 = t1190 * (t639 * t1363 * (L1 - t1392 - t1393))
-    t1395 = slope_right_front_elbow_down_alike_2 * slope_right_front_elbow_down_alike_2
-    t1396 = ops.select(t949, ops.max(0.0, 4.0 * t1388 * t1394 + t1395), 1.0)
-    root_on_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.sqrt(t1396), 0.0)
-    t1397 = slope_right_front_elbow_down_alike_2 + root_on_0_both_front_elbow_down_alike_2
-    t1398 = t1389 * (1.0 / ops.select(t936, t1391 + t1397, 1.0))
-    t1399 = slope_right_front_elbow_down_alike_2 - root_on_0_both_front_elbow_down_alike_2
-    t1400 = t1390 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1394)
-    t1401 = 1.0 / ops.select(t938 | t947, t1400, 1.0)
-    far_on_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t745, -(t1399 * t1401), 0.0), 0.0)
-    t1402 = ops.select(t710, far_on_0_both_front_elbow_down_alike_2, 0.0)
-    t1403 = ops.select(t740, ops.select(t742, -t1398, 0.0), t1402)
-    near_on_both_front_elbow_down_alike_2 = ops.select(t664, ops.max(ops.max(0.0, t1375), t1403), 0.0)
-    t1404 = ops.select(t750, far_on_0_both_front_elbow_down_alike_2, 0.0)
-    t1405 = ops.max(near_on_both_front_elbow_down_alike_2, t1404)
-    t1406 = ops.select(t755, far_on_1_both_front_elbow_down_alike_2, 0.0)
-    t1407 = 1.0 / ops.select(t953, t1371 - t1362, 1.0) * t1360
-    far_back_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t689, t1369 * t1373, 0.0), 0.0)
-    t1408 = ops.select(t683, far_back_1_both_front_elbow_down_alike_2, 0.0)
-    t1409 = ops.select(t670, ops.select(t681, t1407, 0.0), t1408)
-    t1410 = 1.0 / ops.select(t945, t1399 - t1391, 1.0) * t1389
-    far_back_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t716, t1397 * t1401, 0.0), 0.0)
-    t1411 = ops.select(t710, far_back_0_both_front_elbow_down_alike_2, 0.0)
-    t1412 = ops.select(t692, ops.select(t708, t1410, 0.0), t1411)
-    near_back_both_front_elbow_down_alike_2 = ops.select(t664, ops.max(ops.max(0.0, t1409), t1412), 0.0)
-    t1413 = ops.select(t721, far_back_0_both_front_elbow_down_alike_2, 0.0)
-    t1414 = ops.max(near_back_both_front_elbow_down_alike_2, t1413)
-    t1415 = ops.select(t726, far_back_1_both_front_elbow_down_alike_2, 0.0)
-    t1416 = ops.select(t761, ops.select(t664, ops.max(t1405, t1406), 0.0), -ops.select(t664, ops.max(t1414, t1415), 0.0))
-    turn_both_front_elbow_down_alike_2 = ops.select(t664, t1416, 0.0)
-    t1417 = room_right_front_elbow_down_alike_2 * share_right_front_elbow_down_alike_2
-    t1418 = t1200 * heavy_1_right_front_elbow_down_alike_2
-    t1419 = ops.select(t932, t1381 + t1418 * 5.960464477539063e-08, 1.0)
-    aside_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, -(t1417 * t767 / t1419), 0.0)
-    t1420 = room_left_front_elbow_down_alike_2 * share_left_front_elbow_down_alike_2
-    t1421 = t1200 * heavy_1_left_front_elbow_down_alike_2
-    t1422 = ops.select(t933, t1346 + t1421 * 5.960464477539063e-08, 1.0)
-    aside_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, -(t1420 * t764 / t1422), 0.0)
-    t1423 = ops.select(t769, aside_right_front_elbow_down_alike_2, aside_left_front_elbow_down_alike_2)
-    t1424 = drawn_front_elbow_down_alike_2 * turn_both_front_elbow_down_alike_2
-    t1425 = turn_both_front_elbow_down_alike_2 + t1423 - t1190 * t1424
-    lean_front_elbow_down_alike_2 = ops.select(t664, t1425, 0.0)
-    t1426 = lean_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
-    t1427 = 1.0 + t1426
-    t1428 = ops.select(t930, ops.sqrt(ops.select(t930, t1427, 1.0)), 1.0)
-    t1429 = 1.0 / t1428
-    t1430 = elbow_11_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
-    t1431 = 1.0 / ops.select(t930, t1427 * (1.0 + t1429), 1.0)
-    t1432 = t1431 * (elbow_21_front_elbow_down_alike_2 * t1426)
-    swing_21_front_elbow_down_alike_2 = t1429 * t1430 - t1432
-    t1433 = turn_both_front_elbow_down_alike_2 * turn_both_front_elbow_down_alike_2
-    t1434 = 1.0 + t1433
-    t1435 = ops.select(t930, ops.sqrt(ops.select(t930, t1434, 1.0)), 1.0)
-    t1436 = 1.0 / t1435
-    t1437 = 1.0 / ops.select(t930, t1434 * (1.0 + t1436), 1.0)
-    t1438 = elbow_21_front_elbow_down_alike_2 - h_right_0_front_elbow_down_alike_2
-    t1439 = swing_21_front_elbow_down_alike_2 + t1437 * (t1433 * t1438)
-    t1440 = elbow_11_front_elbow_down_alike_2 - r_right_0_front_elbow_down_alike_2
-    t1441 = t1436 * (turn_both_front_elbow_down_alike_2 * t1440)
-    more_right_21_front_elbow_down_alike_2 = t1439 - t1441
-    t1442 = h_right_0_front_elbow_down_alike_2 + more_right_21_front_elbow_down_alike_2
-    h_right_front_elbow_down_alike_2 = ops.select(t664, t1442, h_right_0_front_elbow_down_alike_2)
-    t1443 = elbow_11_front_elbow_down_alike_2 * t1426 * t1431
-    t1444 = elbow_21_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
-    t1445 = t1443 + t1429 * t1444
-    t1446 = t1436 * (turn_both_front_elbow_down_alike_2 * t1438)
-    t1447 = t1445 - t1433 * t1440 * t1437 - t1446
-    t1448 = t1447 - 2.0 * r_right_0_front_elbow_down_alike_2
-    t1449 = more_right_21_front_elbow_down_alike_2 + 2.0 * h_right_0_front_elbow_down_alike_2
-    t1450 = more_right_21_front_elbow_down_alike_2 * t1449
-    change_right_front_elbow_down_alike_2 = ops.select(t664, t1447 * t1448 + t1450, 0.0)
-    t1451 = farther_right_front_elbow_down_alike_2 + change_right_front_elbow_down_alike_2
-    M_right_front_elbow_down_alike = ops.max(t1451, t1268)
-    t1452 = nearer_right_front_elbow_down_alike_2 - change_right_front_elbow_down_alike_2
-    N_right_front_elbow_down_alike = ops.max(t1452, t1268)
+    t1384 = ops.select(t952, heavy_1_right_front_elbow_down_alike_2, 1.0)
+    gain_1_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1383 / t1384, 0.0)
+    t1385 = gain_1_right_front_elbow_down_alike_2 * gain_1_right_front_elbow_down_alike_2
+    slope_right_front_elbow_down_alike_2 = t1382 * t1352
+    t1386 = ops.abs(slope_right_front_elbow_down_alike_2)
+    heavy_0_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1356, 1.0)
+    t1387 = ops.select(t952, heavy_0_right_front_elbow_down_alike_2, 1.0)
+    gain_0_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, t1386 / t1387, 0.0)
+    t1388 = gain_0_right_front_elbow_down_alike_2 * gain_0_right_front_elbow_down_alike_2
+    t1389 = t1385 / ops.select(t951, t1182 + t1385 + t1388, 1.0)
+    share_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, ops.select(t693, t1389, 0.0), 0.0)
+    t1390 = margin_right_front_elbow_down_alike_2 * (1.0 - share_right_front_elbow_down_alike_2)
+    t1391 = 2.0 * t1390
+    t1392 = t1200 * heavy_0_right_front_elbow_down_alike_2
+    t1393 = t1392 * 5.960464477539063e-08
+    t1394 = ctheta2A_front_elbow_down_alike_2 * r_right_0_front_elbow_down_alike_2
+    t1395 = stheta2A_front_elbow_down_alike_2 * h_right_0_front_elbow_down_alike_2
+    t1396 = t1190 * (t639 * t1365 * (L1 - t1394 - t1395))
+    t1397 = slope_right_front_elbow_down_alike_2 * slope_right_front_elbow_down_alike_2
+    t1398 = ops.select(t949, ops.max(0.0, 4.0 * t1390 * t1396 + t1397), 1.0)
+    root_on_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.sqrt(t1398), 0.0)
+    t1399 = slope_right_front_elbow_down_alike_2 + root_on_0_both_front_elbow_down_alike_2
+    t1400 = t1391 * (1.0 / ops.select(t936, t1393 + t1399, 1.0))
+    t1401 = slope_right_front_elbow_down_alike_2 - root_on_0_both_front_elbow_down_alike_2
+    t1402 = t1392 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1396)
+    t1403 = 1.0 / ops.select(t938 | t947, t1402, 1.0)
+    far_on_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t745, -(t1401 * t1403), 0.0), 0.0)
+    t1404 = ops.select(t710, far_on_0_both_front_elbow_down_alike_2, 0.0)
+    t1405 = ops.select(t740, ops.select(t742, -t1400, 0.0), t1404)
+    near_on_both_front_elbow_down_alike_2 = ops.select(t664, ops.max(ops.max(0.0, t1377), t1405), 0.0)
+    t1406 = ops.select(t750, far_on_0_both_front_elbow_down_alike_2, 0.0)
+    t1407 = ops.max(near_on_both_front_elbow_down_alike_2, t1406)
+    t1408 = ops.select(t755, far_on_1_both_front_elbow_down_alike_2, 0.0)
+    t1409 = 1.0 / ops.select(t953, t1373 - t1364, 1.0) * t1362
+    far_back_1_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t689, t1371 * t1375, 0.0), 0.0)
+    t1410 = ops.select(t683, far_back_1_both_front_elbow_down_alike_2, 0.0)
+    t1411 = ops.select(t670, ops.select(t681, t1409, 0.0), t1410)
+    t1412 = 1.0 / ops.select(t945, t1401 - t1393, 1.0) * t1391
+    far_back_0_both_front_elbow_down_alike_2 = ops.select(t664, ops.select(t716, t1399 * t1403, 0.0), 0.0)
+    t1413 = ops.select(t710, far_back_0_both_front_elbow_down_alike_2, 0.0)
+    t1414 = ops.select(t692, ops.select(t708, t1412, 0.0), t1413)
+    near_back_both_front_elbow_down_alike_2 = ops.select(t664, ops.max(ops.max(0.0, t1411), t1414), 0.0)
+    t1415 = ops.select(t721, far_back_0_both_front_elbow_down_alike_2, 0.0)
+    t1416 = ops.max(near_back_both_front_elbow_down_alike_2, t1415)
+    t1417 = ops.select(t726, far_back_1_both_front_elbow_down_alike_2, 0.0)
+    t1418 = ops.select(t761, ops.select(t664, ops.max(t1407, t1408), 0.0), -ops.select(t664, ops.max(t1416, t1417), 0.0))
+    turn_both_front_elbow_down_alike_2 = ops.select(t664, t1418, 0.0)
+    t1419 = margin_right_front_elbow_down_alike_2 * share_right_front_elbow_down_alike_2
+    t1420 = t1200 * heavy_1_right_front_elbow_down_alike_2
+    t1421 = ops.select(t932, t1383 + t1420 * 5.960464477539063e-08, 1.0)
+    aside_right_front_elbow_down_alike_2 = ops.select(spent_right_front_elbow_down_alike, -(t1419 * t767 / t1421), 0.0)
+    t1422 = margin_left_front_elbow_down_alike_2 * share_left_front_elbow_down_alike_2
+    t1423 = t1200 * heavy_1_left_front_elbow_down_alike_2
+    t1424 = ops.select(t933, t1348 + t1423 * 5.960464477539063e-08, 1.0)
+    aside_left_front_elbow_down_alike_2 = ops.select(spent_left_front_elbow_down_alike, -(t1422 * t764 / t1424), 0.0)
+    t1425 = ops.select(t769, aside_right_front_elbow_down_alike_2, aside_left_front_elbow_down_alike_2)
+    t1426 = drawn_front_elbow_down_alike_2 * turn_both_front_elbow_down_alike_2
+    t1427 = turn_both_front_elbow_down_alike_2 + t1425 - t1190 * t1426
+    lean_front_elbow_down_alike_2 = ops.select(t664, t1427, 0.0)
+    t1428 = lean_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
+    t1429 = ops.select(t930, t1428, 1.0)
+    t1430 = 1.0 + t1429
+    t1431 = ops.select(t930, ops.sqrt(ops.select(t930, t1430, 1.0)), 1.0)
+    t1432 = 1.0 / t1431
+    t1433 = elbow_11_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
+    t1434 = 1.0 / ops.select(t930, t1430 * (1.0 + t1432), 1.0)
+    t1435 = t1434 * (elbow_21_front_elbow_down_alike_2 * t1429)
+    swing_21_front_elbow_down_alike_2 = t1432 * t1433 - t1435
+    t1436 = turn_both_front_elbow_down_alike_2 * turn_both_front_elbow_down_alike_2
+    t1437 = ops.select(t930, t1436, 1.0)
+    t1438 = 1.0 + t1437
+    t1439 = ops.select(t930, ops.sqrt(ops.select(t930, t1438, 1.0)), 1.0)
+    t1440 = 1.0 / t1439
+    t1441 = 1.0 / ops.select(t930, t1438 * (1.0 + t1440), 1.0)
+    t1442 = elbow_21_front_elbow_down_alike_2 - h_right_0_front_elbow_down_alike_2
+    t1443 = swing_21_front_elbow_down_alike_2 + t1441 * (t1437 * t1442)
+    t1444 = elbow_11_front_elbow_down_alike_2 - r_right_0_front_elbow_down_alike_2
+    t1445 = t1440 * (turn_both_front_elbow_down_alike_2 * t1444)
+    more_right_21_front_elbow_down_alike_2 = t1443 - t1445
+    t1446 = h_right_0_front_elbow_down_alike_2 + more_right_21_front_elbow_down_alike_2
+    h_right_front_elbow_down_alike_2 = ops.select(t664, t1446, h_right_0_front_elbow_down_alike_2)
+    t1447 = elbow_11_front_elbow_down_alike_2 * t1429 * t1434
+    t1448 = elbow_21_front_elbow_down_alike_2 * lean_front_elbow_down_alike_2
+    t1449 = t1447 + t1432 * t1448
+    t1450 = t1440 * (turn_both_front_elbow_down_alike_2 * t1442)
+    t1451 = t1449 - t1437 * t1444 * t1441 - t1450
+    t1452 = t1451 - 2.0 * r_right_0_front_elbow_down_alike_2
+    t1453 = more_right_21_front_elbow_down_alike_2 + 2.0 * h_right_0_front_elbow_down_alike_2
+    t1454 = more_right_21_front_elbow_down_alike_2 * t1453
+    t1455 = ops.select(t929, t1451 * t1452, 1.0) + ops.select(t929, t1454, 1.0)
+    change_right_front_elbow_down_alike_2 = ops.select(t664, t1455, 0.0)
+    t1456 = farther_right_front_elbow_down_alike_2 + change_right_front_elbow_down_alike_2
+    M_right_front_elbow_down_alike = ops.max(t1456, t1269)
+    t1457 = nearer_right_front_elbow_down_alike_2 - change_right_front_elbow_down_alike_2
+    N_right_front_elbow_down_alike = ops.max(t1457, t1269)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t1453 = ops.select(t927, whole_right_front_elbow_down_alike, 1.0)
-    t1454 = 1.0 / t1453
-    t1455 = t1264 * M_right_front_elbow_down_alike * t1454
-    ahead_1_right_front_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1455)
-    t1456 = h_right_front_elbow_down_alike_2 * ahead_1_right_front_elbow_down_alike
-    r_right_front_elbow_down_alike_2 = ops.select(t664, r_right_0_front_elbow_down_alike_2 - t1447, r_right_0_front_elbow_down_alike_2)
-    t1457 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
-    t1458 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
-    t1459 = t231 * (1.0 + t1457) - straight_mid_front_elbow_down_alike * t1458
-    t1460 = ops.select(t664, t1459, t231)
-    sigma_right_front_elbow_down_alike = ops.sign(-t1460)
-    t1461 = 2.0 * sigma_right_front_elbow_down_alike
-    t1462 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t1463 = ops.sqrt(ops.select(t928, t1462, 1.0))
-    s_bend_right_front_elbow_down_alike = ops.select(short_right, 0.0, t1454 * (t1461 * t1463))
-    t1464 = fore_arm_2 * s_bend_right_front_elbow_down_alike
-    up_right_front_elbow_down_alike = t1456 - r_right_front_elbow_down_alike_2 * t1464
-    t1465 = r_right_front_elbow_down_alike_2 * ahead_1_right_front_elbow_down_alike
-    out_right_front_elbow_down_alike = t1465 + h_right_front_elbow_down_alike_2 * t1464
-    t1466 = ops.select(t926, out_right_front_elbow_down_alike, 1.0)
-    t1467 = ops.atan2(up_right_front_elbow_down_alike, t1466)
-    t1468 = ops.select(folded_right_front_elbow_down_alike, t1314, t1467)
-    t1469 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1468))
-    t1470 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    t1471 = ops.atan2(2.0 * t1463, ops.select(t915, t1470, 1.0))
-    t1472 = ops.select(short_right, 0.0, sigma_right_front_elbow_down_alike * t1471)
-    t1473 = ops.select(failed_4, ops.nan, ops.wrap(t1280 + t1472))
-    t1474 = elbow_21_front_elbow_down_alike_2 - h_left_0_front_elbow_down_alike_2
-    t1475 = swing_21_front_elbow_down_alike_2 + t1437 * (t1433 * t1474)
-    t1476 = elbow_11_front_elbow_down_alike_2 - r_left_0_front_elbow_down_alike_2
-    t1477 = t1436 * (turn_both_front_elbow_down_alike_2 * t1476)
-    more_left_21_front_elbow_down_alike_2 = t1475 - t1477
-    t1478 = h_left_0_front_elbow_down_alike_2 + more_left_21_front_elbow_down_alike_2
-    h_left_front_elbow_down_alike_2 = ops.select(t664, t1478, h_left_0_front_elbow_down_alike_2)
-    t1479 = t1436 * (turn_both_front_elbow_down_alike_2 * t1474)
-    t1480 = t1445 - t1437 * (t1433 * t1476) - t1479
-    t1481 = t1480 - 2.0 * r_left_0_front_elbow_down_alike_2
-    t1482 = more_left_21_front_elbow_down_alike_2 + 2.0 * h_left_0_front_elbow_down_alike_2
-    t1483 = more_left_21_front_elbow_down_alike_2 * t1482
-    change_left_front_elbow_down_alike_2 = ops.select(t664, t1480 * t1481 + t1483, 0.0)
-    t1484 = farther_left_front_elbow_down_alike_2 + change_left_front_elbow_down_alike_2
-    M_left_front_elbow_down_alike = ops.max(t1484, 0.0)
-    t1485 = -(t1342 + change_left_front_elbow_down_alike_2)
-    N_left_front_elbow_down_alike = ops.max(t1485, 0.0)
+    t1458 = ops.select(t927, whole_right_front_elbow_down_alike, 1.0)
+    t1459 = 1.0 / t1458
+    t1460 = t1264 * M_right_front_elbow_down_alike * t1459
+    ahead_1_right_front_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1460)
+    t1461 = h_right_front_elbow_down_alike_2 * ahead_1_right_front_elbow_down_alike
+    r_right_front_elbow_down_alike_2 = ops.select(t664, r_right_0_front_elbow_down_alike_2 - t1451, r_right_0_front_elbow_down_alike_2)
+    t1462 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t1463 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    t1464 = t231 * (1.0 + t1462) - straight_mid_front_elbow_down_alike * t1463
+    t1465 = ops.select(t664, t1464, t231)
+    sigma_right_front_elbow_down_alike = ops.sign(-t1465)
+    t1466 = 2.0 * sigma_right_front_elbow_down_alike
+    t1467 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t1468 = ops.sqrt(ops.select(t928, t1467, 1.0))
+    s_bend_right_front_elbow_down_alike = ops.select(short_right, 0.0, t1459 * (t1466 * t1468))
+    t1469 = fore_arm_2 * s_bend_right_front_elbow_down_alike
+    up_right_front_elbow_down_alike = t1461 - r_right_front_elbow_down_alike_2 * t1469
+    t1470 = r_right_front_elbow_down_alike_2 * ahead_1_right_front_elbow_down_alike
+    out_right_front_elbow_down_alike = t1470 + h_right_front_elbow_down_alike_2 * t1469
+    t1471 = ops.select(t926, out_right_front_elbow_down_alike, 1.0)
+    t1472 = ops.atan2(up_right_front_elbow_down_alike, t1471)
+    t1473 = ops.select(folded_right_front_elbow_down_alike, t1316, t1472)
+    t1474 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1473))
+    t1475 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t1476 = ops.atan2(2.0 * t1468, ops.select(t915, t1475, 1.0))
+    t1477 = ops.select(short_right, 0.0, sigma_right_front_elbow_down_alike * t1476)
+    t1478 = ops.select(failed_4, ops.nan, ops.wrap(t1281 + t1477))
+    t1479 = elbow_21_front_elbow_down_alike_2 - h_left_0_front_elbow_down_alike_2
+    t1480 = swing_21_front_elbow_down_alike_2 + t1441 * (t1437 * t1479)
+    t1481 = elbow_11_front_elbow_down_alike_2 - r_left_0_front_elbow_down_alike_2
+    t1482 = t1440 * (turn_both_front_elbow_down_alike_2 * t1481)
+    more_left_21_front_elbow_down_alike_2 = t1480 - t1482
+    t1483 = h_left_0_front_elbow_down_alike_2 + more_left_21_front_elbow_down_alike_2
+    h_left_front_elbow_down_alike_2 = ops.select(t664, t1483, h_left_0_front_elbow_down_alike_2)
+    t1484 = t1440 * (turn_both_front_elbow_down_alike_2 * t1479)
+    t1485 = t1449 - t1441 * (t1437 * t1481) - t1484
+    t1486 = t1485 - 2.0 * r_left_0_front_elbow_down_alike_2
+    t1487 = more_left_21_front_elbow_down_alike_2 + 2.0 * h_left_0_front_elbow_down_alike_2
+    t1488 = more_left_21_front_elbow_down_alike_2 * t1487
+    t1489 = ops.select(t922, t1485 * t1486, 1.0) + ops.select(t922, t1488, 1.0)
+    change_left_front_elbow_down_alike_2 = ops.select(t664, t1489, 0.0)
+    t1490 = farther_left_front_elbow_down_alike_2 + change_left_front_elbow_down_alike_2
+    M_left_front_elbow_down_alike = ops.max(t1490, 0.0)
+    t1491 = -(t1344 + change_left_front_elbow_down_alike_2)
+    N_left_front_elbow_down_alike = ops.max(t1491, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t1486 = ops.select(t920, whole_left_front_elbow_down_alike, 1.0)
-    t1487 = 1.0 / t1486
-    t1488 = t1264 * M_left_front_elbow_down_alike * t1487
-    ahead_1_left_front_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1488)
-    t1489 = h_left_front_elbow_down_alike_2 * ahead_1_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike_2 = ops.select(t664, r_left_0_front_elbow_down_alike_2 - t1480, r_left_0_front_elbow_down_alike_2)
-    t1490 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t1491 = ops.sqrt(ops.select(t921, t1490, 1.0))
-    s_bend_left_front_elbow_down_alike = ops.select(short_right, 0.0, t1487 * (t1461 * t1491))
-    t1492 = fore_arm_2 * s_bend_left_front_elbow_down_alike
-    t1493 = r_left_front_elbow_down_alike_2 * t1492
-    t1494 = r_left_front_elbow_down_alike_2 * ahead_1_left_front_elbow_down_alike
-    t1495 = h_left_front_elbow_down_alike_2 * t1492
-    t1496 = ops.atan2(t1489 - t1493, ops.select(t919, t1494 + t1495, 1.0))
-    t1497 = ops.select(folded_left_front_elbow_down_alike, t1314, t1496)
-    t1498 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1497))
-    t1499 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    t1500 = ops.atan2(2.0 * t1491, ops.select(t915, t1499, 1.0))
-    t1501 = ops.select(short_right, 0.0, sigma_right_front_elbow_down_alike * t1500)
-    t1502 = ops.select(failed_4, ops.nan, ops.wrap(t1280 + t1501))
-    t1503 = ops.select(failed_4, ops.nan, t1300)
-    t1504 = ops.atan2(t1489 + t1493, ops.select(t919, t1494 - t1495, 1.0))
-    t1505 = ops.select(folded_left_front_elbow_down_alike, t1314, t1504)
-    t1506 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1505))
-    t1507 = ops.select(failed_4, ops.nan, ops.wrap(t1280 - t1501))
-    t1508 = ops.wrap(-ops.select(nowhere, 0.0, t813 + t1105))
-    t1509 = ops.select(failed_2, ops.nan, t1508)
-    t1510 = (t415 & folded_right_rear_elbow_up_alike) | (t415 & folded_left_rear_elbow_up_alike)
+    t1492 = ops.select(t920, whole_left_front_elbow_down_alike, 1.0)
+    t1493 = 1.0 / t1492
+    t1494 = t1264 * M_left_front_elbow_down_alike * t1493
+    ahead_1_left_front_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1494)
+    t1495 = h_left_front_elbow_down_alike_2 * ahead_1_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike_2 = ops.select(t664, r_left_0_front_elbow_down_alike_2 - t1485, r_left_0_front_elbow_down_alike_2)
+    t1496 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t1497 = ops.sqrt(ops.select(t921, t1496, 1.0))
+    s_bend_left_front_elbow_down_alike = ops.select(short_right, 0.0, t1493 * (t1466 * t1497))
+    t1498 = fore_arm_2 * s_bend_left_front_elbow_down_alike
+    t1499 = r_left_front_elbow_down_alike_2 * t1498
+    t1500 = r_left_front_elbow_down_alike_2 * ahead_1_left_front_elbow_down_alike
+    t1501 = h_left_front_elbow_down_alike_2 * t1498
+    t1502 = ops.atan2(t1495 - t1499, ops.select(t919, t1500 + t1501, 1.0))
+    t1503 = ops.select(folded_left_front_elbow_down_alike, t1316, t1502)
+    t1504 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1503))
+    t1505 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t1506 = ops.atan2(2.0 * t1497, ops.select(t915, t1505, 1.0))
+    t1507 = ops.select(short_right, 0.0, sigma_right_front_elbow_down_alike * t1506)
+    t1508 = ops.select(failed_4, ops.nan, ops.wrap(t1281 + t1507))
+    t1509 = ops.select(failed_4, ops.nan, t1302)
+    t1510 = ops.atan2(t1495 + t1499, ops.select(t919, t1500 - t1501, 1.0))
+    t1511 = ops.select(folded_left_front_elbow_down_alike, t1316, t1510)
+    t1512 = ops.select(failed_4, ops.nan, ops.wrap_cut(t1511))
+    t1513 = ops.select(failed_4, ops.nan, ops.wrap(t1281 - t1507))
+    t1514 = ops.wrap(-ops.select(nowhere, 0.0, t813 + t1105))
+    t1515 = ops.select(failed_2, ops.nan, t1514)
+    t1516 = (t415 & folded_right_rear_elbow_up_alike) | (t415 & folded_left_rear_elbow_up_alike)
     ctheta2A_rear_elbow_up_alike_2 = ops.select(folded, 1.0, -t1119)
-    t1511 = ops.select(t1510, ctheta2A_rear_elbow_up_alike_2, 1.0)
-    t1512 = ops.atan2(stheta2A_2, t1511)
-    t1513 = c_relative_front_elbow_down_alike_2 * ctheta2A_rear_elbow_up_alike_2
-    t1514 = stheta2A_2 * s_relative_front_elbow_down_alike_2
-    ctheta23A_rear_elbow_up_alike_2 = t1513 - t1514
-    t1515 = elbow_21_2 - L2 * ctheta23A_rear_elbow_up_alike_2
-    t1516 = stheta2A_2 * c_relative_front_elbow_down_alike_2
-    t1517 = s_relative_front_elbow_down_alike_2 * ctheta2A_rear_elbow_up_alike_2
-    stheta23A_rear_elbow_up_alike_2 = t1516 + t1517
-    point_21_rear_elbow_up_alike_2 = t1515 + a3 * stheta23A_rear_elbow_up_alike_2
-    t1518 = t1138 * (t_psi_2 * ctheta23A_rear_elbow_up_alike_2)
-    t1519 = t1518 + t_phi_2 * stheta23A_rear_elbow_up_alike_2
-    t1520 = d * t1519
-    h_right_0_rear_elbow_up_alike_2 = point_21_rear_elbow_up_alike_2 - t1520
-    h_left_0_rear_elbow_up_alike_2 = point_21_rear_elbow_up_alike_2 + t1520
-    t1521 = h_left_0_rear_elbow_up_alike_2 * h_left_0_rear_elbow_up_alike_2
+    t1517 = ops.select(t1516, ctheta2A_rear_elbow_up_alike_2, 1.0)
+    t1518 = ops.atan2(stheta2A_2, t1517)
+    t1519 = c_relative_front_elbow_down_alike_2 * ctheta2A_rear_elbow_up_alike_2
+    t1520 = stheta2A_2 * s_relative_front_elbow_down_alike_2
+    ctheta23A_rear_elbow_up_alike_2 = t1519 - t1520
+    t1521 = elbow_21_2 - L2 * ctheta23A_rear_elbow_up_alike_2
+    t1522 = stheta2A_2 * c_relative_front_elbow_down_alike_2
+    t1523 = s_relative_front_elbow_down_alike_2 * ctheta2A_rear_elbow_up_alike_2
+    stheta23A_rear_elbow_up_alike_2 = t1522 + t1523
+    point_21_rear_elbow_up_alike_2 = t1521 + a3 * stheta23A_rear_elbow_up_alike_2
+    t1524 = t1138 * (t_psi_2 * ctheta23A_rear_elbow_up_alike_2)
+    t1525 = t1524 + t_phi_2 * stheta23A_rear_elbow_up_alike_2
+    t1526 = d * t1525
+    h_right_0_rear_elbow_up_alike_2 = point_21_rear_elbow_up_alike_2 - t1526
+    h_left_0_rear_elbow_up_alike_2 = point_21_rear_elbow_up_alike_2 + t1526
+    t1527 = h_left_0_rear_elbow_up_alike_2 * h_left_0_rear_elbow_up_alike_2
     elbow_11_rear_elbow_up_alike_2 = L1 * ctheta2A_rear_elbow_up_alike_2
-    t1522 = elbow_11_rear_elbow_up_alike_2 + L2 * stheta23A_rear_elbow_up_alike_2
-    point_11_rear_elbow_up_alike_2 = t1522 + a3 * ctheta23A_rear_elbow_up_alike_2
-    t1523 = t1138 * (t_psi_2 * stheta23A_rear_elbow_up_alike_2)
-    t1524 = t_phi_2 * ctheta23A_rear_elbow_up_alike_2 - t1523
-    t1525 = d * t1524
-    r_left_0_rear_elbow_up_alike_2 = point_11_rear_elbow_up_alike_2 + t1525
-    t1526 = r_left_0_rear_elbow_up_alike_2 * r_left_0_rear_elbow_up_alike_2
-    gap_rear_elbow_up_alike_2 = t1525 * t1525 + t1520 * t1520
-    t1527 = M_mid_front_elbow_down_alike_2 + gap_rear_elbow_up_alike_2
-    t1528 = 2.0 * point_11_rear_elbow_up_alike_2 * t1525 + 2.0 * point_21_rear_elbow_up_alike_2 * t1520
-    farther_left_rear_elbow_up_alike_2 = ops.select(t258, t1521 + t1526 - t1149, t1527 + t1528)
-    t1529 = N_mid_front_elbow_down_alike_2 - gap_rear_elbow_up_alike_2
-    t1530 = t1528 - t1529
-    room_left_rear_elbow_up_alike_2 = ops.min(farther_left_rear_elbow_up_alike_2, -t1530)
-    t1531 = ctheta2A_rear_elbow_up_alike_2 * h_left_0_rear_elbow_up_alike_2
-    t1532 = t1531 - stheta2A_2 * r_left_0_rear_elbow_up_alike_2
-    t1533 = t1532 * t264
-    t1534 = ops.abs(t28 * t1533)
+    t1528 = elbow_11_rear_elbow_up_alike_2 + L2 * stheta23A_rear_elbow_up_alike_2
+    point_11_rear_elbow_up_alike_2 = t1528 + a3 * ctheta23A_rear_elbow_up_alike_2
+    t1529 = t1138 * (t_psi_2 * stheta23A_rear_elbow_up_alike_2)
+    t1530 = t_phi_2 * ctheta23A_rear_elbow_up_alike_2 - t1529
+    t1531 = d * t1530
+    r_left_0_rear_elbow_up_alike_2 = point_11_rear_elbow_up_alike_2 + t1531
+    t1532 = r_left_0_rear_elbow_up_alike_2 * r_left_0_rear_elbow_up_alike_2
+    gap_rear_elbow_up_alike_2 = t1531 * t1531 + t1526 * t1526
+    t1533 = M_mid_front_elbow_down_alike_2 + gap_rear_elbow_up_alike_2
+    t1534 = 2.0 * point_11_rear_elbow_up_alike_2 * t1531 + 2.0 * point_21_rear_elbow_up_alike_2 * t1526
+    farther_left_rear_elbow_up_alike_2 = ops.select(t258, t1527 + t1532 - t1149, t1533 + t1534)
+    t1535 = N_mid_front_elbow_down_alike_2 - gap_rear_elbow_up_alike_2
+    t1536 = t1534 - t1535
+    margin_left_rear_elbow_up_alike_2 = ops.min(farther_left_rear_elbow_up_alike_2, -t1536)
+    t1537 = ctheta2A_rear_elbow_up_alike_2 * h_left_0_rear_elbow_up_alike_2
+    t1538 = t1537 - stheta2A_2 * r_left_0_rear_elbow_up_alike_2
+    t1539 = t1538 * t264
+    t1540 = ops.abs(t28 * t1539)
     heavy_1_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1179, 1.0)
-    t1535 = ops.select(t913, heavy_1_left_rear_elbow_up_alike_2, 1.0)
-    gain_1_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1534 / t1535, 0.0)
-    t1536 = gain_1_left_rear_elbow_up_alike_2 * gain_1_left_rear_elbow_up_alike_2
-    slope_left_rear_elbow_up_alike_2 = t1350 * t1533
-    heavy_0_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1354, 1.0)
-    t1537 = ops.select(t913, heavy_0_left_rear_elbow_up_alike_2, 1.0)
-    t1538 = ops.abs(slope_left_rear_elbow_up_alike_2) / t1537
-    gain_0_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1538, 0.0)
-    t1539 = gain_0_left_rear_elbow_up_alike_2 * gain_0_left_rear_elbow_up_alike_2
-    t1540 = t1536 / ops.select(t912, t1182 + t1536 + t1539, 1.0)
-    share_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, ops.select(t273, t1540, 0.0), 0.0)
-    t1541 = room_left_rear_elbow_up_alike_2 * (1.0 - share_left_rear_elbow_up_alike_2)
-    t1542 = 2.0 * t1541
-    t1543 = t1200 * heavy_0_left_rear_elbow_up_alike_2
-    t1544 = t1543 * 5.960464477539063e-08
-    t1545 = ctheta2A_rear_elbow_up_alike_2 * r_left_0_rear_elbow_up_alike_2
-    t1546 = L1 - t1545 - stheta2A_2 * h_left_0_rear_elbow_up_alike_2
-    t1547 = t1190 * (t1363 * t264 * t1546)
-    t1548 = slope_left_rear_elbow_up_alike_2 * slope_left_rear_elbow_up_alike_2
-    t1549 = ops.select(t910, ops.max(0.0, 4.0 * t1541 * t1547 + t1548), 1.0)
-    root_on_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.sqrt(t1549), 0.0)
-    t1550 = slope_left_rear_elbow_up_alike_2 + root_on_1_both_rear_elbow_up_alike_2
-    t1551 = t1542 * (1.0 / ops.select(t892, t1544 + t1550, 1.0))
-    t1552 = slope_left_rear_elbow_up_alike_2 - root_on_1_both_rear_elbow_up_alike_2
-    t1553 = t1543 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1547)
-    t1554 = 1.0 / ops.select(t894 | t908, t1553, 1.0)
-    far_on_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t346, -(t1552 * t1554), 0.0), 0.0)
-    t1555 = ops.select(t292, far_on_1_both_rear_elbow_up_alike_2, 0.0)
-    t1556 = ops.select(t341, ops.select(t343, -t1551, 0.0), t1555)
-    t1557 = h_right_0_rear_elbow_up_alike_2 * h_right_0_rear_elbow_up_alike_2
-    r_right_0_rear_elbow_up_alike_2 = point_11_rear_elbow_up_alike_2 - t1525
-    t1558 = r_right_0_rear_elbow_up_alike_2 * r_right_0_rear_elbow_up_alike_2
-    farther_right_rear_elbow_up_alike_2 = ops.select(t229, t1557 + t1558 - t1149, t1527 - t1528)
-    nearer_right_rear_elbow_up_alike_2 = t1528 + t1529
-    room_right_rear_elbow_up_alike_2 = ops.min(farther_right_rear_elbow_up_alike_2, nearer_right_rear_elbow_up_alike_2)
-    t1559 = ctheta2A_rear_elbow_up_alike_2 * h_right_0_rear_elbow_up_alike_2
-    t1560 = t1559 - stheta2A_2 * r_right_0_rear_elbow_up_alike_2
-    t1561 = t1560 * t244
-    t1562 = ops.abs(t28 * t1561)
+    t1541 = ops.select(t913, heavy_1_left_rear_elbow_up_alike_2, 1.0)
+    gain_1_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1540 / t1541, 0.0)
+    t1542 = gain_1_left_rear_elbow_up_alike_2 * gain_1_left_rear_elbow_up_alike_2
+    slope_left_rear_elbow_up_alike_2 = t1352 * t1539
+    heavy_0_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1356, 1.0)
+    t1543 = ops.select(t913, heavy_0_left_rear_elbow_up_alike_2, 1.0)
+    t1544 = ops.abs(slope_left_rear_elbow_up_alike_2) / t1543
+    gain_0_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, t1544, 0.0)
+    t1545 = gain_0_left_rear_elbow_up_alike_2 * gain_0_left_rear_elbow_up_alike_2
+    t1546 = t1542 / ops.select(t912, t1182 + t1542 + t1545, 1.0)
+    share_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, ops.select(t273, t1546, 0.0), 0.0)
+    t1547 = margin_left_rear_elbow_up_alike_2 * (1.0 - share_left_rear_elbow_up_alike_2)
+    t1548 = 2.0 * t1547
+    t1549 = t1200 * heavy_0_left_rear_elbow_up_alike_2
+    t1550 = t1549 * 5.960464477539063e-08
+    t1551 = ctheta2A_rear_elbow_up_alike_2 * r_left_0_rear_elbow_up_alike_2
+    t1552 = L1 - t1551 - stheta2A_2 * h_left_0_rear_elbow_up_alike_2
+    t1553 = t1190 * (t1365 * t264 * t1552)
+    t1554 = slope_left_rear_elbow_up_alike_2 * slope_left_rear_elbow_up_alike_2
+    t1555 = ops.select(t910, ops.max(0.0, 4.0 * t1547 * t1553 + t1554), 1.0)
+    root_on_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.sqrt(t1555), 0.0)
+    t1556 = slope_left_rear_elbow_up_alike_2 + root_on_1_both_rear_elbow_up_alike_2
+    t1557 = t1548 * (1.0 / ops.select(t892, t1550 + t1556, 1.0))
+    t1558 = slope_left_rear_elbow_up_alike_2 - root_on_1_both_rear_elbow_up_alike_2
+    t1559 = t1549 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1553)
+    t1560 = 1.0 / ops.select(t894 | t908, t1559, 1.0)
+    far_on_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t346, -(t1558 * t1560), 0.0), 0.0)
+    t1561 = ops.select(t292, far_on_1_both_rear_elbow_up_alike_2, 0.0)
+    t1562 = ops.select(t341, ops.select(t343, -t1557, 0.0), t1561)
+    t1563 = h_right_0_rear_elbow_up_alike_2 * h_right_0_rear_elbow_up_alike_2
+    r_right_0_rear_elbow_up_alike_2 = point_11_rear_elbow_up_alike_2 - t1531
+    t1564 = r_right_0_rear_elbow_up_alike_2 * r_right_0_rear_elbow_up_alike_2
+    farther_right_rear_elbow_up_alike_2 = ops.select(t229, t1563 + t1564 - t1149, t1533 - t1534)
+    nearer_right_rear_elbow_up_alike_2 = t1534 + t1535
+    margin_right_rear_elbow_up_alike_2 = ops.min(farther_right_rear_elbow_up_alike_2, nearer_right_rear_elbow_up_alike_2)
+    t1565 = ctheta2A_rear_elbow_up_alike_2 * h_right_0_rear_elbow_up_alike_2
+    t1566 = t1565 - stheta2A_2 * r_right_0_rear_elbow_up_alike_2
+    t1567 = t1566 * t244
+    t1568 = ops.abs(t28 * t1567)
     heavy_1_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1179, 1.0)
-    t1563 = ops.select(t904, heavy_1_right_rear_elbow_up_alike_2, 1.0)
-    gain_1_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1562 / t1563, 0.0)
-    t1564 = gain_1_right_rear_elbow_up_alike_2 * gain_1_right_rear_elbow_up_alike_2
-    slope_right_rear_elbow_up_alike_2 = t1350 * t1561
-    heavy_0_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1354, 1.0)
-    t1565 = ops.select(t904, heavy_0_right_rear_elbow_up_alike_2, 1.0)
-    t1566 = ops.abs(slope_right_rear_elbow_up_alike_2) / t1565
-    gain_0_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1566, 0.0)
-    t1567 = gain_0_right_rear_elbow_up_alike_2 * gain_0_right_rear_elbow_up_alike_2
-    t1568 = t1564 / ops.select(t903, t1182 + t1564 + t1567, 1.0)
-    share_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, ops.select(t302, t1568, 0.0), 0.0)
-    t1569 = room_right_rear_elbow_up_alike_2 * (1.0 - share_right_rear_elbow_up_alike_2)
-    t1570 = 2.0 * t1569
-    t1571 = t1200 * heavy_0_right_rear_elbow_up_alike_2
-    t1572 = t1571 * 5.960464477539063e-08
-    t1573 = ctheta2A_rear_elbow_up_alike_2 * r_right_0_rear_elbow_up_alike_2
-    t1574 = L1 - t1573 - stheta2A_2 * h_right_0_rear_elbow_up_alike_2
-    t1575 = t1190 * (t1363 * t244 * t1574)
-    t1576 = slope_right_rear_elbow_up_alike_2 * slope_right_rear_elbow_up_alike_2
-    t1577 = ops.select(t901, ops.max(0.0, 4.0 * t1569 * t1575 + t1576), 1.0)
-    root_on_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.sqrt(t1577), 0.0)
-    t1578 = slope_right_rear_elbow_up_alike_2 + root_on_0_both_rear_elbow_up_alike_2
-    t1579 = t1570 * (1.0 / ops.select(t888, t1572 + t1578, 1.0))
-    t1580 = slope_right_rear_elbow_up_alike_2 - root_on_0_both_rear_elbow_up_alike_2
-    t1581 = t1571 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1575)
-    t1582 = 1.0 / ops.select(t890 | t899, t1581, 1.0)
-    far_on_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t354, -(t1580 * t1582), 0.0), 0.0)
-    t1583 = ops.select(t319, far_on_0_both_rear_elbow_up_alike_2, 0.0)
-    t1584 = ops.select(t349, ops.select(t351, -t1579, 0.0), t1583)
-    near_on_both_rear_elbow_up_alike_2 = ops.select(t272, ops.max(ops.max(0.0, t1556), t1584), 0.0)
-    t1585 = ops.select(t359, far_on_0_both_rear_elbow_up_alike_2, 0.0)
-    t1586 = ops.max(near_on_both_rear_elbow_up_alike_2, t1585)
-    t1587 = ops.select(t364, far_on_1_both_rear_elbow_up_alike_2, 0.0)
-    t1588 = 1.0 / ops.select(t905, t1552 - t1544, 1.0) * t1542
-    far_back_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t298, t1550 * t1554, 0.0), 0.0)
-    t1589 = ops.select(t292, far_back_1_both_rear_elbow_up_alike_2, 0.0)
-    t1590 = ops.select(t278, ops.select(t290, t1588, 0.0), t1589)
-    t1591 = 1.0 / ops.select(t897, t1580 - t1572, 1.0) * t1570
-    far_back_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t325, t1578 * t1582, 0.0), 0.0)
-    t1592 = ops.select(t319, far_back_0_both_rear_elbow_up_alike_2, 0.0)
-    t1593 = ops.select(t301, ops.select(t317, t1591, 0.0), t1592)
-    near_back_both_rear_elbow_up_alike_2 = ops.select(t272, ops.max(ops.max(0.0, t1590), t1593), 0.0)
-    t1594 = ops.select(t330, far_back_0_both_rear_elbow_up_alike_2, 0.0)
-    t1595 = ops.max(near_back_both_rear_elbow_up_alike_2, t1594)
-    t1596 = ops.select(t335, far_back_1_both_rear_elbow_up_alike_2, 0.0)
-    t1597 = ops.select(t370, ops.select(t272, ops.max(t1586, t1587), 0.0), -ops.select(t272, ops.max(t1595, t1596), 0.0))
-    turn_both_rear_elbow_up_alike_2 = ops.select(t272, t1597, 0.0)
-    t1598 = room_right_rear_elbow_up_alike_2 * share_right_rear_elbow_up_alike_2
-    t1599 = t1200 * heavy_1_right_rear_elbow_up_alike_2 * 5.960464477539063e-08
-    t1600 = t1598 * t376 / ops.select(t884, t1562 + t1599, 1.0)
-    aside_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, -t1600, 0.0)
-    t1601 = room_left_rear_elbow_up_alike_2 * share_left_rear_elbow_up_alike_2
-    t1602 = t1200 * heavy_1_left_rear_elbow_up_alike_2 * 5.960464477539063e-08
-    t1603 = t1601 * t373 / ops.select(t885, t1534 + t1602, 1.0)
-    aside_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, -t1603, 0.0)
-    t1604 = ops.select(t378, aside_right_rear_elbow_up_alike_2, aside_left_rear_elbow_up_alike_2)
-    t1605 = drawn_front_elbow_down_alike_2 * turn_both_rear_elbow_up_alike_2
-    t1606 = turn_both_rear_elbow_up_alike_2 + t1604 - t1190 * t1605
-    lean_rear_elbow_up_alike_2 = ops.select(t272, t1606, 0.0)
-    t1607 = lean_rear_elbow_up_alike_2 * lean_rear_elbow_up_alike_2
-    t1608 = 1.0 + t1607
-    t1609 = ops.select(t882, ops.sqrt(ops.select(t882, t1608, 1.0)), 1.0)
-    t1610 = 1.0 / t1609
-    t1611 = elbow_11_rear_elbow_up_alike_2 * lean_rear_elbow_up_alike_2
-    t1612 = 1.0 / ops.select(t882, t1608 * (1.0 + t1610), 1.0)
-    swing_21_rear_elbow_up_alike_2 = t1610 * t1611 - t1612 * (elbow_21_2 * t1607)
-    t1613 = turn_both_rear_elbow_up_alike_2 * turn_both_rear_elbow_up_alike_2
-    t1614 = 1.0 + t1613
-    t1615 = ops.select(t882, ops.sqrt(ops.select(t882, t1614, 1.0)), 1.0)
-    t1616 = 1.0 / t1615
-    t1617 = 1.0 / ops.select(t882, t1614 * (1.0 + t1616), 1.0)
-    t1618 = elbow_21_2 - h_right_0_rear_elbow_up_alike_2
-    t1619 = swing_21_rear_elbow_up_alike_2 + t1617 * (t1613 * t1618)
-    t1620 = elbow_11_rear_elbow_up_alike_2 - r_right_0_rear_elbow_up_alike_2
-    t1621 = t1616 * (turn_both_rear_elbow_up_alike_2 * t1620)
-    more_right_21_rear_elbow_up_alike_2 = t1619 - t1621
-    t1622 = h_right_0_rear_elbow_up_alike_2 + more_right_21_rear_elbow_up_alike_2
-    h_right_rear_elbow_up_alike_2 = ops.select(t272, t1622, h_right_0_rear_elbow_up_alike_2)
-    t1623 = elbow_11_rear_elbow_up_alike_2 * t1607 * t1612
-    t1624 = t1610 * (elbow_21_2 * lean_rear_elbow_up_alike_2)
-    t1625 = t1623 + t1624
-    t1626 = t1616 * (turn_both_rear_elbow_up_alike_2 * t1618)
-    t1627 = t1625 - t1613 * t1620 * t1617 - t1626
-    t1628 = t1627 - 2.0 * r_right_0_rear_elbow_up_alike_2
-    t1629 = more_right_21_rear_elbow_up_alike_2 + 2.0 * h_right_0_rear_elbow_up_alike_2
-    t1630 = t1627 * t1628 + more_right_21_rear_elbow_up_alike_2 * t1629
-    change_right_rear_elbow_up_alike_2 = ops.select(t272, t1630, 0.0)
-    t1631 = farther_right_rear_elbow_up_alike_2 + change_right_rear_elbow_up_alike_2
-    M_right_rear_elbow_up_alike = ops.max(t1631, t1268)
-    t1632 = nearer_right_rear_elbow_up_alike_2 - change_right_rear_elbow_up_alike_2
-    N_right_rear_elbow_up_alike = ops.max(t1632, t1268)
+    t1569 = ops.select(t904, heavy_1_right_rear_elbow_up_alike_2, 1.0)
+    gain_1_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1568 / t1569, 0.0)
+    t1570 = gain_1_right_rear_elbow_up_alike_2 * gain_1_right_rear_elbow_up_alike_2
+    slope_right_rear_elbow_up_alike_2 = t1352 * t1567
+    heavy_0_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1356, 1.0)
+    t1571 = ops.select(t904, heavy_0_right_rear_elbow_up_alike_2, 1.0)
+    t1572 = ops.abs(slope_right_rear_elbow_up_alike_2) / t1571
+    gain_0_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, t1572, 0.0)
+    t1573 = gain_0_right_rear_elbow_up_alike_2 * gain_0_right_rear_elbow_up_alike_2
+    t1574 = t1570 / ops.select(t903, t1182 + t1570 + t1573, 1.0)
+    share_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, ops.select(t302, t1574, 0.0), 0.0)
+    t1575 = margin_right_rear_elbow_up_alike_2 * (1.0 - share_right_rear_elbow_up_alike_2)
+    t1576 = 2.0 * t1575
+    t1577 = t1200 * heavy_0_right_rear_elbow_up_alike_2
+    t1578 = t1577 * 5.960464477539063e-08
+    t1579 = ctheta2A_rear_elbow_up_alike_2 * r_right_0_rear_elbow_up_alike_2
+    t1580 = L1 - t1579 - stheta2A_2 * h_right_0_rear_elbow_up_alike_2
+    t1581 = t1190 * (t1365 * t244 * t1580)
+    t1582 = slope_right_rear_elbow_up_alike_2 * slope_right_rear_elbow_up_alike_2
+    t1583 = ops.select(t901, ops.max(0.0, 4.0 * t1575 * t1581 + t1582), 1.0)
+    root_on_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.sqrt(t1583), 0.0)
+    t1584 = slope_right_rear_elbow_up_alike_2 + root_on_0_both_rear_elbow_up_alike_2
+    t1585 = t1576 * (1.0 / ops.select(t888, t1578 + t1584, 1.0))
+    t1586 = slope_right_rear_elbow_up_alike_2 - root_on_0_both_rear_elbow_up_alike_2
+    t1587 = t1577 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1581)
+    t1588 = 1.0 / ops.select(t890 | t899, t1587, 1.0)
+    far_on_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t354, -(t1586 * t1588), 0.0), 0.0)
+    t1589 = ops.select(t319, far_on_0_both_rear_elbow_up_alike_2, 0.0)
+    t1590 = ops.select(t349, ops.select(t351, -t1585, 0.0), t1589)
+    near_on_both_rear_elbow_up_alike_2 = ops.select(t272, ops.max(ops.max(0.0, t1562), t1590), 0.0)
+    t1591 = ops.select(t359, far_on_0_both_rear_elbow_up_alike_2, 0.0)
+    t1592 = ops.max(near_on_both_rear_elbow_up_alike_2, t1591)
+    t1593 = ops.select(t364, far_on_1_both_rear_elbow_up_alike_2, 0.0)
+    t1594 = 1.0 / ops.select(t905, t1558 - t1550, 1.0) * t1548
+    far_back_1_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t298, t1556 * t1560, 0.0), 0.0)
+    t1595 = ops.select(t292, far_back_1_both_rear_elbow_up_alike_2, 0.0)
+    t1596 = ops.select(t278, ops.select(t290, t1594, 0.0), t1595)
+    t1597 = 1.0 / ops.select(t897, t1586 - t1578, 1.0) * t1576
+    far_back_0_both_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t325, t1584 * t1588, 0.0), 0.0)
+    t1598 = ops.select(t319, far_back_0_both_rear_elbow_up_alike_2, 0.0)
+    t1599 = ops.select(t301, ops.select(t317, t1597, 0.0), t1598)
+    near_back_both_rear_elbow_up_alike_2 = ops.select(t272, ops.max(ops.max(0.0, t1596), t1599), 0.0)
+    t1600 = ops.select(t330, far_back_0_both_rear_elbow_up_alike_2, 0.0)
+    t1601 = ops.max(near_back_both_rear_elbow_up_alike_2, t1600)
+    t1602 = ops.select(t335, far_back_1_both_rear_elbow_up_alike_2, 0.0)
+    t1603 = ops.select(t370, ops.select(t272, ops.max(t1592, t1593), 0.0), -ops.select(t272, ops.max(t1601, t1602), 0.0))
+    turn_both_rear_elbow_up_alike_2 = ops.select(t272, t1603, 0.0)
+    t1604 = margin_right_rear_elbow_up_alike_2 * share_right_rear_elbow_up_alike_2
+    t1605 = t1200 * heavy_1_right_rear_elbow_up_alike_2 * 5.960464477539063e-08
+    t1606 = t1604 * t376 / ops.select(t884, t1568 + t1605, 1.0)
+    aside_right_rear_elbow_up_alike_2 = ops.select(spent_right_rear_elbow_up_alike, -t1606, 0.0)
+    t1607 = margin_left_rear_elbow_up_alike_2 * share_left_rear_elbow_up_alike_2
+    t1608 = t1200 * heavy_1_left_rear_elbow_up_alike_2 * 5.960464477539063e-08
+    t1609 = t1607 * t373 / ops.select(t885, t1540 + t1608, 1.0)
+    aside_left_rear_elbow_up_alike_2 = ops.select(spent_left_rear_elbow_up_alike, -t1609, 0.0)
+    t1610 = ops.select(t378, aside_right_rear_elbow_up_alike_2, aside_left_rear_elbow_up_alike_2)
+    t1611 = drawn_front_elbow_down_alike_2 * turn_both_rear_elbow_up_alike_2
+    t1612 = turn_both_rear_elbow_up_alike_2 + t1610 - t1190 * t1611
+    lean_rear_elbow_up_alike_2 = ops.select(t272, t1612, 0.0)
+    t1613 = lean_rear_elbow_up_alike_2 * lean_rear_elbow_up_alike_2
+    t1614 = ops.select(t882, t1613, 1.0)
+    t1615 = 1.0 + t1614
+    t1616 = ops.select(t882, ops.sqrt(ops.select(t882, t1615, 1.0)), 1.0)
+    t1617 = 1.0 / t1616
+    t1618 = elbow_11_rear_elbow_up_alike_2 * lean_rear_elbow_up_alike_2
+    t1619 = 1.0 / ops.select(t882, t1615 * (1.0 + t1617), 1.0)
+    swing_21_rear_elbow_up_alike_2 = t1617 * t1618 - t1619 * (elbow_21_2 * t1614)
+    t1620 = turn_both_rear_elbow_up_alike_2 * turn_both_rear_elbow_up_alike_2
+    t1621 = ops.select(t882, t1620, 1.0)
+    t1622 = 1.0 + t1621
+    t1623 = ops.select(t882, ops.sqrt(ops.select(t882, t1622, 1.0)), 1.0)
+    t1624 = 1.0 / t1623
+    t1625 = 1.0 / ops.select(t882, t1622 * (1.0 + t1624), 1.0)
+    t1626 = elbow_21_2 - h_right_0_rear_elbow_up_alike_2
+    t1627 = swing_21_rear_elbow_up_alike_2 + t1625 * (t1621 * t1626)
+    t1628 = elbow_11_rear_elbow_up_alike_2 - r_right_0_rear_elbow_up_alike_2
+    t1629 = t1624 * (turn_both_rear_elbow_up_alike_2 * t1628)
+    more_right_21_rear_elbow_up_alike_2 = t1627 - t1629
+    t1630 = h_right_0_rear_elbow_up_alike_2 + more_right_21_rear_elbow_up_alike_2
+    h_right_rear_elbow_up_alike_2 = ops.select(t272, t1630, h_right_0_rear_elbow_up_alike_2)
+    t1631 = elbow_11_rear_elbow_up_alike_2 * t1614 * t1619
+    t1632 = t1617 * (elbow_21_2 * lean_rear_elbow_up_alike_2)
+    t1633 = t1631 + t1632
+    t1634 = t1624 * (turn_both_rear_elbow_up_alike_2 * t1626)
+    t1635 = t1633 - t1621 * t1628 * t1625 - t1634
+    t1636 = t1635 - 2.0 * r_right_0_rear_elbow_up_alike_2
+    t1637 = more_right_21_rear_elbow_up_alike_2 + 2.0 * h_right_0_rear_elbow_up_alike_2
+    t1638 = ops.select(t881, more_right_21_rear_elbow_up_alike_2 * t1637, 1.0)
+    change_right_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t881, t1635 * t1636, 1.0) + t1638, 0.0)
+    t1639 = farther_right_rear_elbow_up_alike_2 + change_right_rear_elbow_up_alike_2
+    M_right_rear_elbow_up_alike = ops.max(t1639, t1269)
+    t1640 = nearer_right_rear_elbow_up_alike_2 - change_right_rear_elbow_up_alike_2
+    N_right_rear_elbow_up_alike = ops.max(t1640, t1269)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t1633 = ops.select(t879, whole_right_rear_elbow_up_alike, 1.0)
-    t1634 = 1.0 / t1633
-    t1635 = t1148 + t1264 * M_right_rear_elbow_up_alike * t1634
-    ahead_1_right_rear_elbow_up_alike = ops.select(short_right, size_2, t1635)
-    t1636 = h_right_rear_elbow_up_alike_2 * ahead_1_right_rear_elbow_up_alike
-    r_right_rear_elbow_up_alike_2 = ops.select(t272, r_right_0_rear_elbow_up_alike_2 - t1627, r_right_0_rear_elbow_up_alike_2)
-    t1637 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t1638 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
-    t1639 = t231 * (1.0 + t1637) - straight_mid_front_elbow_down_alike * t1638
-    t1640 = ops.select(t272, t1639, t231)
-    sigma_right_rear_elbow_up_alike = ops.sign(-t1640)
-    t1641 = 2.0 * sigma_right_rear_elbow_up_alike
-    t1642 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t1643 = ops.sqrt(ops.select(t880, t1642, 1.0))
-    s_bend_right_rear_elbow_up_alike = ops.select(short_right, 0.0, t1634 * (t1641 * t1643))
-    t1644 = fore_arm_2 * s_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t1636 - r_right_rear_elbow_up_alike_2 * t1644
-    t1645 = r_right_rear_elbow_up_alike_2 * ahead_1_right_rear_elbow_up_alike
-    out_right_rear_elbow_up_alike = t1645 + h_right_rear_elbow_up_alike_2 * t1644
-    t1646 = ops.select(t878, out_right_rear_elbow_up_alike, 1.0)
-    t1647 = ops.atan2(up_right_rear_elbow_up_alike, t1646)
-    t1648 = ops.select(folded_right_rear_elbow_up_alike, t1512, t1647)
-    t1649 = ops.select(failed_2, ops.nan, ops.wrap_cut(t1648))
-    t1650 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    t1651 = ops.atan2(2.0 * t1643, ops.select(t867, t1650, 1.0))
-    t1652 = ops.select(short_right, 0.0, sigma_right_rear_elbow_up_alike * t1651)
-    t1653 = ops.select(failed_2, ops.nan, ops.wrap(t1280 + t1652))
-    t1654 = elbow_21_2 - h_left_0_rear_elbow_up_alike_2
-    t1655 = swing_21_rear_elbow_up_alike_2 + t1617 * (t1613 * t1654)
-    t1656 = elbow_11_rear_elbow_up_alike_2 - r_left_0_rear_elbow_up_alike_2
-    t1657 = t1616 * (turn_both_rear_elbow_up_alike_2 * t1656)
-    more_left_21_rear_elbow_up_alike_2 = t1655 - t1657
-    t1658 = h_left_0_rear_elbow_up_alike_2 + more_left_21_rear_elbow_up_alike_2
-    h_left_rear_elbow_up_alike_2 = ops.select(t272, t1658, h_left_0_rear_elbow_up_alike_2)
-    t1659 = t1616 * (turn_both_rear_elbow_up_alike_2 * t1654)
-    t1660 = t1625 - t1617 * (t1613 * t1656) - t1659
-    t1661 = t1660 * (t1660 - 2.0 * r_left_0_rear_elbow_up_alike_2)
-    t1662 = more_left_21_rear_elbow_up_alike_2 + 2.0 * h_left_0_rear_elbow_up_alike_2
-    t1663 = t1661 + more_left_21_rear_elbow_up_alike_2 * t1662
-    change_left_rear_elbow_up_alike_2 = ops.select(t272, t1663, 0.0)
-    t1664 = farther_left_rear_elbow_up_alike_2 + change_left_rear_elbow_up_alike_2
-    M_left_rear_elbow_up_alike = ops.max(t1664, 0.0)
-    N_left_rear_elbow_up_alike = ops.max(-(t1530 + change_left_rear_elbow_up_alike_2), 0.0)
+    t1641 = ops.select(t879, whole_right_rear_elbow_up_alike, 1.0)
+    t1642 = 1.0 / t1641
+    t1643 = t1148 + t1264 * M_right_rear_elbow_up_alike * t1642
+    ahead_1_right_rear_elbow_up_alike = ops.select(short_right, size_2, t1643)
+    t1644 = h_right_rear_elbow_up_alike_2 * ahead_1_right_rear_elbow_up_alike
+    r_right_rear_elbow_up_alike_2 = ops.select(t272, r_right_0_rear_elbow_up_alike_2 - t1635, r_right_0_rear_elbow_up_alike_2)
+    t1645 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t1646 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    t1647 = t231 * (1.0 + t1645) - straight_mid_front_elbow_down_alike * t1646
+    t1648 = ops.select(t272, t1647, t231)
+    sigma_right_rear_elbow_up_alike = ops.sign(-t1648)
+    t1649 = 2.0 * sigma_right_rear_elbow_up_alike
+    t1650 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t1651 = ops.sqrt(ops.select(t880, t1650, 1.0))
+    s_bend_right_rear_elbow_up_alike = ops.select(short_right, 0.0, t1642 * (t1649 * t1651))
+    t1652 = fore_arm_2 * s_bend_right_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t1644 - r_right_rear_elbow_up_alike_2 * t1652
+    t1653 = r_right_rear_elbow_up_alike_2 * ahead_1_right_rear_elbow_up_alike
+    out_right_rear_elbow_up_alike = t1653 + h_right_rear_elbow_up_alike_2 * t1652
+    t1654 = ops.select(t878, out_right_rear_elbow_up_alike, 1.0)
+    t1655 = ops.atan2(up_right_rear_elbow_up_alike, t1654)
+    t1656 = ops.select(folded_right_rear_elbow_up_alike, t1518, t1655)
+    t1657 = ops.select(failed_2, ops.nan, ops.wrap_cut(t1656))
+    t1658 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t1659 = ops.atan2(2.0 * t1651, ops.select(t867, t1658, 1.0))
+    t1660 = ops.select(short_right, 0.0, sigma_right_rear_elbow_up_alike * t1659)
+    t1661 = ops.select(failed_2, ops.nan, ops.wrap(t1281 + t1660))
+    t1662 = elbow_21_2 - h_left_0_rear_elbow_up_alike_2
+    t1663 = swing_21_rear_elbow_up_alike_2 + t1625 * (t1621 * t1662)
+    t1664 = elbow_11_rear_elbow_up_alike_2 - r_left_0_rear_elbow_up_alike_2
+    t1665 = t1624 * (turn_both_rear_elbow_up_alike_2 * t1664)
+    more_left_21_rear_elbow_up_alike_2 = t1663 - t1665
+    t1666 = h_left_0_rear_elbow_up_alike_2 + more_left_21_rear_elbow_up_alike_2
+    h_left_rear_elbow_up_alike_2 = ops.select(t272, t1666, h_left_0_rear_elbow_up_alike_2)
+    t1667 = t1624 * (turn_both_rear_elbow_up_alike_2 * t1662)
+    t1668 = t1633 - t1625 * (t1621 * t1664) - t1667
+    t1669 = t1668 * (t1668 - 2.0 * r_left_0_rear_elbow_up_alike_2)
+    t1670 = more_left_21_rear_elbow_up_alike_2 + 2.0 * h_left_0_rear_elbow_up_alike_2
+    t1671 = ops.select(t874, more_left_21_rear_elbow_up_alike_2 * t1670, 1.0)
+    change_left_rear_elbow_up_alike_2 = ops.select(t272, ops.select(t874, t1669, 1.0) + t1671, 0.0)
+    t1672 = farther_left_rear_elbow_up_alike_2 + change_left_rear_elbow_up_alike_2
+    M_left_rear_elbow_up_alike = ops.max(t1672, 0.0)
+    N_left_rear_elbow_up_alike = ops.max(-(t1536 + change_left_rear_elbow_up_alike_2), 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t1665 = ops.select(t872, whole_left_rear_elbow_up_alike, 1.0)
-    t1666 = 1.0 / t1665
-    t1667 = t1148 + t1264 * M_left_rear_elbow_up_alike * t1666
-    ahead_1_left_rear_elbow_up_alike = ops.select(short_right, size_2, t1667)
-    t1668 = h_left_rear_elbow_up_alike_2 * ahead_1_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike_2 = ops.select(t272, r_left_0_rear_elbow_up_alike_2 - t1660, r_left_0_rear_elbow_up_alike_2)
-    t1669 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t1670 = ops.sqrt(ops.select(t873, t1669, 1.0))
-    s_bend_left_rear_elbow_up_alike = ops.select(short_right, 0.0, t1666 * (t1641 * t1670))
-    t1671 = fore_arm_2 * s_bend_left_rear_elbow_up_alike
-    t1672 = r_left_rear_elbow_up_alike_2 * t1671
-    t1673 = r_left_rear_elbow_up_alike_2 * ahead_1_left_rear_elbow_up_alike
-    t1674 = h_left_rear_elbow_up_alike_2 * t1671
-    t1675 = ops.atan2(t1668 - t1672, ops.select(t871, t1673 + t1674, 1.0))
-    t1676 = ops.select(folded_left_rear_elbow_up_alike, t1512, t1675)
-    t1677 = ops.select(failed_2, ops.nan, ops.wrap_cut(t1676))
-    t1678 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    t1679 = ops.atan2(2.0 * t1670, ops.select(t867, t1678, 1.0))
-    t1680 = ops.select(short_right, 0.0, sigma_right_rear_elbow_up_alike * t1679)
-    t1681 = ops.select(failed_2, ops.nan, ops.wrap(t1280 + t1680))
-    t1682 = ops.select(failed_2, ops.nan, t1300)
-    t1683 = ops.atan2(t1668 + t1672, ops.select(t871, t1673 - t1674, 1.0))
-    t1684 = ops.select(folded_left_rear_elbow_up_alike, t1512, t1683)
+    t1673 = ops.select(t872, whole_left_rear_elbow_up_alike, 1.0)
+    t1674 = 1.0 / t1673
+    t1675 = t1148 + t1264 * M_left_rear_elbow_up_alike * t1674
+    ahead_1_left_rear_elbow_up_alike = ops.select(short_right, size_2, t1675)
+    t1676 = h_left_rear_elbow_up_alike_2 * ahead_1_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike_2 = ops.select(t272, r_left_0_rear_elbow_up_alike_2 - t1668, r_left_0_rear_elbow_up_alike_2)
+    t1677 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t1678 = ops.sqrt(ops.select(t873, t1677, 1.0))
+    s_bend_left_rear_elbow_up_alike = ops.select(short_right, 0.0, t1674 * (t1649 * t1678))
+    t1679 = fore_arm_2 * s_bend_left_rear_elbow_up_alike
+    t1680 = r_left_rear_elbow_up_alike_2 * t1679
+    t1681 = r_left_rear_elbow_up_alike_2 * ahead_1_left_rear_elbow_up_alike
+    t1682 = h_left_rear_elbow_up_alike_2 * t1679
+    t1683 = ops.atan2(t1676 - t1680, ops.select(t871, t1681 + t1682, 1.0))
+    t1684 = ops.select(folded_left_rear_elbow_up_alike, t1518, t1683)
     t1685 = ops.select(failed_2, ops.nan, ops.wrap_cut(t1684))
-    t1686 = ops.select(failed_2, ops.nan, ops.wrap(t1280 - t1680))
-    t1687 = ops.select(failed_3, ops.nan, t1508)
-    t1688 = (t610 & folded_right_rear_elbow_down_alike) | (t610 & folded_left_rear_elbow_down_alike)
-    ctheta2A_rear_elbow_down_alike_2 = ops.select(folded, 1.0, -t1312)
-    t1689 = ops.select(t1688, ctheta2A_rear_elbow_down_alike_2, 1.0)
-    t1690 = ops.atan2(stheta2A_front_elbow_down_alike_2, t1689)
-    t1691 = c_relative_2 * ctheta2A_rear_elbow_down_alike_2
-    t1692 = s_relative_2 * stheta2A_front_elbow_down_alike_2
-    ctheta23A_rear_elbow_down_alike_2 = t1691 - t1692
-    t1693 = elbow_21_front_elbow_down_alike_2 - L2 * ctheta23A_rear_elbow_down_alike_2
-    t1694 = c_relative_2 * stheta2A_front_elbow_down_alike_2
-    t1695 = s_relative_2 * ctheta2A_rear_elbow_down_alike_2
-    stheta23A_rear_elbow_down_alike_2 = t1694 + t1695
-    point_21_rear_elbow_down_alike_2 = t1693 + a3 * stheta23A_rear_elbow_down_alike_2
-    t1696 = t1138 * (t_psi_2 * ctheta23A_rear_elbow_down_alike_2)
-    t1697 = t1696 + t_phi_2 * stheta23A_rear_elbow_down_alike_2
-    t1698 = d * t1697
-    h_right_0_rear_elbow_down_alike_2 = point_21_rear_elbow_down_alike_2 - t1698
-    h_left_0_rear_elbow_down_alike_2 = point_21_rear_elbow_down_alike_2 + t1698
-    t1699 = h_left_0_rear_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
+    t1686 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t1687 = ops.atan2(2.0 * t1678, ops.select(t867, t1686, 1.0))
+    t1688 = ops.select(short_right, 0.0, sigma_right_rear_elbow_up_alike * t1687)
+    t1689 = ops.select(failed_2, ops.nan, ops.wrap(t1281 + t1688))
+    t1690 = ops.select(failed_2, ops.nan, t1302)
+    t1691 = ops.atan2(t1676 + t1680, ops.select(t871, t1681 - t1682, 1.0))
+    t1692 = ops.select(folded_left_rear_elbow_up_alike, t1518, t1691)
+    t1693 = ops.select(failed_2, ops.nan, ops.wrap_cut(t1692))
+    t1694 = ops.select(failed_2, ops.nan, ops.wrap(t1281 - t1688))
+    t1695 = ops.select(failed_3, ops.nan, t1514)
+    t1696 = (t610 & folded_right_rear_elbow_down_alike) | (t610 & folded_left_rear_elbow_down_alike)
+    ctheta2A_rear_elbow_down_alike_2 = ops.select(folded, 1.0, -t1314)
+    t1697 = ops.select(t1696, ctheta2A_rear_elbow_down_alike_2, 1.0)
+    t1698 = ops.atan2(stheta2A_front_elbow_down_alike_2, t1697)
+    t1699 = c_relative_2 * ctheta2A_rear_elbow_down_alike_2
+    t1700 = s_relative_2 * stheta2A_front_elbow_down_alike_2
+    ctheta23A_rear_elbow_down_alike_2 = t1699 - t1700
+    t1701 = elbow_21_front_elbow_down_alike_2 - L2 * ctheta23A_rear_elbow_down_alike_2
+    t1702 = c_relative_2 * stheta2A_front_elbow_down_alike_2
+    t1703 = s_relative_2 * ctheta2A_rear_elbow_down_alike_2
+    stheta23A_rear_elbow_down_alike_2 = t1702 + t1703
+    point_21_rear_elbow_down_alike_2 = t1701 + a3 * stheta23A_rear_elbow_down_alike_2
+    t1704 = t1138 * (t_psi_2 * ctheta23A_rear_elbow_down_alike_2)
+    t1705 = t1704 + t_phi_2 * stheta23A_rear_elbow_down_alike_2
+    t1706 = d * t1705
+    h_right_0_rear_elbow_down_alike_2 = point_21_rear_elbow_down_alike_2 - t1706
+    h_left_0_rear_elbow_down_alike_2 = point_21_rear_elbow_down_alike_2 + t1706
+    t1707 = h_left_0_rear_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
     elbow_11_rear_elbow_down_alike_2 = L1 * ctheta2A_rear_elbow_down_alike_2
-    t1700 = elbow_11_rear_elbow_down_alike_2 + L2 * stheta23A_rear_elbow_down_alike_2
-    point_11_rear_elbow_down_alike_2 = t1700 + a3 * ctheta23A_rear_elbow_down_alike_2
-    t1701 = t1138 * (t_psi_2 * stheta23A_rear_elbow_down_alike_2)
-    t1702 = t_phi_2 * ctheta23A_rear_elbow_down_alike_2 - t1701
-    t1703 = d * t1702
-    r_left_0_rear_elbow_down_alike_2 = point_11_rear_elbow_down_alike_2 + t1703
-    t1704 = r_left_0_rear_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
-    gap_rear_elbow_down_alike_2 = t1703 * t1703 + t1698 * t1698
-    t1705 = M_mid_2 + gap_rear_elbow_down_alike_2
-    t1706 = 2.0 * point_11_rear_elbow_down_alike_2 * t1703
-    t1707 = 2.0 * point_21_rear_elbow_down_alike_2 * t1698
-    t1708 = t1706 + t1707
-    farther_left_rear_elbow_down_alike_2 = ops.select(t452, t1699 + t1704 - t1149, t1705 + t1708)
-    t1709 = N_mid_2 - gap_rear_elbow_down_alike_2
-    t1710 = t1708 - t1709
-    room_left_rear_elbow_down_alike_2 = ops.min(farther_left_rear_elbow_down_alike_2, -t1710)
-    t1711 = ctheta2A_rear_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
-    t1712 = stheta2A_front_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
-    t1713 = (t1711 - t1712) * t458
-    t1714 = ops.abs(t28 * t1713)
+    t1708 = elbow_11_rear_elbow_down_alike_2 + L2 * stheta23A_rear_elbow_down_alike_2
+    point_11_rear_elbow_down_alike_2 = t1708 + a3 * ctheta23A_rear_elbow_down_alike_2
+    t1709 = t1138 * (t_psi_2 * stheta23A_rear_elbow_down_alike_2)
+    t1710 = t_phi_2 * ctheta23A_rear_elbow_down_alike_2 - t1709
+    t1711 = d * t1710
+    r_left_0_rear_elbow_down_alike_2 = point_11_rear_elbow_down_alike_2 + t1711
+    t1712 = r_left_0_rear_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
+    gap_rear_elbow_down_alike_2 = t1711 * t1711 + t1706 * t1706
+    t1713 = M_mid_2 + gap_rear_elbow_down_alike_2
+    t1714 = 2.0 * point_11_rear_elbow_down_alike_2 * t1711
+    t1715 = 2.0 * point_21_rear_elbow_down_alike_2 * t1706
+    t1716 = t1714 + t1715
+    farther_left_rear_elbow_down_alike_2 = ops.select(t452, t1707 + t1712 - t1149, t1713 + t1716)
+    t1717 = N_mid_2 - gap_rear_elbow_down_alike_2
+    t1718 = t1716 - t1717
+    margin_left_rear_elbow_down_alike_2 = ops.min(farther_left_rear_elbow_down_alike_2, -t1718)
+    t1719 = ctheta2A_rear_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
+    t1720 = stheta2A_front_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
+    t1721 = (t1719 - t1720) * t458
+    t1722 = ops.abs(t28 * t1721)
     heavy_1_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1179, 1.0)
-    t1715 = ops.select(t864, heavy_1_left_rear_elbow_down_alike_2, 1.0)
-    gain_1_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1714 / t1715, 0.0)
-    t1716 = gain_1_left_rear_elbow_down_alike_2 * gain_1_left_rear_elbow_down_alike_2
-    slope_left_rear_elbow_down_alike_2 = t1183 * t1713
+    t1723 = ops.select(t864, heavy_1_left_rear_elbow_down_alike_2, 1.0)
+    gain_1_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1722 / t1723, 0.0)
+    t1724 = gain_1_left_rear_elbow_down_alike_2 * gain_1_left_rear_elbow_down_alike_2
+    slope_left_rear_elbow_down_alike_2 = t1183 * t1721
     heavy_0_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1194, 1.0)
-    t1717 = ops.select(t864, heavy_0_left_rear_elbow_down_alike_2, 1.0)
-    t1718 = ops.abs(slope_left_rear_elbow_down_alike_2) / t1717
-    gain_0_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1718, 0.0)
-    t1719 = gain_0_left_rear_elbow_down_alike_2 * gain_0_left_rear_elbow_down_alike_2
-    t1720 = t1716 / ops.select(t863, t1182 + t1716 + t1719, 1.0)
-    share_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, ops.select(t467, t1720, 0.0), 0.0)
-    t1721 = room_left_rear_elbow_down_alike_2 * (1.0 - share_left_rear_elbow_down_alike_2)
-    t1722 = 2.0 * t1721
-    t1723 = t1200 * heavy_0_left_rear_elbow_down_alike_2
-    t1724 = t1723 * 5.960464477539063e-08
-    t1725 = ctheta2A_rear_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
-    t1726 = stheta2A_front_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
-    t1727 = t1190 * (t1203 * t458 * (L1 - t1725 - t1726))
-    t1728 = slope_left_rear_elbow_down_alike_2 * slope_left_rear_elbow_down_alike_2
-    t1729 = ops.select(t861, ops.max(0.0, 4.0 * t1721 * t1727 + t1728), 1.0)
-    root_on_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.sqrt(t1729), 0.0)
-    t1730 = slope_left_rear_elbow_down_alike_2 + root_on_1_both_rear_elbow_down_alike_2
-    t1731 = t1722 * (1.0 / ops.select(t843, t1724 + t1730, 1.0))
-    t1732 = slope_left_rear_elbow_down_alike_2 - root_on_1_both_rear_elbow_down_alike_2
-    t1733 = t1723 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1727)
-    t1734 = 1.0 / ops.select(t845 | t859, t1733, 1.0)
-    far_on_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t539, -(t1732 * t1734), 0.0), 0.0)
-    t1735 = ops.select(t485, far_on_1_both_rear_elbow_down_alike_2, 0.0)
-    t1736 = ops.select(t534, ops.select(t536, -t1731, 0.0), t1735)
-    t1737 = h_right_0_rear_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
-    r_right_0_rear_elbow_down_alike_2 = point_11_rear_elbow_down_alike_2 - t1703
-    t1738 = r_right_0_rear_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
-    farther_right_rear_elbow_down_alike_2 = ops.select(t432, t1737 + t1738 - t1149, t1705 - t1708)
-    nearer_right_rear_elbow_down_alike_2 = t1708 + t1709
-    room_right_rear_elbow_down_alike_2 = ops.min(farther_right_rear_elbow_down_alike_2, nearer_right_rear_elbow_down_alike_2)
-    t1739 = ctheta2A_rear_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
-    t1740 = stheta2A_front_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
-    t1741 = (t1739 - t1740) * t441
-    t1742 = ops.abs(t28 * t1741)
+    t1725 = ops.select(t864, heavy_0_left_rear_elbow_down_alike_2, 1.0)
+    t1726 = ops.abs(slope_left_rear_elbow_down_alike_2) / t1725
+    gain_0_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, t1726, 0.0)
+    t1727 = gain_0_left_rear_elbow_down_alike_2 * gain_0_left_rear_elbow_down_alike_2
+    t1728 = t1724 / ops.select(t863, t1182 + t1724 + t1727, 1.0)
+    share_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, ops.select(t467, t1728, 0.0), 0.0)
+    t1729 = margin_left_rear_elbow_down_alike_2 * (1.0 - share_left_rear_elbow_down_alike_2)
+    t1730 = 2.0 * t1729
+    t1731 = t1200 * heavy_0_left_rear_elbow_down_alike_2
+    t1732 = t1731 * 5.960464477539063e-08
+    t1733 = ctheta2A_rear_elbow_down_alike_2 * r_left_0_rear_elbow_down_alike_2
+    t1734 = stheta2A_front_elbow_down_alike_2 * h_left_0_rear_elbow_down_alike_2
+    t1735 = t1190 * (t1203 * t458 * (L1 - t1733 - t1734))
+    t1736 = slope_left_rear_elbow_down_alike_2 * slope_left_rear_elbow_down_alike_2
+    t1737 = ops.select(t861, ops.max(0.0, 4.0 * t1729 * t1735 + t1736), 1.0)
+    root_on_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.sqrt(t1737), 0.0)
+    t1738 = slope_left_rear_elbow_down_alike_2 + root_on_1_both_rear_elbow_down_alike_2
+    t1739 = t1730 * (1.0 / ops.select(t843, t1732 + t1738, 1.0))
+    t1740 = slope_left_rear_elbow_down_alike_2 - root_on_1_both_rear_elbow_down_alike_2
+    t1741 = t1731 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1735)
+    t1742 = 1.0 / ops.select(t845 | t859, t1741, 1.0)
+    far_on_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t539, -(t1740 * t1742), 0.0), 0.0)
+    t1743 = ops.select(t485, far_on_1_both_rear_elbow_down_alike_2, 0.0)
+    t1744 = ops.select(t534, ops.select(t536, -t1739, 0.0), t1743)
+    t1745 = h_right_0_rear_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
+    r_right_0_rear_elbow_down_alike_2 = point_11_rear_elbow_down_alike_2 - t1711
+    t1746 = r_right_0_rear_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
+    farther_right_rear_elbow_down_alike_2 = ops.select(t432, t1745 + t1746 - t1149, t1713 - t1716)
+    nearer_right_rear_elbow_down_alike_2 = t1716 + t1717
+    margin_right_rear_elbow_down_alike_2 = ops.min(farther_right_rear_elbow_down_alike_2, nearer_right_rear_elbow_down_alike_2)
+    t1747 = ctheta2A_rear_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
+    t1748 = stheta2A_front_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
+    t1749 = (t1747 - t1748) * t441
+    t1750 = ops.abs(t28 * t1749)
     heavy_1_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1179, 1.0)
-    t1743 = ops.select(t855, heavy_1_right_rear_elbow_down_alike_2, 1.0)
-    gain_1_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1742 / t1743, 0.0)
-    t1744 = gain_1_right_rear_elbow_down_alike_2 * gain_1_right_rear_elbow_down_alike_2
-    slope_right_rear_elbow_down_alike_2 = t1183 * t1741
+    t1751 = ops.select(t855, heavy_1_right_rear_elbow_down_alike_2, 1.0)
+    gain_1_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1750 / t1751, 0.0)
+    t1752 = gain_1_right_rear_elbow_down_alike_2 * gain_1_right_rear_elbow_down_alike_2
+    slope_right_rear_elbow_down_alike_2 = t1183 * t1749
     heavy_0_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1194, 1.0)
-    t1745 = ops.select(t855, heavy_0_right_rear_elbow_down_alike_2, 1.0)
-    t1746 = ops.abs(slope_right_rear_elbow_down_alike_2) / t1745
-    gain_0_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1746, 0.0)
-    t1747 = gain_0_right_rear_elbow_down_alike_2 * gain_0_right_rear_elbow_down_alike_2
-    t1748 = t1744 / ops.select(t854, t1182 + t1744 + t1747, 1.0)
-    share_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, ops.select(t495, t1748, 0.0), 0.0)
-    t1749 = room_right_rear_elbow_down_alike_2 * (1.0 - share_right_rear_elbow_down_alike_2)
-    t1750 = 2.0 * t1749
-    t1751 = t1200 * heavy_0_right_rear_elbow_down_alike_2
-    t1752 = t1751 * 5.960464477539063e-08
-    t1753 = ctheta2A_rear_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
-    t1754 = stheta2A_front_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
-    t1755 = t1190 * (t1203 * t441 * (L1 - t1753 - t1754))
-    t1756 = slope_right_rear_elbow_down_alike_2 * slope_right_rear_elbow_down_alike_2
-    t1757 = ops.select(t852, ops.max(0.0, 4.0 * t1749 * t1755 + t1756), 1.0)
-    root_on_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.sqrt(t1757), 0.0)
-    t1758 = slope_right_rear_elbow_down_alike_2 + root_on_0_both_rear_elbow_down_alike_2
-    t1759 = t1750 * (1.0 / ops.select(t839, t1752 + t1758, 1.0))
-    t1760 = slope_right_rear_elbow_down_alike_2 - root_on_0_both_rear_elbow_down_alike_2
-    t1761 = t1751 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1755)
-    t1762 = 1.0 / ops.select(t841 | t850, t1761, 1.0)
-    far_on_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t547, -(t1760 * t1762), 0.0), 0.0)
-    t1763 = ops.select(t512, far_on_0_both_rear_elbow_down_alike_2, 0.0)
-    t1764 = ops.select(t542, ops.select(t544, -t1759, 0.0), t1763)
-    near_on_both_rear_elbow_down_alike_2 = ops.select(t466, ops.max(ops.max(0.0, t1736), t1764), 0.0)
-    t1765 = ops.select(t552, far_on_0_both_rear_elbow_down_alike_2, 0.0)
-    t1766 = ops.max(near_on_both_rear_elbow_down_alike_2, t1765)
-    t1767 = ops.select(t557, far_on_1_both_rear_elbow_down_alike_2, 0.0)
-    t1768 = 1.0 / ops.select(t856, t1732 - t1724, 1.0) * t1722
-    far_back_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t491, t1730 * t1734, 0.0), 0.0)
-    t1769 = ops.select(t485, far_back_1_both_rear_elbow_down_alike_2, 0.0)
-    t1770 = ops.select(t472, ops.select(t483, t1768, 0.0), t1769)
-    t1771 = 1.0 / ops.select(t848, t1760 - t1752, 1.0) * t1750
-    far_back_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t518, t1758 * t1762, 0.0), 0.0)
-    t1772 = ops.select(t512, far_back_0_both_rear_elbow_down_alike_2, 0.0)
-    t1773 = ops.select(t494, ops.select(t510, t1771, 0.0), t1772)
-    near_back_both_rear_elbow_down_alike_2 = ops.select(t466, ops.max(ops.max(0.0, t1770), t1773), 0.0)
-    t1774 = ops.select(t523, far_back_0_both_rear_elbow_down_alike_2, 0.0)
-    t1775 = ops.max(near_back_both_rear_elbow_down_alike_2, t1774)
-    t1776 = ops.select(t528, far_back_1_both_rear_elbow_down_alike_2, 0.0)
-    t1777 = ops.select(t563, ops.select(t466, ops.max(t1766, t1767), 0.0), -ops.select(t466, ops.max(t1775, t1776), 0.0))
-    turn_both_rear_elbow_down_alike_2 = ops.select(t466, t1777, 0.0)
-    t1778 = room_right_rear_elbow_down_alike_2 * share_right_rear_elbow_down_alike_2
-    t1779 = t1200 * heavy_1_right_rear_elbow_down_alike_2
-    t1780 = ops.select(t835, t1742 + t1779 * 5.960464477539063e-08, 1.0)
-    aside_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, -(t1778 * t569 / t1780), 0.0)
-    t1781 = room_left_rear_elbow_down_alike_2 * share_left_rear_elbow_down_alike_2
-    t1782 = t1200 * heavy_1_left_rear_elbow_down_alike_2 * 5.960464477539063e-08
-    t1783 = t1781 * t566 / ops.select(t836, t1714 + t1782, 1.0)
-    aside_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, -t1783, 0.0)
-    t1784 = ops.select(t571, aside_right_rear_elbow_down_alike_2, aside_left_rear_elbow_down_alike_2)
-    t1785 = t1190 * (drawn_2 * turn_both_rear_elbow_down_alike_2)
-    t1786 = turn_both_rear_elbow_down_alike_2 + t1784 - t1785
-    lean_rear_elbow_down_alike_2 = ops.select(t466, t1786, 0.0)
-    t1787 = lean_rear_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
-    t1788 = 1.0 + t1787
-    t1789 = ops.select(t833, ops.sqrt(ops.select(t833, t1788, 1.0)), 1.0)
-    t1790 = 1.0 / t1789
-    t1791 = elbow_11_rear_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
-    t1792 = 1.0 / ops.select(t833, t1788 * (1.0 + t1790), 1.0)
-    t1793 = t1792 * (elbow_21_front_elbow_down_alike_2 * t1787)
-    swing_21_rear_elbow_down_alike_2 = t1790 * t1791 - t1793
-    t1794 = turn_both_rear_elbow_down_alike_2 * turn_both_rear_elbow_down_alike_2
-    t1795 = 1.0 + t1794
-    t1796 = ops.select(t833, ops.sqrt(ops.select(t833, t1795, 1.0)), 1.0)
-    t1797 = 1.0 / t1796
-    t1798 = 1.0 / ops.select(t833, t1795 * (1.0 + t1797), 1.0)
-    t1799 = elbow_21_front_elbow_down_alike_2 - h_right_0_rear_elbow_down_alike_2
-    t1800 = swing_21_rear_elbow_down_alike_2 + t1798 * (t1794 * t1799)
-    t1801 = elbow_11_rear_elbow_down_alike_2 - r_right_0_rear_elbow_down_alike_2
-    t1802 = t1797 * (turn_both_rear_elbow_down_alike_2 * t1801)
-    more_right_21_rear_elbow_down_alike_2 = t1800 - t1802
-    t1803 = h_right_0_rear_elbow_down_alike_2 + more_right_21_rear_elbow_down_alike_2
-    h_right_rear_elbow_down_alike_2 = ops.select(t466, t1803, h_right_0_rear_elbow_down_alike_2)
-    t1804 = elbow_11_rear_elbow_down_alike_2 * t1787 * t1792
-    t1805 = elbow_21_front_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
-    t1806 = t1804 + t1790 * t1805
-    t1807 = t1797 * (turn_both_rear_elbow_down_alike_2 * t1799)
-    t1808 = t1806 - t1794 * t1801 * t1798 - t1807
-    t1809 = t1808 - 2.0 * r_right_0_rear_elbow_down_alike_2
-    t1810 = more_right_21_rear_elbow_down_alike_2 + 2.0 * h_right_0_rear_elbow_down_alike_2
-    t1811 = more_right_21_rear_elbow_down_alike_2 * t1810
-    change_right_rear_elbow_down_alike_2 = ops.select(t466, t1808 * t1809 + t1811, 0.0)
-    t1812 = farther_right_rear_elbow_down_alike_2 + change_right_rear_elbow_down_alike_2
-    M_right_rear_elbow_down_alike = ops.max(t1812, t1268)
-    t1813 = nearer_right_rear_elbow_down_alike_2 - change_right_rear_elbow_down_alike_2
-    N_right_rear_elbow_down_alike = ops.max(t1813, t1268)
+    t1753 = ops.select(t855, heavy_0_right_rear_elbow_down_alike_2, 1.0)
+    t1754 = ops.abs(slope_right_rear_elbow_down_alike_2) / t1753
+    gain_0_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, t1754, 0.0)
+    t1755 = gain_0_right_rear_elbow_down_alike_2 * gain_0_right_rear_elbow_down_alike_2
+    t1756 = t1752 / ops.select(t854, t1182 + t1752 + t1755, 1.0)
+    share_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, ops.select(t495, t1756, 0.0), 0.0)
+    t1757 = margin_right_rear_elbow_down_alike_2 * (1.0 - share_right_rear_elbow_down_alike_2)
+    t1758 = 2.0 * t1757
+    t1759 = t1200 * heavy_0_right_rear_elbow_down_alike_2
+    t1760 = t1759 * 5.960464477539063e-08
+    t1761 = ctheta2A_rear_elbow_down_alike_2 * r_right_0_rear_elbow_down_alike_2
+    t1762 = stheta2A_front_elbow_down_alike_2 * h_right_0_rear_elbow_down_alike_2
+    t1763 = t1190 * (t1203 * t441 * (L1 - t1761 - t1762))
+    t1764 = slope_right_rear_elbow_down_alike_2 * slope_right_rear_elbow_down_alike_2
+    t1765 = ops.select(t852, ops.max(0.0, 4.0 * t1757 * t1763 + t1764), 1.0)
+    root_on_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.sqrt(t1765), 0.0)
+    t1766 = slope_right_rear_elbow_down_alike_2 + root_on_0_both_rear_elbow_down_alike_2
+    t1767 = t1758 * (1.0 / ops.select(t839, t1760 + t1766, 1.0))
+    t1768 = slope_right_rear_elbow_down_alike_2 - root_on_0_both_rear_elbow_down_alike_2
+    t1769 = t1759 * 3.552713678800501e-15 + 2.0 * ops.max(0.0, -t1763)
+    t1770 = 1.0 / ops.select(t841 | t850, t1769, 1.0)
+    far_on_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t547, -(t1768 * t1770), 0.0), 0.0)
+    t1771 = ops.select(t512, far_on_0_both_rear_elbow_down_alike_2, 0.0)
+    t1772 = ops.select(t542, ops.select(t544, -t1767, 0.0), t1771)
+    near_on_both_rear_elbow_down_alike_2 = ops.select(t466, ops.max(ops.max(0.0, t1744), t1772), 0.0)
+    t1773 = ops.select(t552, far_on_0_both_rear_elbow_down_alike_2, 0.0)
+    t1774 = ops.max(near_on_both_rear_elbow_down_alike_2, t1773)
+    t1775 = ops.select(t557, far_on_1_both_rear_elbow_down_alike_2, 0.0)
+    t1776 = 1.0 / ops.select(t856, t1740 - t1732, 1.0) * t1730
+    far_back_1_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t491, t1738 * t1742, 0.0), 0.0)
+    t1777 = ops.select(t485, far_back_1_both_rear_elbow_down_alike_2, 0.0)
+    t1778 = ops.select(t472, ops.select(t483, t1776, 0.0), t1777)
+    t1779 = 1.0 / ops.select(t848, t1768 - t1760, 1.0) * t1758
+    far_back_0_both_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t518, t1766 * t1770, 0.0), 0.0)
+    t1780 = ops.select(t512, far_back_0_both_rear_elbow_down_alike_2, 0.0)
+    t1781 = ops.select(t494, ops.select(t510, t1779, 0.0), t1780)
+    near_back_both_rear_elbow_down_alike_2 = ops.select(t466, ops.max(ops.max(0.0, t1778), t1781), 0.0)
+    t1782 = ops.select(t523, far_back_0_both_rear_elbow_down_alike_2, 0.0)
+    t1783 = ops.max(near_back_both_rear_elbow_down_alike_2, t1782)
+    t1784 = ops.select(t528, far_back_1_both_rear_elbow_down_alike_2, 0.0)
+    t1785 = ops.select(t563, ops.select(t466, ops.max(t1774, t1775), 0.0), -ops.select(t466, ops.max(t1783, t1784), 0.0))
+    turn_both_rear_elbow_down_alike_2 = ops.select(t466, t1785, 0.0)
+    t1786 = margin_right_rear_elbow_down_alike_2 * share_right_rear_elbow_down_alike_2
+    t1787 = t1200 * heavy_1_right_rear_elbow_down_alike_2
+    t1788 = ops.select(t835, t1750 + t1787 * 5.960464477539063e-08, 1.0)
+    aside_right_rear_elbow_down_alike_2 = ops.select(spent_right_rear_elbow_down_alike, -(t1786 * t569 / t1788), 0.0)
+    t1789 = margin_left_rear_elbow_down_alike_2 * share_left_rear_elbow_down_alike_2
+    t1790 = t1200 * heavy_1_left_rear_elbow_down_alike_2 * 5.960464477539063e-08
+    t1791 = t1789 * t566 / ops.select(t836, t1722 + t1790, 1.0)
+    aside_left_rear_elbow_down_alike_2 = ops.select(spent_left_rear_elbow_down_alike, -t1791, 0.0)
+    t1792 = ops.select(t571, aside_right_rear_elbow_down_alike_2, aside_left_rear_elbow_down_alike_2)
+    t1793 = t1190 * (drawn_2 * turn_both_rear_elbow_down_alike_2)
+    t1794 = turn_both_rear_elbow_down_alike_2 + t1792 - t1793
+    lean_rear_elbow_down_alike_2 = ops.select(t466, t1794, 0.0)
+    t1795 = lean_rear_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
+    t1796 = ops.select(t833, t1795, 1.0)
+    t1797 = 1.0 + t1796
+    t1798 = ops.select(t833, ops.sqrt(ops.select(t833, t1797, 1.0)), 1.0)
+    t1799 = 1.0 / t1798
+    t1800 = elbow_11_rear_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
+    t1801 = 1.0 / ops.select(t833, t1797 * (1.0 + t1799), 1.0)
+    t1802 = t1801 * (elbow_21_front_elbow_down_alike_2 * t1796)
+    swing_21_rear_elbow_down_alike_2 = t1799 * t1800 - t1802
+    t1803 = turn_both_rear_elbow_down_alike_2 * turn_both_rear_elbow_down_alike_2
+    t1804 = ops.select(t833, t1803, 1.0)
+    t1805 = 1.0 + t1804
+    t1806 = ops.select(t833, ops.sqrt(ops.select(t833, t1805, 1.0)), 1.0)
+    t1807 = 1.0 / t1806
+    t1808 = 1.0 / ops.select(t833, t1805 * (1.0 + t1807), 1.0)
+    t1809 = elbow_21_front_elbow_down_alike_2 - h_right_0_rear_elbow_down_alike_2
+    t1810 = swing_21_rear_elbow_down_alike_2 + t1808 * (t1804 * t1809)
+    t1811 = elbow_11_rear_elbow_down_alike_2 - r_right_0_rear_elbow_down_alike_2
+    t1812 = t1807 * (turn_both_rear_elbow_down_alike_2 * t1811)
+    more_right_21_rear_elbow_down_alike_2 = t1810 - t1812
+    t1813 = h_right_0_rear_elbow_down_alike_2 + more_right_21_rear_elbow_down_alike_2
+    h_right_rear_elbow_down_alike_2 = ops.select(t466, t1813, h_right_0_rear_elbow_down_alike_2)
+    t1814 = elbow_11_rear_elbow_down_alike_2 * t1796 * t1801
+    t1815 = elbow_21_front_elbow_down_alike_2 * lean_rear_elbow_down_alike_2
+    t1816 = t1814 + t1799 * t1815
+    t1817 = t1807 * (turn_both_rear_elbow_down_alike_2 * t1809)
+    t1818 = t1816 - t1804 * t1811 * t1808 - t1817
+    t1819 = t1818 - 2.0 * r_right_0_rear_elbow_down_alike_2
+    t1820 = more_right_21_rear_elbow_down_alike_2 + 2.0 * h_right_0_rear_elbow_down_alike_2
+    t1821 = more_right_21_rear_elbow_down_alike_2 * t1820
+    t1822 = ops.select(t832, t1818 * t1819, 1.0) + ops.select(t832, t1821, 1.0)
+    change_right_rear_elbow_down_alike_2 = ops.select(t466, t1822, 0.0)
+    t1823 = farther_right_rear_elbow_down_alike_2 + change_right_rear_elbow_down_alike_2
+    M_right_rear_elbow_down_alike = ops.max(t1823, t1269)
+    t1824 = nearer_right_rear_elbow_down_alike_2 - change_right_rear_elbow_down_alike_2
+    N_right_rear_elbow_down_alike = ops.max(t1824, t1269)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t1814 = ops.select(t830, whole_right_rear_elbow_down_alike, 1.0)
-    t1815 = 1.0 / t1814
-    t1816 = t1264 * M_right_rear_elbow_down_alike * t1815
-    ahead_1_right_rear_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1816)
-    t1817 = h_right_rear_elbow_down_alike_2 * ahead_1_right_rear_elbow_down_alike
-    r_right_rear_elbow_down_alike_2 = ops.select(t466, r_right_0_rear_elbow_down_alike_2 - t1808, r_right_0_rear_elbow_down_alike_2)
-    t1818 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t1819 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
-    t1820 = ops.select(t466, t76 * (1.0 + t1818) - straight_mid * t1819, t76)
-    sigma_right_rear_elbow_down_alike = ops.sign(-t1820)
-    t1821 = 2.0 * sigma_right_rear_elbow_down_alike
-    t1822 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t1823 = ops.sqrt(ops.select(t831, t1822, 1.0))
-    s_bend_right_rear_elbow_down_alike = ops.select(short_right, 0.0, t1815 * (t1821 * t1823))
-    t1824 = fore_arm_2 * s_bend_right_rear_elbow_down_alike
-    up_right_rear_elbow_down_alike = t1817 - r_right_rear_elbow_down_alike_2 * t1824
-    t1825 = r_right_rear_elbow_down_alike_2 * ahead_1_right_rear_elbow_down_alike
-    out_right_rear_elbow_down_alike = t1825 + h_right_rear_elbow_down_alike_2 * t1824
-    t1826 = ops.select(t829, out_right_rear_elbow_down_alike, 1.0)
-    t1827 = ops.atan2(up_right_rear_elbow_down_alike, t1826)
-    t1828 = ops.select(folded_right_rear_elbow_down_alike, t1690, t1827)
-    t1829 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1828))
-    t1830 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
-    t1831 = ops.atan2(2.0 * t1823, ops.select(t817, t1830, 1.0))
-    t1832 = ops.select(short_right, 0.0, sigma_right_rear_elbow_down_alike * t1831)
-    t1833 = ops.select(failed_3, ops.nan, ops.wrap(t1280 + t1832))
-    t1834 = elbow_21_front_elbow_down_alike_2 - h_left_0_rear_elbow_down_alike_2
-    t1835 = swing_21_rear_elbow_down_alike_2 + t1798 * (t1794 * t1834)
-    t1836 = elbow_11_rear_elbow_down_alike_2 - r_left_0_rear_elbow_down_alike_2
-    t1837 = t1797 * (turn_both_rear_elbow_down_alike_2 * t1836)
-    more_left_21_rear_elbow_down_alike_2 = t1835 - t1837
-    t1838 = h_left_0_rear_elbow_down_alike_2 + more_left_21_rear_elbow_down_alike_2
-    h_left_rear_elbow_down_alike_2 = ops.select(t466, t1838, h_left_0_rear_elbow_down_alike_2)
-    t1839 = t1797 * (turn_both_rear_elbow_down_alike_2 * t1834)
-    t1840 = t1806 - t1798 * (t1794 * t1836) - t1839
-    t1841 = t1840 - 2.0 * r_left_0_rear_elbow_down_alike_2
-    t1842 = more_left_21_rear_elbow_down_alike_2 + 2.0 * h_left_0_rear_elbow_down_alike_2
-    t1843 = t1840 * t1841 + more_left_21_rear_elbow_down_alike_2 * t1842
-    change_left_rear_elbow_down_alike_2 = ops.select(t466, t1843, 0.0)
-    t1844 = farther_left_rear_elbow_down_alike_2 + change_left_rear_elbow_down_alike_2
-    M_left_rear_elbow_down_alike = ops.max(t1844, 0.0)
-    t1845 = -(t1710 + change_left_rear_elbow_down_alike_2)
-    N_left_rear_elbow_down_alike = ops.max(t1845, 0.0)
+    t1825 = ops.select(t830, whole_right_rear_elbow_down_alike, 1.0)
+    t1826 = 1.0 / t1825
+    t1827 = t1264 * M_right_rear_elbow_down_alike * t1826
+    ahead_1_right_rear_elbow_down_alike = ops.select(short_right, size_2, t1148 + t1827)
+    t1828 = h_right_rear_elbow_down_alike_2 * ahead_1_right_rear_elbow_down_alike
+    r_right_rear_elbow_down_alike_2 = ops.select(t466, r_right_0_rear_elbow_down_alike_2 - t1818, r_right_0_rear_elbow_down_alike_2)
+    t1829 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t1830 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    t1831 = ops.select(t466, t76 * (1.0 + t1829) - straight_mid * t1830, t76)
+    sigma_right_rear_elbow_down_alike = ops.sign(-t1831)
+    t1832 = 2.0 * sigma_right_rear_elbow_down_alike
+    t1833 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t1834 = ops.sqrt(ops.select(t831, t1833, 1.0))
+    s_bend_right_rear_elbow_down_alike = ops.select(short_right, 0.0, t1826 * (t1832 * t1834))
+    t1835 = fore_arm_2 * s_bend_right_rear_elbow_down_alike
+    up_right_rear_elbow_down_alike = t1828 - r_right_rear_elbow_down_alike_2 * t1835
+    t1836 = r_right_rear_elbow_down_alike_2 * ahead_1_right_rear_elbow_down_alike
+    out_right_rear_elbow_down_alike = t1836 + h_right_rear_elbow_down_alike_2 * t1835
+    t1837 = ops.select(t829, out_right_rear_elbow_down_alike, 1.0)
+    t1838 = ops.atan2(up_right_rear_elbow_down_alike, t1837)
+    t1839 = ops.select(folded_right_rear_elbow_down_alike, t1698, t1838)
+    t1840 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1839))
+    t1841 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t1842 = ops.atan2(2.0 * t1834, ops.select(t817, t1841, 1.0))
+    t1843 = ops.select(short_right, 0.0, sigma_right_rear_elbow_down_alike * t1842)
+    t1844 = ops.select(failed_3, ops.nan, ops.wrap(t1281 + t1843))
+    t1845 = elbow_21_front_elbow_down_alike_2 - h_left_0_rear_elbow_down_alike_2
+    t1846 = swing_21_rear_elbow_down_alike_2 + t1808 * (t1804 * t1845)
+    t1847 = elbow_11_rear_elbow_down_alike_2 - r_left_0_rear_elbow_down_alike_2
+    t1848 = t1807 * (turn_both_rear_elbow_down_alike_2 * t1847)
+    more_left_21_rear_elbow_down_alike_2 = t1846 - t1848
+    t1849 = h_left_0_rear_elbow_down_alike_2 + more_left_21_rear_elbow_down_alike_2
+    h_left_rear_elbow_down_alike_2 = ops.select(t466, t1849, h_left_0_rear_elbow_down_alike_2)
+    t1850 = t1807 * (turn_both_rear_elbow_down_alike_2 * t1845)
+    t1851 = t1816 - t1808 * (t1804 * t1847) - t1850
+    t1852 = t1851 - 2.0 * r_left_0_rear_elbow_down_alike_2
+    t1853 = more_left_21_rear_elbow_down_alike_2 + 2.0 * h_left_0_rear_elbow_down_alike_2
+    t1854 = ops.select(t825, more_left_21_rear_elbow_down_alike_2 * t1853, 1.0)
+    change_left_rear_elbow_down_alike_2 = ops.select(t466, ops.select(t825, t1851 * t1852, 1.0) + t1854, 0.0)
+    t1855 = farther_left_rear_elbow_down_alike_2 + change_left_rear_elbow_down_alike_2
+    M_left_rear_elbow_down_alike = ops.max(t1855, 0.0)
+    t1856 = -(t1718 + change_left_rear_elbow_down_alike_2)
+    N_left_rear_elbow_down_alike = ops.max(t1856, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t1846 = ops.select(t823, whole_left_rear_elbow_down_alike, 1.0)
-    t1847 = 1.0 / t1846
-    t1848 = t1148 + t1264 * M_left_rear_elbow_down_alike * t1847
-    ahead_1_left_rear_elbow_down_alike = ops.select(short_right, size_2, t1848)
-    t1849 = h_left_rear_elbow_down_alike_2 * ahead_1_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike_2 = ops.select(t466, r_left_0_rear_elbow_down_alike_2 - t1840, r_left_0_rear_elbow_down_alike_2)
-    t1850 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t1851 = ops.sqrt(ops.select(t824, t1850, 1.0))
-    s_bend_left_rear_elbow_down_alike = ops.select(short_right, 0.0, t1847 * (t1821 * t1851))
-    t1852 = fore_arm_2 * s_bend_left_rear_elbow_down_alike
-    t1853 = r_left_rear_elbow_down_alike_2 * t1852
-    t1854 = r_left_rear_elbow_down_alike_2 * ahead_1_left_rear_elbow_down_alike
-    t1855 = h_left_rear_elbow_down_alike_2 * t1852
-    t1856 = ops.atan2(t1849 - t1853, ops.select(t822, t1854 + t1855, 1.0))
-    t1857 = ops.select(folded_left_rear_elbow_down_alike, t1690, t1856)
-    t1858 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1857))
-    t1859 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
-    t1860 = ops.atan2(2.0 * t1851, ops.select(t817, t1859, 1.0))
-    t1861 = ops.select(short_right, 0.0, sigma_right_rear_elbow_down_alike * t1860)
-    t1862 = ops.select(failed_3, ops.nan, ops.wrap(t1280 + t1861))
-    t1863 = ops.select(failed_3, ops.nan, t1300)
-    t1864 = ops.atan2(t1849 + t1853, ops.select(t822, t1854 - t1855, 1.0))
-    t1865 = ops.select(folded_left_rear_elbow_down_alike, t1690, t1864)
-    t1866 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1865))
-    t1867 = ops.select(failed_3, ops.nan, ops.wrap(t1280 - t1861))
-    t1868 = nowhere | folded | short
+    t1857 = ops.select(t823, whole_left_rear_elbow_down_alike, 1.0)
+    t1858 = 1.0 / t1857
+    t1859 = t1148 + t1264 * M_left_rear_elbow_down_alike * t1858
+    ahead_1_left_rear_elbow_down_alike = ops.select(short_right, size_2, t1859)
+    t1860 = h_left_rear_elbow_down_alike_2 * ahead_1_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike_2 = ops.select(t466, r_left_0_rear_elbow_down_alike_2 - t1851, r_left_0_rear_elbow_down_alike_2)
+    t1861 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t1862 = ops.sqrt(ops.select(t824, t1861, 1.0))
+    s_bend_left_rear_elbow_down_alike = ops.select(short_right, 0.0, t1858 * (t1832 * t1862))
+    t1863 = fore_arm_2 * s_bend_left_rear_elbow_down_alike
+    t1864 = r_left_rear_elbow_down_alike_2 * t1863
+    t1865 = r_left_rear_elbow_down_alike_2 * ahead_1_left_rear_elbow_down_alike
+    t1866 = h_left_rear_elbow_down_alike_2 * t1863
+    t1867 = ops.atan2(t1860 - t1864, ops.select(t822, t1865 + t1866, 1.0))
+    t1868 = ops.select(folded_left_rear_elbow_down_alike, t1698, t1867)
+    t1869 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1868))
+    t1870 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t1871 = ops.atan2(2.0 * t1862, ops.select(t817, t1870, 1.0))
+    t1872 = ops.select(short_right, 0.0, sigma_right_rear_elbow_down_alike * t1871)
+    t1873 = ops.select(failed_3, ops.nan, ops.wrap(t1281 + t1872))
+    t1874 = ops.select(failed_3, ops.nan, t1302)
+    t1875 = ops.atan2(t1860 + t1864, ops.select(t822, t1865 - t1866, 1.0))
+    t1876 = ops.select(folded_left_rear_elbow_down_alike, t1698, t1875)
+    t1877 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1876))
+    t1878 = ops.select(failed_3, ops.nan, ops.wrap(t1281 - t1872))
+    t1879 = nowhere | folded | short
     square_mid = t74 + M_mid
-    t1869 = M_mid * square_mid
-    t1870 = ops.determined * ops.determined
-    t1871 = t51 * t1870
-    t1872 = square_mid <= t1871
-    t1873 = t1868 | (t1869 <= t1870 * (t51 * gap)) | t1872
-    t1874 = wrist <= al * ops.determined
-    t1875 = t1873 | t1874 | folded_right | short_right | folded_left
-    t1876 = t815 * lengths
-    t1877 = 1125899906842624.0 * (ops.abs(L2 - L_2W) + ops.abs(a3 - a_3W))
-    t1878 = ops.vanishing * (ops.vanishing * (16.0 * t815))
-    t1879 = ops.max(t209, t1878) * 0.5 - (gap - ops.max(t216, 0.0) * 0.5)
-    t1880 = gap + ops.max(t215, 0.0) * 0.5 + ops.max(t208, t1878) * 0.5
-    t1881 = ops.sqrt(ops.max(0.0, t1879) * ops.max(0.0, t1880))
-    t1882 = t1877 * ops.abs(t28 * t1271 + sigma_right * t1881)
-    t1883 = ops.determined * ops.select(t108, t1882, 0.0)
-    t1884 = t1875 | (ops.select(t108, t1876, 1.0) <= t1883)
-    t1885 = ops.status(invalid, unreachable, t1884)
+    t1880 = M_mid * square_mid
+    t1881 = ops.determined * ops.determined
+    t1882 = t51 * t1881
+    t1883 = square_mid <= t1882
+    t1884 = t1879 | (t1880 <= t1881 * (t51 * gap)) | t1883
+    t1885 = wrist <= al * ops.determined
+    t1886 = t1884 | t1885 | folded_right | short_right | folded_left
+    t1887 = t815 * lengths
+    t1888 = 1125899906842624.0 * (ops.abs(L2 - L_2W) + ops.abs(a3 - a_3W))
+    t1889 = ops.vanishing * (ops.vanishing * (16.0 * t815))
+    t1890 = ops.max(t209, t1889) * 0.5 - (gap - ops.max(t216, 0.0) * 0.5)
+    t1891 = gap + ops.max(t215, 0.0) * 0.5 + ops.max(t208, t1889) * 0.5
+    t1892 = ops.sqrt(ops.max(0.0, t1890) * ops.max(0.0, t1891))
+    t1893 = t1888 * ops.abs(t28 * t1272 + sigma_right * t1892)
+    t1894 = ops.determined * ops.select(t108, t1893, 0.0)
+    t1895 = t1886 | (ops.select(t108, t1887, 1.0) <= t1894)
+    t1896 = ops.status(invalid, unreachable, t1895)
     square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
-    t1886 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    t1887 = t1886 <= t1870 * (t51 * gap_front_elbow_down_alike)
-    t1888 = square_mid_front_elbow_down_alike <= t1871
-    t1889 = t1868 | t1887 | t1888 | t1874 | folded_right_front_elbow_down_alike
-    t1890 = t1889 | short_right | folded_left_front_elbow_down_alike
-    t1891 = gap_front_elbow_down_alike - ops.max(t808, 0.0) * 0.5
-    t1892 = ops.max(0.0, ops.max(t796, t1878) * 0.5 - t1891)
-    t1893 = gap_front_elbow_down_alike + ops.max(t807, 0.0) * 0.5
-    t1894 = ops.max(0.0, t1893 + ops.max(t795, t1878) * 0.5)
-    t1895 = sigma_right_front_elbow_down_alike * ops.sqrt(t1892 * t1894)
-    astray_front_elbow_down_alike = ops.select(t664, t1877 * ops.abs(t28 * t1460 + t1895), 0.0)
-    t1896 = ops.determined * astray_front_elbow_down_alike
-    t1897 = t1890 | (ops.select(t664, t1876, 1.0) <= t1896)
-    t1898 = ops.status(invalid, unreachable_4, t1897)
-    t1899 = t1886 <= t1870 * (t51 * gap_rear_elbow_up_alike)
-    t1900 = t1868 | t1899 | t1888 | t1874 | folded_right_rear_elbow_up_alike
-    t1901 = t1900 | short_right | folded_left_rear_elbow_up_alike
-    t1902 = gap_rear_elbow_up_alike - ops.max(t414, 0.0) * 0.5
-    t1903 = ops.max(0.0, ops.max(t402, t1878) * 0.5 - t1902)
-    t1904 = gap_rear_elbow_up_alike + ops.max(t413, 0.0) * 0.5
-    t1905 = ops.max(0.0, t1904 + ops.max(t401, t1878) * 0.5)
-    t1906 = sigma_right_rear_elbow_up_alike * ops.sqrt(t1903 * t1905)
-    astray_rear_elbow_up_alike = ops.select(t272, t1877 * ops.abs(t28 * t1640 + t1906), 0.0)
-    t1907 = ops.select(t272, t1876, 1.0) <= ops.determined * astray_rear_elbow_up_alike
-    t1908 = ops.status(invalid, unreachable_2, t1901 | t1907)
-    t1909 = t1869 <= t1870 * (t51 * gap_rear_elbow_down_alike)
-    t1910 = t1868 | t1909 | t1872 | t1874 | folded_right_rear_elbow_down_alike
-    t1911 = t1910 | short_right | folded_left_rear_elbow_down_alike
-    t1912 = gap_rear_elbow_down_alike - ops.max(t609, 0.0) * 0.5
-    t1913 = ops.max(0.0, ops.max(t597, t1878) * 0.5 - t1912)
-    t1914 = gap_rear_elbow_down_alike + ops.max(t608, 0.0) * 0.5
-    t1915 = ops.max(0.0, t1914 + ops.max(t596, t1878) * 0.5)
-    t1916 = sigma_right_rear_elbow_down_alike * ops.sqrt(t1913 * t1915)
-    astray_rear_elbow_down_alike = ops.select(t466, t1877 * ops.abs(t28 * t1820 + t1916), 0.0)
-    t1917 = ops.determined * astray_rear_elbow_down_alike
-    t1918 = t1911 | (ops.select(t466, t1876, 1.0) <= t1917)
-    t1919 = ops.status(invalid, unreachable_3, t1918)
+    t1897 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t1898 = t1897 <= t1881 * (t51 * gap_front_elbow_down_alike)
+    t1899 = square_mid_front_elbow_down_alike <= t1882
+    t1900 = t1879 | t1898 | t1899 | t1885 | folded_right_front_elbow_down_alike
+    t1901 = t1900 | short_right | folded_left_front_elbow_down_alike
+    t1902 = gap_front_elbow_down_alike - ops.max(t808, 0.0) * 0.5
+    t1903 = ops.max(0.0, ops.max(t796, t1889) * 0.5 - t1902)
+    t1904 = gap_front_elbow_down_alike + ops.max(t807, 0.0) * 0.5
+    t1905 = ops.max(0.0, t1904 + ops.max(t795, t1889) * 0.5)
+    t1906 = sigma_right_front_elbow_down_alike * ops.sqrt(t1903 * t1905)
+    astray_front_elbow_down_alike = ops.select(t664, t1888 * ops.abs(t28 * t1465 + t1906), 0.0)
+    t1907 = ops.determined * astray_front_elbow_down_alike
+    t1908 = t1901 | (ops.select(t664, t1887, 1.0) <= t1907)
+    t1909 = ops.status(invalid, unreachable_4, t1908)
+    t1910 = t1897 <= t1881 * (t51 * gap_rear_elbow_up_alike)
+    t1911 = t1879 | t1910 | t1899 | t1885 | folded_right_rear_elbow_up_alike
+    t1912 = t1911 | short_right | folded_left_rear_elbow_up_alike
+    t1913 = gap_rear_elbow_up_alike - ops.max(t414, 0.0) * 0.5
+    t1914 = ops.max(0.0, ops.max(t402, t1889) * 0.5 - t1913)
+    t1915 = gap_rear_elbow_up_alike + ops.max(t413, 0.0) * 0.5
+    t1916 = ops.max(0.0, t1915 + ops.max(t401, t1889) * 0.5)
+    t1917 = sigma_right_rear_elbow_up_alike * ops.sqrt(t1914 * t1916)
+    astray_rear_elbow_up_alike = ops.select(t272, t1888 * ops.abs(t28 * t1648 + t1917), 0.0)
+    t1918 = ops.select(t272, t1887, 1.0) <= ops.determined * astray_rear_elbow_up_alike
+    t1919 = ops.status(invalid, unreachable_2, t1912 | t1918)
+    t1920 = t1880 <= t1881 * (t51 * gap_rear_elbow_down_alike)
+    t1921 = t1879 | t1920 | t1883 | t1885 | folded_right_rear_elbow_down_alike
+    t1922 = t1921 | short_right | folded_left_rear_elbow_down_alike
+    t1923 = gap_rear_elbow_down_alike - ops.max(t609, 0.0) * 0.5
+    t1924 = ops.max(0.0, ops.max(t597, t1889) * 0.5 - t1923)
+    t1925 = gap_rear_elbow_down_alike + ops.max(t608, 0.0) * 0.5
+    t1926 = ops.max(0.0, t1925 + ops.max(t596, t1889) * 0.5)
+    t1927 = sigma_right_rear_elbow_down_alike * ops.sqrt(t1924 * t1926)
+    astray_rear_elbow_down_alike = ops.select(t466, t1888 * ops.abs(t28 * t1831 + t1927), 0.0)
+    t1928 = ops.determined * astray_rear_elbow_down_alike
+    t1929 = t1922 | (ops.select(t466, t1887, 1.0) <= t1928)
+    t1930 = ops.status(invalid, unreachable_3, t1929)
     return (
         t1107,
-        t1277,
-        t1283,
-        ops.select(failed, ops.nan, t1296),
-        t1299,
+        t1278,
+        t1284,
+        ops.select(failed, ops.nan, t1298),
         t1301,
+        t1303,
         t1107,
-        t1277,
-        t1283,
-        ops.select(failed, ops.nan, t1303),
-        t1304,
-        t1301,
-        t1305,
-        t1469,
-        t1473,
-        t1498,
-        t1502,
-        t1503,
-        t1305,
-        t1469,
-        t1473,
-        t1506,
-        t1507,
-        t1503,
+        t1278,
+        t1284,
+        ops.select(failed, ops.nan, t1305),
+        t1306,
+        t1303,
+        t1307,
+        t1474,
+        t1478,
+        t1504,
+        t1508,
         t1509,
-        t1649,
-        t1653,
-        t1677,
-        t1681,
-        t1682,
+        t1307,
+        t1474,
+        t1478,
+        t1512,
+        t1513,
         t1509,
-        t1649,
-        t1653,
+        t1515,
+        t1657,
+        t1661,
         t1685,
-        t1686,
-        t1682,
-        t1687,
-        t1829,
-        t1833,
-        t1858,
-        t1862,
-        t1863,
-        t1687,
-        t1829,
-        t1833,
-        t1866,
-        t1867,
-        t1863,
-        t1885,
-        t1885,
-        t1898,
-        t1898,
-        t1908,
-        t1908,
+        t1689,
+        t1690,
+        t1515,
+        t1657,
+        t1661,
+        t1693,
+        t1694,
+        t1690,
+        t1695,
+        t1840,
+        t1844,
+        t1869,
+        t1873,
+        t1874,
+        t1695,
+        t1840,
+        t1844,
+        t1877,
+        t1878,
+        t1874,
+        t1896,
+        t1896,
+        t1909,
+        t1909,
         t1919,
         t1919,
+        t1930,
+        t1930,
     )
 
 
@@ -4401,7 +4415,6 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 6)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 4),
 )
 
 
@@ -4489,7 +4502,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Spec("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
-    _runtime.Size((2, 3, 4), ((0, 1),), 2),
+    _runtime.Size((2, 3, 4), ((0, 1),), 4),
 )
 
 

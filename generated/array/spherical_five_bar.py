@@ -8,7 +8,7 @@
 #   jacobian_serial: 96 compare and select, 84 add, 16 divide, 126 multiply, 7 sincos, 7 sqrt
 #   jacobian: 105 compare and select, 102 add, 28 divide, 164 multiply, 7 sincos, 7 sqrt
 #   singularities: 98 compare and select, 84 add, 16 divide, 128 multiply, 7 sincos, 7 sqrt
-#   condition_number: 101 compare and select, 128 add, 24 divide, 173 multiply, 7 sincos, 11 sqrt
+#   condition_number: 105 compare and select, 128 add, 24 divide, 173 multiply, 7 sincos, 11 sqrt
 #   ik: 137 compare and select, 103 add, 4 atan2, 11 divide, 129 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -1545,45 +1545,46 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
     t81 = square1 - square2
     t82 = t78 * t2_x + t79 * t2_y + t80 * t2_z
-    t83 = ops.select(t48, t81 * t81 + 4.0 * (t82 * t82), 1.0)
-    t84 = ops.select(t48, 2.0 * (mu * nu_2 * h), 1.0)
-    t85 = strut * (square1 + square2 + ops.sqrt(t83)) / t84
-    t86 = t65 + t67
-    A_01_below = c1_x - t86
-    t87 = t69 + t70
-    A_02_below = c1_y - t87
-    t88 = A_01_below * A_01_below + A_02_below * A_02_below
-    t89 = t72 + t73
-    A_03_below = c1_z - t89
-    t90 = ops.select(t48, t88 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t90)
-    t91 = ops.select(t48, strut_below, 1.0)
-    radial_x_below = A_01_below / t91
-    radial_y_below = A_02_below / t91
-    radial_z_below = A_03_below / t91
-    t92 = t86 * radial_x_below + t87 * radial_y_below + t89 * radial_z_below
-    t93 = t86 - radial_x_below * t92
-    t94 = t87 - radial_y_below * t92
-    t95 = t89 - radial_z_below * t92
-    square1_below = t93 * t93 + t94 * t94 + t95 * t95
-    A_21_below = t8 - t86
-    A_22_below = t10 - t87
-    t96 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t89
-    off2_below = t96 + radial_z_below * A_23_below
+    t83 = ops.select(t48, t81 * t81, 1.0) + 4.0 * ops.select(t48, t82 * t82, 1.0)
+    t84 = square1 + square2 + ops.sqrt(ops.select(t48, t83, 1.0))
+    t85 = ops.select(t48, 2.0 * (mu * nu_2 * h), 1.0)
+    t86 = ops.select(failed, ops.nan, strut * t84 / t85)
+    t87 = t65 + t67
+    A_01_below = c1_x - t87
+    t88 = t69 + t70
+    A_02_below = c1_y - t88
+    t89 = A_01_below * A_01_below + A_02_below * A_02_below
+    t90 = t72 + t73
+    A_03_below = c1_z - t90
+    t91 = ops.select(t48, t89 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t91)
+    t92 = ops.select(t48, strut_below, 1.0)
+    radial_x_below = A_01_below / t92
+    radial_y_below = A_02_below / t92
+    radial_z_below = A_03_below / t92
+    t93 = t87 * radial_x_below + t88 * radial_y_below + t90 * radial_z_below
+    t94 = t87 - radial_x_below * t93
+    t95 = t88 - radial_y_below * t93
+    t96 = t90 - radial_z_below * t93
+    square1_below = t94 * t94 + t95 * t95 + t96 * t96
+    A_21_below = t8 - t87
+    A_22_below = t10 - t88
+    t97 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t90
+    off2_below = t97 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t97 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t98 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t97 + t2_z_below * t2_z_below
-    t98 = square1_below - square2_below
-    t99 = t93 * t2_x_below + t94 * t2_y_below + t95 * t2_z_below
-    t100 = ops.select(t48, t98 * t98 + 4.0 * (t99 * t99), 1.0)
-    t101 = square1_below + square2_below + ops.sqrt(t100)
-    t102 = ops.select(failed, ops.nan, strut_below * t101 / t84)
+    square2_below = t98 + t2_z_below * t2_z_below
+    t99 = square1_below - square2_below
+    t100 = t94 * t2_x_below + t95 * t2_y_below + t96 * t2_z_below
+    t101 = ops.select(t48, t99 * t99, 1.0) + 4.0 * ops.select(t48, t100 * t100, 1.0)
+    t102 = square1_below + square2_below + ops.sqrt(ops.select(t48, t101, 1.0))
+    t103 = ops.select(failed, ops.nan, strut_below * t102 / t85)
     return (
-        ops.select(failed, ops.nan, t85),
-        t102,
+        t86,
+        t103,
     )
 
 
@@ -1823,7 +1824,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (4, 2)), _runtime.Spec("status", (4,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((0, 1, 2, 3), (), 4),
+    _runtime.Size((0, 1, 2, 3), (), 8),
 )
 
 
@@ -1930,7 +1931,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((0, 1, 2, 3), (), 2),
+    _runtime.Size((0, 1, 2, 3), (), 4),
 )
 
 

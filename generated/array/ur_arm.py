@@ -1171,10 +1171,10 @@ def _ik(
     t188 = T13 * s_1_1_8 - T23 * c_1_1_8
     most_1_1_8 = ops.sqrt(t187 + t188 * t188)
     t189 = most_1_1_8 <= 8.881784197001252e-16
-    room_1_1_8 = most_1_1_8 * most_1_1_8
+    margin_1_1_8 = most_1_1_8 * most_1_1_8
     t190 = ops.sign(-t188)
-    rest_1_1_8 = ops.sqrt(room_1_1_8) * t190
-    t191 = 1.0 / room_1_1_8
+    rest_1_1_8 = ops.sqrt(margin_1_1_8) * t190
+    t191 = 1.0 / margin_1_1_8
     by_c_1_1_8 = ops.select(t189, 1.0, -(t188 * rest_1_1_8 * t191))
     t192 = ops.select(t189, 0.0, t191 * (axisx_1_1_8 * rest_1_1_8))
     versine_1_1_8 = ops.select(0.0 < by_c_1_1_8, t192 * t192 / (1.0 + ops.abs(by_c_1_1_8)), 1.0 - by_c_1_1_8)
@@ -2140,10 +2140,10 @@ def _ik(
     t762 = T13 * s_1_1_8_right_noflip_up - T23 * c_1_1_8_right_noflip_up
     most_1_1_8_right_noflip_up = ops.sqrt(t761 + t762 * t762)
     t763 = most_1_1_8_right_noflip_up <= 8.881784197001252e-16
-    room_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up
+    margin_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up
     t764 = ops.sign(-t762)
-    rest_1_1_8_right_noflip_up = ops.sqrt(room_1_1_8_right_noflip_up) * t764
-    t765 = 1.0 / room_1_1_8_right_noflip_up
+    rest_1_1_8_right_noflip_up = ops.sqrt(margin_1_1_8_right_noflip_up) * t764
+    t765 = 1.0 / margin_1_1_8_right_noflip_up
     by_c_1_1_8_right_noflip_up = ops.select(t763, 1.0, -(t762 * rest_1_1_8_right_noflip_up * t765))
     t766 = axisx_1_1_8_right_noflip_up * rest_1_1_8_right_noflip_up
     t767 = ops.select(t763, 0.0, t765 * t766)
@@ -3133,10 +3133,10 @@ def _ik(
     t1357 = T13 * s_1_1_8_right_flip_up - T23 * c_1_1_8_right_flip_up
     most_1_1_8_right_flip_up = ops.sqrt(t1356 + t1357 * t1357)
     t1358 = most_1_1_8_right_flip_up <= 8.881784197001252e-16
-    room_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up
+    margin_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up
     t1359 = ops.sign(-t1357)
-    rest_1_1_8_right_flip_up = ops.sqrt(room_1_1_8_right_flip_up) * t1359
-    t1360 = 1.0 / room_1_1_8_right_flip_up
+    rest_1_1_8_right_flip_up = ops.sqrt(margin_1_1_8_right_flip_up) * t1359
+    t1360 = 1.0 / margin_1_1_8_right_flip_up
     by_c_1_1_8_right_flip_up = ops.select(t1358, 1.0, -(t1357 * rest_1_1_8_right_flip_up * t1360))
     t1361 = axisx_1_1_8_right_flip_up * rest_1_1_8_right_flip_up
     t1362 = ops.select(t1358, 0.0, t1360 * t1361)
@@ -4397,10 +4397,10 @@ def _ik(
     t2220 = T13 * s_1_1_8_left_flip_up - T23 * c_1_1_8_left_flip_up
     most_1_1_8_left_flip_up = ops.sqrt(t2219 + t2220 * t2220)
     t2221 = most_1_1_8_left_flip_up <= 8.881784197001252e-16
-    room_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up
+    margin_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up
     t2222 = ops.sign(-t2220)
-    rest_1_1_8_left_flip_up = ops.sqrt(room_1_1_8_left_flip_up) * t2222
-    t2223 = 1.0 / room_1_1_8_left_flip_up
+    rest_1_1_8_left_flip_up = ops.sqrt(margin_1_1_8_left_flip_up) * t2222
+    t2223 = 1.0 / margin_1_1_8_left_flip_up
     by_c_1_1_8_left_flip_up = ops.select(t2221, 1.0, -(t2220 * rest_1_1_8_left_flip_up * t2223))
     t2224 = axisx_1_1_8_left_flip_up * rest_1_1_8_left_flip_up
     t2225 = ops.select(t2221, 0.0, t2223 * t2224)
@@ -6078,8 +6078,8 @@ def _ik(
     t3277 = axisx_1_1_4_left_flip_up_2 * wanted_1_1_4_left_flip_up_2
     t3278 = most_1_1_4_left_flip_up_2 - wanted_1_1_4_left_flip_up_2
     t3279 = most_1_1_4_left_flip_up_2 + wanted_1_1_4_left_flip_up_2
-    room_1_1_4_left_flip_up = ops.max(0.0, ops.select(t2676, t3278 * t3279, 1.0))
-    t3280 = ops.select(t2676, room_1_1_4_left_flip_up, 1.0)
+    margin_1_1_4_left_flip_up = ops.max(0.0, ops.select(t2676, t3278 * t3279, 1.0))
+    t3280 = ops.select(t2676, margin_1_1_4_left_flip_up, 1.0)
     rest_1_1_4_left_flip_up_2 = ops.sqrt(t3280) * t2124
     t3281 = ops.select(t2676, t3277, 1.0) - t3249 * rest_1_1_4_left_flip_up_2
     t3282 = most_1_1_4_left_flip_up_2 * most_1_1_4_left_flip_up_2
@@ -6196,8 +6196,8 @@ def _ik(
     t3345 = axisx_1_1_8_left_flip_up_2 * axisx_1_1_8_left_flip_up_2
     t3346 = ops.select(t2653, t3345, 1.0) + ops.select(t2653, t3344 * t3344, 1.0)
     most_1_1_8_left_flip_up_2 = ops.sqrt(ops.select(t2653, t3346, 1.0))
-    room_1_1_8_left_flip_up_2 = most_1_1_8_left_flip_up_2 * most_1_1_8_left_flip_up_2
-    t3347 = ops.select(t2653, room_1_1_8_left_flip_up_2, 1.0)
+    margin_1_1_8_left_flip_up_2 = most_1_1_8_left_flip_up_2 * most_1_1_8_left_flip_up_2
+    t3347 = ops.select(t2653, margin_1_1_8_left_flip_up_2, 1.0)
     rest_1_1_8_left_flip_up_2 = ops.sqrt(t3347) * t2222
     t3348 = 1.0 / t3347
     by_c_1_1_8_left_flip_up_2 = ops.select(t2221, 1.0, -(t3344 * rest_1_1_8_left_flip_up_2 * t3348))
@@ -6939,8 +6939,8 @@ def _ik(
     t3800 = axisx_1_1_4_right_noflip_up_2 * wanted_1_1_4_right_noflip_up_2
     t3801 = most_1_1_4_right_noflip_up_2 - wanted_1_1_4_right_noflip_up_2
     t3802 = most_1_1_4_right_noflip_up_2 + wanted_1_1_4_right_noflip_up_2
-    room_1_1_4_right_noflip_up = ops.max(0.0, ops.select(t1961, t3801 * t3802, 1.0))
-    t3803 = ops.select(t1961, room_1_1_4_right_noflip_up, 1.0)
+    margin_1_1_4_right_noflip_up = ops.max(0.0, ops.select(t1961, t3801 * t3802, 1.0))
+    t3803 = ops.select(t1961, margin_1_1_4_right_noflip_up, 1.0)
     rest_1_1_4_right_noflip_up_2 = ops.sqrt(t3803) * t656
     t3804 = ops.select(t1961, t3800, 1.0) - t3772 * rest_1_1_4_right_noflip_up_2
     t3805 = most_1_1_4_right_noflip_up_2 * most_1_1_4_right_noflip_up_2
@@ -7061,8 +7061,8 @@ def _ik(
     t3872 = axisx_1_1_8_right_noflip_up_2 * axisx_1_1_8_right_noflip_up_2
     t3873 = ops.select(t1938, t3872, 1.0) + ops.select(t1938, t3871 * t3871, 1.0)
     most_1_1_8_right_noflip_up_2 = ops.sqrt(ops.select(t1938, t3873, 1.0))
-    room_1_1_8_right_noflip_up_2 = most_1_1_8_right_noflip_up_2 * most_1_1_8_right_noflip_up_2
-    t3874 = ops.select(t1938, room_1_1_8_right_noflip_up_2, 1.0)
+    margin_1_1_8_right_noflip_up_2 = most_1_1_8_right_noflip_up_2 * most_1_1_8_right_noflip_up_2
+    t3874 = ops.select(t1938, margin_1_1_8_right_noflip_up_2, 1.0)
     rest_1_1_8_right_noflip_up_2 = ops.sqrt(t3874) * t764
     t3875 = 1.0 / t3874
     t3876 = -(t3871 * rest_1_1_8_right_noflip_up_2 * t3875)
@@ -7798,8 +7798,8 @@ def _ik(
     t4323 = axisx_1_1_4_right_flip_up_2 * wanted_1_1_4_right_flip_up_2
     t4324 = most_1_1_4_right_flip_up_2 - wanted_1_1_4_right_flip_up_2
     t4325 = most_1_1_4_right_flip_up_2 + wanted_1_1_4_right_flip_up_2
-    room_1_1_4_right_flip_up = ops.max(0.0, ops.select(t1815, t4324 * t4325, 1.0))
-    t4326 = ops.select(t1815, room_1_1_4_right_flip_up, 1.0)
+    margin_1_1_4_right_flip_up = ops.max(0.0, ops.select(t1815, t4324 * t4325, 1.0))
+    t4326 = ops.select(t1815, margin_1_1_4_right_flip_up, 1.0)
     rest_1_1_4_right_flip_up_2 = ops.sqrt(t4326) * t1255
     t4327 = ops.select(t1815, t4323, 1.0) - t4295 * rest_1_1_4_right_flip_up_2
     t4328 = most_1_1_4_right_flip_up_2 * most_1_1_4_right_flip_up_2
@@ -7916,8 +7916,8 @@ def _ik(
     t4391 = axisx_1_1_8_right_flip_up_2 * axisx_1_1_8_right_flip_up_2
     t4392 = ops.select(t1791, t4391, 1.0) + ops.select(t1791, t4390 * t4390, 1.0)
     most_1_1_8_right_flip_up_2 = ops.sqrt(ops.select(t1791, t4392, 1.0))
-    room_1_1_8_right_flip_up_2 = most_1_1_8_right_flip_up_2 * most_1_1_8_right_flip_up_2
-    t4393 = ops.select(t1791, room_1_1_8_right_flip_up_2, 1.0)
+    margin_1_1_8_right_flip_up_2 = most_1_1_8_right_flip_up_2 * most_1_1_8_right_flip_up_2
+    t4393 = ops.select(t1791, margin_1_1_8_right_flip_up_2, 1.0)
     rest_1_1_8_right_flip_up_2 = ops.sqrt(t4393) * t1359
     t4394 = 1.0 / t4393
     t4395 = -(t4390 * rest_1_1_8_right_flip_up_2 * t4394)

@@ -1288,9 +1288,9 @@ function _ik(v, o) {
     const t160 = T13 * s_1_1_8 - T23 * c_1_1_8;
     const most_1_1_8 = Math.sqrt(t159 + t160 * t160);
     const t161 = most_1_1_8 <= 8.881784197001252e-16;
-    const room_1_1_8 = most_1_1_8 * most_1_1_8;
-    const rest_1_1_8 = Math.sqrt(room_1_1_8) * (-t160 < 0 ? -1 : 1);
-    const t162 = 1.0 / room_1_1_8;
+    const margin_1_1_8 = most_1_1_8 * most_1_1_8;
+    const rest_1_1_8 = Math.sqrt(margin_1_1_8) * (-t160 < 0 ? -1 : 1);
+    const t162 = 1.0 / margin_1_1_8;
     const by_c_1_1_8 = t161 ? 1.0 : -(t160 * rest_1_1_8 * t162);
     const t163 = t161 ? 0.0 : t162 * (axisx_1_1_8 * rest_1_1_8);
     const versine_1_1_8 = 0.0 < by_c_1_1_8 ? t163 * t163 / (1.0 + Math.abs(by_c_1_1_8)) : 1.0 -
@@ -2168,9 +2168,9 @@ function _ik(v, o) {
     const t625 = T13 * s_1_1_8_left_flip_up - T23 * c_1_1_8_left_flip_up;
     const most_1_1_8_left_flip_up = Math.sqrt(t624 + t625 * t625);
     const t626 = most_1_1_8_left_flip_up <= 8.881784197001252e-16;
-    const room_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up;
-    const rest_1_1_8_left_flip_up = Math.sqrt(room_1_1_8_left_flip_up) * (-t625 < 0 ? -1 : 1);
-    const t627 = 1.0 / room_1_1_8_left_flip_up;
+    const margin_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up;
+    const rest_1_1_8_left_flip_up = Math.sqrt(margin_1_1_8_left_flip_up) * (-t625 < 0 ? -1 : 1);
+    const t627 = 1.0 / margin_1_1_8_left_flip_up;
     const by_c_1_1_8_left_flip_up = t626 ? 1.0 : -(t625 * rest_1_1_8_left_flip_up * t627);
     const t628 = axisx_1_1_8_left_flip_up * rest_1_1_8_left_flip_up;
     const t629 = t626 ? 0.0 : t627 * t628;
@@ -3271,10 +3271,11 @@ function _ik(v, o) {
     const t1250 = T13 * s_1_1_8_right_noflip_up - T23 * c_1_1_8_right_noflip_up;
     const most_1_1_8_right_noflip_up = Math.sqrt(t1249 + t1250 * t1250);
     const t1251 = most_1_1_8_right_noflip_up <= 8.881784197001252e-16;
-    const room_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up;
-    const rest_1_1_8_right_noflip_up = Math.sqrt(room_1_1_8_right_noflip_up) * (-t1250 < 0 ? -1
-        : 1);
-    const t1252 = 1.0 / room_1_1_8_right_noflip_up;
+    const margin_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up *
+        most_1_1_8_right_noflip_up;
+    const rest_1_1_8_right_noflip_up = Math.sqrt(margin_1_1_8_right_noflip_up) * (-t1250 < 0 ?
+        -1 : 1);
+    const t1252 = 1.0 / margin_1_1_8_right_noflip_up;
     const t1253 = -(t1250 * rest_1_1_8_right_noflip_up * t1252);
     const by_c_1_1_8_right_noflip_up = t1251 ? 1.0 : t1253;
     const t1254 = axisx_1_1_8_right_noflip_up * rest_1_1_8_right_noflip_up;
@@ -4385,10 +4386,10 @@ function _ik(v, o) {
     const t1873 = T13 * s_1_1_8_right_flip_up - T23 * c_1_1_8_right_flip_up;
     const most_1_1_8_right_flip_up = Math.sqrt(t1872 + t1873 * t1873);
     const t1874 = most_1_1_8_right_flip_up <= 8.881784197001252e-16;
-    const room_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up;
-    const rest_1_1_8_right_flip_up = Math.sqrt(room_1_1_8_right_flip_up) * (-t1873 < 0 ? -1 :
+    const margin_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up;
+    const rest_1_1_8_right_flip_up = Math.sqrt(margin_1_1_8_right_flip_up) * (-t1873 < 0 ? -1 :
         1);
-    const t1875 = 1.0 / room_1_1_8_right_flip_up;
+    const t1875 = 1.0 / margin_1_1_8_right_flip_up;
     const by_c_1_1_8_right_flip_up = t1874 ? 1.0 : -(t1873 * rest_1_1_8_right_flip_up * t1875);
     const t1876 = axisx_1_1_8_right_flip_up * rest_1_1_8_right_flip_up;
     const t1877 = t1874 ? 0.0 : t1875 * t1876;

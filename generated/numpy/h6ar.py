@@ -2264,591 +2264,593 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t331 = t89 - higher * ctheta2A_rear_elbow_up
     del ctheta2A_rear_elbow_up, t89
     t332 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t331
-    room_alpha_rear_elbow_up = t209 - np.abs(t332)
+    margin_alpha_rear_elbow_up = t209 - np.abs(t332)
     del t209
-    t333 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t333, room_alpha_rear_elbow_up) <= t95
+    t333 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t334 = np.maximum(-t333, margin_alpha_rear_elbow_up)
     del t333
-    t334 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t331
-    t335 = t213 - _runtime.sign(-t332) * t334
-    del t213, t332, t334
-    t336 = np.abs(t335)
+    spent_alpha_rear_elbow_up = t334 <= t95
+    del t334
+    t335 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t331
+    t336 = t213 - _runtime.sign(-t332) * t335
+    del t213, t332, t335
+    t337 = np.abs(t336)
     heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t219, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t336 / heavy_0_alpha_rear_elbow_up, 0.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t337 / heavy_0_alpha_rear_elbow_up, 0.0)
     heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t109, 1.0)
     gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t220 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t337 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t338 = _runtime.select(spent_alpha_rear_elbow_up, t337, 0.0)
-    del t337
-    t339 = -(_runtime.FEASIBILITY * (t71 + t338)) <= room_alpha_rear_elbow_up
+    t338 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t339 = _runtime.select(spent_alpha_rear_elbow_up, t338, 0.0)
     del t338
-    t340 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    t340 = -(_runtime.FEASIBILITY * (t71 + t339)) <= margin_alpha_rear_elbow_up
+    del t339
+    t341 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     del gain_1_alpha_rear_elbow_up
-    t341 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t342 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up
-    t342 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t340 / (t115 + t340 + t341), 0.0)
-    del t340, t341
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t342, 0.0)
-    del t342
-    t343 = t227 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    t343 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t341 / (t115 + t341 + t342), 0.0)
+    del t341, t342
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t343, 0.0)
+    del t343
+    t344 = t227 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
     del t227
-    t344 = t71 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t345 = t71 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t343 / (t220 + t344)), 0.0)
-    del t220, t343, t344
-    t345 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
-    del room_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t346 = t71 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t347 = 1.0 / (t336 + t346)
-    del t336, t346
-    t348 = -(heavy_0_alpha_rear_elbow_up * t345 * t347) <= 9.094947017729282e-13
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t344 / (t220 + t345)), 0.0)
+    del t220, t344, t345
+    t346 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, share_alpha_rear_elbow_up
+    t347 = t71 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t348 = 1.0 / (t337 + t347)
+    del t337, t347
+    t349 = -(heavy_0_alpha_rear_elbow_up * t346 * t348) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t349 = -(t345 * t347)
-    del t345, t347
-    t350 = _runtime.select(t348 & (0.0 < t349), t349, 0.0)
-    del t348, t349
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t335) * t350, 0.0)
-    del t335, t350
-    t351 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t350 = -(t346 * t348)
+    del t346, t348
+    t351 = _runtime.select(t349 & (0.0 < t350), t350, 0.0)
+    del t349, t350
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t336) * t351, 0.0)
+    del t336, t351
+    t352 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t352 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t351 - t103 * t352, 0.0)
-    del t351, t352
-    t353 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t354 = np.sqrt(1.0 + t353)
-    del t353
-    t355 = 1.0 / t354
-    t356 = p_1_rear_elbow_up * t355 - t331 * lean_alpha_rear_elbow_up * t355
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t356, p_1_rear_elbow_up)
-    del t356
+    t353 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352 - t103 * t353, 0.0)
+    del t352, t353
+    t354 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t355 = np.sqrt(1.0 + t354)
+    del t354
+    t356 = 1.0 / t355
+    t357 = p_1_rear_elbow_up * t356 - t331 * lean_alpha_rear_elbow_up * t356
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t357, p_1_rear_elbow_up)
+    del t357
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t357 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t358 = 1.0 / (t354 * np.sqrt(1.0 + t357))
-    del t354, t357
-    t359 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t360 = t358 + t358 * t359
+    t358 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t359 = 1.0 / (t355 * np.sqrt(1.0 + t358))
+    del t355, t358
+    t360 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t361 = t359 + t359 * t360
+    del t360
+    t362 = lean_alpha_rear_elbow_up * t359 - turn_alpha_rear_elbow_up * t359
     del t359
-    t361 = lean_alpha_rear_elbow_up * t358 - turn_alpha_rear_elbow_up * t358
-    del t358
-    t362 = v_1_front_elbow_down * t360 + v_2_front_elbow_down * t361
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t362, v_1_front_elbow_down)
-    del t362
+    t363 = v_1_front_elbow_down * t361 + v_2_front_elbow_down * t362
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t363, v_1_front_elbow_down)
+    del t363
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t363 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t364 = np.maximum(t363 * 9.094947017729282e-13, -t363)
-    spent_beta_rear_elbow_up = t364 <= t133
-    del t364
-    t365 = v_2_front_elbow_down * t360 - v_1_front_elbow_down * t361
-    del t360, t361, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t365, v_2_front_elbow_down)
-    del t365, v_2_front_elbow_down
-    t366 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t364 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t365 = np.maximum(t364 * 9.094947017729282e-13, -t364)
+    spent_beta_rear_elbow_up = t365 <= t133
+    del t365
+    t366 = v_2_front_elbow_down * t361 - v_1_front_elbow_down * t362
+    del t361, t362, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t366, v_2_front_elbow_down)
+    del t366, v_2_front_elbow_down
+    t367 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    t367 = t355 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t368 = t356 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t368 = _runtime.select(spent_alpha_rear_elbow_up, t367 + t331 * t355, t331)
-    del t331, t355, t367
-    t369 = t368 * _runtime.sign(part_beta_rear_elbow_up)
+    t369 = _runtime.select(spent_alpha_rear_elbow_up, t368 + t331 * t356, t331)
+    del t331, t356, t368
+    t370 = t369 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t370 = drawn_front_elbow_down * t366 - t255 * t369
+    t371 = drawn_front_elbow_down * t367 - t255 * t370
     del t255
-    t371 = np.abs(t370)
+    t372 = np.abs(t371)
     heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t219, 1.0)
     del t219
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t366 + t369)
-    del t366, t369
-    t372 = np.abs(slope_aside_beta_rear_elbow_up)
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t372 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t367 + t370)
+    del t367, t370
+    t373 = np.abs(slope_aside_beta_rear_elbow_up)
     heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t109, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t372 / heavy_1_beta_rear_elbow_up, 0.0)
-    t373 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t374 = _runtime.select(spent_beta_rear_elbow_up, t373, 0.0)
-    del t373
-    t375 = -(_runtime.FEASIBILITY * (t112 + t374)) <= -t363
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t373 / heavy_1_beta_rear_elbow_up, 0.0)
+    t374 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t375 = _runtime.select(spent_beta_rear_elbow_up, t374, 0.0)
     del t374
-    t376 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t376 = -(_runtime.FEASIBILITY * (t112 + t375)) <= -t364
+    del t375
+    t377 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
     del gain_1_beta_rear_elbow_up
-    t377 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t378 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
     del gain_0_beta_rear_elbow_up
-    t378 = _runtime.select(-t363 < 0.0, t376 / (t145 + t376 + t377), 0.0)
-    del t376, t377
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t378, 0.0)
-    del t378
-    lack_beta_rear_elbow_up = t363 * (1.0 - share_beta_rear_elbow_up)
-    t379 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t380 = t112 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t379 = _runtime.select(-t364 < 0.0, t377 / (t145 + t377 + t378), 0.0)
+    del t377, t378
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t379, 0.0)
+    del t379
+    lack_beta_rear_elbow_up = t364 * (1.0 - share_beta_rear_elbow_up)
+    t380 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t381 = t112 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t381 = 1.0 / (t371 + t380)
-    del t371, t380
-    t382 = lack_beta_rear_elbow_up * t381
+    t382 = 1.0 / (t372 + t381)
+    del t372, t381
+    t383 = lack_beta_rear_elbow_up * t382
     del lack_beta_rear_elbow_up
-    t383 = (t379 * t381 <= 9.094947017729282e-13) & (0.0 < t382)
-    del t379, t381
-    t384 = _runtime.sign(-t370) * _runtime.select(t383, t382, 0.0)
-    del t370, t382, t383
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384, 0.0)
-    del t384
-    t385 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    t384 = (t380 * t382 <= 9.094947017729282e-13) & (0.0 < t383)
+    del t380, t382
+    t385 = _runtime.sign(-t371) * _runtime.select(t384, t383, 0.0)
+    del t371, t383, t384
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t385, 0.0)
+    del t385
+    t386 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t386 = t112 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t387 = t112 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t387 = t363 * share_beta_rear_elbow_up * t385 / (t372 + t386)
-    del share_beta_rear_elbow_up, t363, t372, t385, t386
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t387, 0.0)
-    del t387
-    t388 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    t388 = t364 * share_beta_rear_elbow_up * t386 / (t373 + t387)
+    del share_beta_rear_elbow_up, t364, t373, t386, t387
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388, 0.0)
+    del t388
+    t389 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
     del aside_beta_rear_elbow_up
-    t389 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    t390 = drawn_front_elbow_down * turn_beta_rear_elbow_up
     del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388 - t103 * t389, 0.0)
-    del t388, t389
-    t390 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t391 = np.sqrt(1.0 + t390)
-    del t390
-    t392 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t393 = 1.0 / (t391 * np.sqrt(1.0 + t392))
-    del t392
-    t394 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t395 = t393 + t393 * t394
-    del t394
-    t396 = lean_beta_rear_elbow_up * t393 - turn_beta_rear_elbow_up * t393
-    del t393
-    t397 = v_1_alpha_rear_elbow_up * t395 + v_2_alpha_rear_elbow_up * t396
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t397, v_1_alpha_rear_elbow_up)
-    del t397
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t398 = 1.0 / t391
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t389 - t103 * t390, 0.0)
+    del t389, t390
+    t391 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t392 = np.sqrt(1.0 + t391)
     del t391
-    t399 = p_1_alpha_rear_elbow_up * t398 - t368 * lean_beta_rear_elbow_up * t398
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399, p_1_alpha_rear_elbow_up)
-    del t399
-    t400 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t401 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del sigma_uv_rear_elbow_up
-    t402 = t69 & t339 & t375 & (t143 <= t400 - t401) & (t143 <= -(t401 + t400))
-    del t339, t375
-    t403 = v_2_alpha_rear_elbow_up * t395 - v_1_alpha_rear_elbow_up * t396
-    del t395, t396, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t403, v_2_alpha_rear_elbow_up)
-    del t403, v_2_alpha_rear_elbow_up
-    t404 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t401 <= _runtime.VANISHING * (64.0 * t404)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t404, -t401)
-    t405 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del p_1_alpha_rear_elbow_up
-    t406 = _runtime.select(spent_beta_rear_elbow_up, t398 * t405 + t368 * t398, t368)
-    del t368, t398, t405
-    t407 = _runtime.select(parallel_rear_elbow_up, t406 * _runtime.sign(v_2_beta_rear_elbow_up), t400)
+    t393 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t394 = 1.0 / (t392 * np.sqrt(1.0 + t393))
+    del t393
+    t395 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t396 = t394 + t394 * t395
+    del t395
+    t397 = lean_beta_rear_elbow_up * t394 - turn_beta_rear_elbow_up * t394
+    del t394
+    t398 = v_1_alpha_rear_elbow_up * t396 + v_2_alpha_rear_elbow_up * t397
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398, v_1_alpha_rear_elbow_up)
+    del t398
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t399 = 1.0 / t392
+    del t392
+    t400 = p_1_alpha_rear_elbow_up * t399 - t369 * lean_beta_rear_elbow_up * t399
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t400, p_1_alpha_rear_elbow_up)
     del t400
-    t408 = whole_y_rear_elbow_up + t407
-    t409 = whole_y_rear_elbow_up - t407
-    below_beta_0_rear_elbow_up = np.maximum(t408, t168)
-    above_beta_0_rear_elbow_up = np.maximum(t409, t168)
-    t410 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t401 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t402 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del sigma_uv_rear_elbow_up
+    t403 = t69 & t340 & t376 & (t143 <= t401 - t402) & (t143 <= -(t402 + t401))
+    del t340, t376
+    t404 = v_2_alpha_rear_elbow_up * t396 - v_1_alpha_rear_elbow_up * t397
+    del t396, t397, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t404, v_2_alpha_rear_elbow_up)
+    del t404, v_2_alpha_rear_elbow_up
+    t405 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t402 <= _runtime.VANISHING * (64.0 * t405)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t405, -t402)
+    t406 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del p_1_alpha_rear_elbow_up
+    t407 = _runtime.select(spent_beta_rear_elbow_up, t399 * t406 + t369 * t399, t369)
+    del t369, t399, t406
+    t408 = _runtime.select(parallel_rear_elbow_up, t407 * _runtime.sign(v_2_beta_rear_elbow_up), t401)
+    del t401
+    t409 = whole_y_rear_elbow_up + t408
+    t410 = whole_y_rear_elbow_up - t408
+    below_beta_0_rear_elbow_up = np.maximum(t409, t168)
+    above_beta_0_rear_elbow_up = np.maximum(t410, t168)
+    t411 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t411 = v_2_beta_rear_elbow_up * (t410 / total_beta_0_rear_elbow_up)
-    del t410, total_beta_0_rear_elbow_up
-    t412 = t406 - t411
-    del t411
-    left_along_rear_elbow_up = L1 - np.abs(t412)
-    t413 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t413, left_along_rear_elbow_up) <= t172
-    del t413
-    t414 = _runtime.select(spent_along_rear_elbow_up, t404 / (t173 - t401), 0.0)
-    del t404
-    t415 = -(_runtime.FEASIBILITY * (play * (1.0 + t414)))
+    t412 = v_2_beta_rear_elbow_up * (t411 / total_beta_0_rear_elbow_up)
+    del t411, total_beta_0_rear_elbow_up
+    t413 = t407 - t412
+    del t412
+    left_along_rear_elbow_up = L1 - np.abs(t413)
+    t414 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t414, left_along_rear_elbow_up) <= t172
     del t414
-    t416 = t402 & (t143 <= t408) & (t143 <= t409) & (t415 <= left_along_rear_elbow_up)
-    del t402, t408, t409, t415
-    t417 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t415 = _runtime.select(spent_along_rear_elbow_up, t405 / (t173 - t402), 0.0)
+    del t405
+    t416 = -(_runtime.FEASIBILITY * (play * (1.0 + t415)))
+    del t415
+    t417 = t403 & (t143 <= t409) & (t143 <= t410) & (t416 <= left_along_rear_elbow_up)
+    del t403, t409, t410, t416
+    t418 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t418 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t419 = v_2_beta_rear_elbow_up * t417 / (t401 * t401 + t418)
-    del t401, t417, t418
-    t420 = whole_y_rear_elbow_up * (t419 * _runtime.sign(-t412))
-    del t412, t419
-    t421 = _runtime.select(spent_along_rear_elbow_up, t407 + t420, t407)
-    del t407, t420
-    t422 = whole_y_rear_elbow_up + t421
-    t423 = whole_y_rear_elbow_up - t421
-    del t421, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t422, t168)
-    above_beta_rear_elbow_up = np.maximum(t423, t168)
-    t424 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t419 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t420 = v_2_beta_rear_elbow_up * t418 / (t402 * t402 + t419)
+    del t402, t418, t419
+    t421 = whole_y_rear_elbow_up * (t420 * _runtime.sign(-t413))
+    del t413, t420
+    t422 = _runtime.select(spent_along_rear_elbow_up, t408 + t421, t408)
+    del t408, t421
+    t423 = whole_y_rear_elbow_up + t422
+    t424 = whole_y_rear_elbow_up - t422
+    del t422, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t423, t168)
+    above_beta_rear_elbow_up = np.maximum(t424, t168)
+    t425 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t425 = t424 / total_beta_rear_elbow_up
+    t426 = t425 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t426 = t406 - v_2_beta_rear_elbow_up * t425
-    del t406, v_2_beta_rear_elbow_up
-    t427 = L1 + t426
-    t428 = t416 & (t143 <= t422) & (t143 <= t423) & (t143 <= t427)
-    del t416, t422, t423
-    t429 = L1 - t426
-    unreachable_3 = np.logical_not(t428 & (t143 <= t429))
-    del t428
-    t430 = _runtime.poison(invalid | unreachable_3)
-    t431 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t432 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t433 = t431 + t432
-    del t431
-    below_alpha_rear_elbow_up = np.maximum(t427, t168)
-    del t427
-    above_alpha_rear_elbow_up = np.maximum(t429, t168)
+    t427 = t407 - v_2_beta_rear_elbow_up * t426
+    del t407, v_2_beta_rear_elbow_up
+    t428 = L1 + t427
+    t429 = t417 & (t143 <= t423) & (t143 <= t424) & (t143 <= t428)
+    del t417, t423, t424
+    t430 = L1 - t427
+    unreachable_3 = np.logical_not(t429 & (t143 <= t430))
     del t429
-    t434 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t435 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    t436 = np.arctan2(t434, 2.0 * np.sqrt(t435))
-    del t435
-    t437 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    t431 = _runtime.poison(invalid | unreachable_3)
+    t432 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t433 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t434 = t432 + t433
+    del t432
+    below_alpha_rear_elbow_up = np.maximum(t428, t168)
+    del t428
+    above_alpha_rear_elbow_up = np.maximum(t430, t168)
+    del t430
+    t435 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t436 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t437 = np.arctan2(t435, 2.0 * np.sqrt(t436))
+    del t436
+    t438 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t438 = t437 + (t326 - t432)
-    del t326, t432, t437
-    t439 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
+    t439 = t438 + (t326 - t433)
+    del t326, t433, t438
+    t440 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t440 = t436 - np.arctan2(t424, 2.0 * np.sqrt(t439))
-    del t424, t439
+    t441 = t437 - np.arctan2(t425, 2.0 * np.sqrt(t440))
+    del t425, t440
     ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t204)
     del t204
     p_1_rear_elbow_down = t205 + ahead * ctheta2A_rear_elbow_down
     del ahead, t205
-    t441 = t206 - higher * ctheta2A_rear_elbow_down
+    t442 = t206 - higher * ctheta2A_rear_elbow_down
     del ctheta2A_rear_elbow_down, higher, t206
-    t442 = v_2 * p_1_rear_elbow_down + v_1 * t441
-    room_alpha_rear_elbow_down = t92 - np.abs(t442)
+    t443 = v_2 * p_1_rear_elbow_down + v_1 * t442
+    margin_alpha_rear_elbow_down = t92 - np.abs(t443)
     del t92
-    t443 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t444 = np.maximum(-t443, room_alpha_rear_elbow_down)
+    t444 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t445 = np.maximum(-t444, margin_alpha_rear_elbow_down)
+    del t444
+    spent_alpha_rear_elbow_down = t445 <= t95
+    del t445, t95
+    t446 = _runtime.sign(-t443) * (v_1 * p_1_rear_elbow_down - v_2 * t442)
     del t443
-    spent_alpha_rear_elbow_down = t444 <= t95
-    del t444, t95
-    t445 = _runtime.sign(-t442) * (v_1 * p_1_rear_elbow_down - v_2 * t441)
-    del t442
-    t446 = t97 - t445
-    del t445, t97
-    t447 = np.abs(t446)
+    t447 = t97 - t446
+    del t446, t97
+    t448 = np.abs(t447)
     heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t107, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t447 / heavy_0_alpha_rear_elbow_down, 0.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t448 / heavy_0_alpha_rear_elbow_down, 0.0)
     heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t109, 1.0)
     gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t108 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t448 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t449 = _runtime.select(spent_alpha_rear_elbow_down, t448, 0.0)
-    del t448
-    t450 = -(_runtime.FEASIBILITY * (t71 + t449)) <= room_alpha_rear_elbow_down
+    t449 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t450 = _runtime.select(spent_alpha_rear_elbow_down, t449, 0.0)
     del t449
-    t451 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t451 = -(_runtime.FEASIBILITY * (t71 + t450)) <= margin_alpha_rear_elbow_down
+    del t450
+    t452 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     del gain_1_alpha_rear_elbow_down
-    t452 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t453 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down
-    t453 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t451 / (t115 + t451 + t452), 0.0)
-    del t115, t451, t452
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t453, 0.0)
-    del t453
-    t454 = t117 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    t454 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t452 / (t115 + t452 + t453), 0.0)
+    del t115, t452, t453
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t454, 0.0)
+    del t454
+    t455 = t117 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
     del t117
-    t455 = t71 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    t456 = t71 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t454 / (t108 + t455)), 0.0)
-    del t108, t454, t455
-    t456 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t457 = t71 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t455 / (t108 + t456)), 0.0)
+    del t108, t455, t456
+    t457 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
+    t458 = t71 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
     del t71
-    t458 = 1.0 / (t447 + t457)
-    del t447, t457
-    t459 = -(heavy_0_alpha_rear_elbow_down * t456 * t458)
+    t459 = 1.0 / (t448 + t458)
+    del t448, t458
+    t460 = -(heavy_0_alpha_rear_elbow_down * t457 * t459)
     del heavy_0_alpha_rear_elbow_down
-    t460 = -(t456 * t458)
-    del t456, t458
-    t461 = (t459 <= 9.094947017729282e-13) & (0.0 < t460)
-    del t459
-    t462 = _runtime.sign(-t446) * _runtime.select(t461, t460, 0.0)
-    del t446, t460, t461
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t462, 0.0)
-    del t462
-    t463 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
-    del aside_alpha_rear_elbow_down
-    t464 = t463 - t103 * (drawn * turn_alpha_rear_elbow_down)
+    t461 = -(t457 * t459)
+    del t457, t459
+    t462 = (t460 <= 9.094947017729282e-13) & (0.0 < t461)
+    del t460
+    t463 = _runtime.sign(-t447) * _runtime.select(t462, t461, 0.0)
+    del t447, t461, t462
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t463, 0.0)
     del t463
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t464, 0.0)
+    t464 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    del aside_alpha_rear_elbow_down
+    t465 = t464 - t103 * (drawn * turn_alpha_rear_elbow_down)
     del t464
-    t465 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t466 = np.sqrt(1.0 + t465)
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t465, 0.0)
     del t465
-    t467 = 1.0 / t466
-    t468 = p_1_rear_elbow_down * t467 - t441 * lean_alpha_rear_elbow_down * t467
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t468, p_1_rear_elbow_down)
-    del t468
+    t466 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t467 = np.sqrt(1.0 + t466)
+    del t466
+    t468 = 1.0 / t467
+    t469 = p_1_rear_elbow_down * t468 - t442 * lean_alpha_rear_elbow_down * t468
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t469, p_1_rear_elbow_down)
+    del t469
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t469 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t470 = 1.0 / (t466 * np.sqrt(1.0 + t469))
-    del t466, t469
-    t471 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t472 = t470 + t470 * t471
+    t470 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t471 = 1.0 / (t467 * np.sqrt(1.0 + t470))
+    del t467, t470
+    t472 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t473 = t471 + t471 * t472
+    del t472
+    t474 = lean_alpha_rear_elbow_down * t471 - turn_alpha_rear_elbow_down * t471
     del t471
-    t473 = lean_alpha_rear_elbow_down * t470 - turn_alpha_rear_elbow_down * t470
-    del t470
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t472 + v_2 * t473, v_1)
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t473 + v_2 * t474, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t474 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t475 = np.maximum(t474 * 9.094947017729282e-13, -t474)
-    spent_beta_rear_elbow_down = t475 <= t133
-    del t133, t475
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t472 - v_1 * t473, v_2)
-    del t472, t473, v_1, v_2
-    t476 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    t475 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t476 = np.maximum(t475 * 9.094947017729282e-13, -t475)
+    spent_beta_rear_elbow_down = t476 <= t133
+    del t133, t476
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t473 - v_1 * t474, v_2)
+    del t473, t474, v_1, v_2
+    t477 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    t477 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t478 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t478 = _runtime.select(spent_alpha_rear_elbow_down, t467 * t477 + t441 * t467, t441)
-    del t441, t467, t477
-    t479 = t478 * _runtime.sign(part_beta_rear_elbow_down)
+    t479 = _runtime.select(spent_alpha_rear_elbow_down, t468 * t478 + t442 * t468, t442)
+    del t442, t468, t478
+    t480 = t479 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    t480 = drawn * t476 - t137 * t479
+    t481 = drawn * t477 - t137 * t480
     del t137
-    t481 = np.abs(t480)
+    t482 = np.abs(t481)
     heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t107, 1.0)
     del t107
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t476 + t479)
-    del t476, t479
-    t482 = np.abs(slope_aside_beta_rear_elbow_down)
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t482 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t477 + t480)
+    del t477, t480
+    t483 = np.abs(slope_aside_beta_rear_elbow_down)
     heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t109, 1.0)
     del t109
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t482 / heavy_1_beta_rear_elbow_down, 0.0)
-    t483 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t484 = _runtime.select(spent_beta_rear_elbow_down, t483, 0.0)
-    del t483
-    t485 = -(_runtime.FEASIBILITY * (t112 + t484)) <= -t474
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t483 / heavy_1_beta_rear_elbow_down, 0.0)
+    t484 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t485 = _runtime.select(spent_beta_rear_elbow_down, t484, 0.0)
     del t484
-    t486 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t486 = -(_runtime.FEASIBILITY * (t112 + t485)) <= -t475
+    del t485
+    t487 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
     del gain_1_beta_rear_elbow_down
-    t487 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t488 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down
-    t488 = _runtime.select(-t474 < 0.0, t486 / (t145 + t486 + t487), 0.0)
-    del t145, t486, t487
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t488, 0.0)
-    del t488
-    lack_beta_rear_elbow_down = t474 * (1.0 - share_beta_rear_elbow_down)
-    t489 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t490 = t112 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t489 = _runtime.select(-t475 < 0.0, t487 / (t145 + t487 + t488), 0.0)
+    del t145, t487, t488
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t489, 0.0)
+    del t489
+    lack_beta_rear_elbow_down = t475 * (1.0 - share_beta_rear_elbow_down)
+    t490 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t491 = t112 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t491 = 1.0 / (t481 + t490)
-    del t481, t490
-    t492 = lack_beta_rear_elbow_down * t491
+    t492 = 1.0 / (t482 + t491)
+    del t482, t491
+    t493 = lack_beta_rear_elbow_down * t492
     del lack_beta_rear_elbow_down
-    t493 = (t489 * t491 <= 9.094947017729282e-13) & (0.0 < t492)
-    del t489, t491
-    t494 = _runtime.sign(-t480) * _runtime.select(t493, t492, 0.0)
-    del t480, t492, t493
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494, 0.0)
-    del t494
-    t495 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    t494 = (t490 * t492 <= 9.094947017729282e-13) & (0.0 < t493)
+    del t490, t492
+    t495 = _runtime.sign(-t481) * _runtime.select(t494, t493, 0.0)
+    del t481, t493, t494
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495, 0.0)
+    del t495
+    t496 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t496 = t112 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    t497 = t112 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_down, t112
-    t497 = t474 * share_beta_rear_elbow_down * t495 / (t482 + t496)
-    del share_beta_rear_elbow_down, t474, t482, t495, t496
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t497, 0.0)
-    del t497
-    t498 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    t498 = t475 * share_beta_rear_elbow_down * t496 / (t483 + t497)
+    del share_beta_rear_elbow_down, t475, t483, t496, t497
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t498, 0.0)
+    del t498
+    t499 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
     del aside_beta_rear_elbow_down
-    t499 = t498 - t103 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t103, t498
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t499, 0.0)
-    del t499
-    t500 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t501 = np.sqrt(1.0 + t500)
+    t500 = t499 - t103 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t103, t499
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t500, 0.0)
     del t500
-    t502 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t503 = 1.0 / (t501 * np.sqrt(1.0 + t502))
-    del t502
-    t504 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t505 = t503 + t503 * t504
-    del t504
-    t506 = lean_beta_rear_elbow_down * t503 - turn_beta_rear_elbow_down * t503
-    del t503
-    t507 = v_1_alpha_rear_elbow_down * t505 + v_2_alpha_rear_elbow_down * t506
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t507, v_1_alpha_rear_elbow_down)
-    del t507
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t508 = 1.0 / t501
+    t501 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t502 = np.sqrt(1.0 + t501)
     del t501
-    t509 = p_1_alpha_rear_elbow_down * t508 - t478 * lean_beta_rear_elbow_down * t508
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t509, p_1_alpha_rear_elbow_down)
-    del t509
-    t510 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t511 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t503 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t504 = 1.0 / (t502 * np.sqrt(1.0 + t503))
+    del t503
+    t505 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t506 = t504 + t504 * t505
+    del t505
+    t507 = lean_beta_rear_elbow_down * t504 - turn_beta_rear_elbow_down * t504
+    del t504
+    t508 = v_1_alpha_rear_elbow_down * t506 + v_2_alpha_rear_elbow_down * t507
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t508, v_1_alpha_rear_elbow_down)
+    del t508
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t509 = 1.0 / t502
+    del t502
+    t510 = p_1_alpha_rear_elbow_down * t509 - t479 * lean_beta_rear_elbow_down * t509
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t510, p_1_alpha_rear_elbow_down)
+    del t510
+    t511 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t512 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t512 = t69 & t450 & t485 & (t143 <= t510 - t511) & (t143 <= -(t511 + t510))
-    del t450, t485, t69
-    t513 = v_2_alpha_rear_elbow_down * t505 - v_1_alpha_rear_elbow_down * t506
-    del t505, t506, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t513, v_2_alpha_rear_elbow_down)
-    del t513, v_2_alpha_rear_elbow_down
-    t514 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t511 <= _runtime.VANISHING * (64.0 * t514)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t514, -t511)
-    t515 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t513 = t69 & t451 & t486 & (t143 <= t511 - t512) & (t143 <= -(t512 + t511))
+    del t451, t486, t69
+    t514 = v_2_alpha_rear_elbow_down * t506 - v_1_alpha_rear_elbow_down * t507
+    del t506, t507, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t514, v_2_alpha_rear_elbow_down)
+    del t514, v_2_alpha_rear_elbow_down
+    t515 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t512 <= _runtime.VANISHING * (64.0 * t515)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t515, -t512)
+    t516 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t516 = _runtime.select(spent_beta_rear_elbow_down, t508 * t515 + t478 * t508, t478)
-    del t478, t508, t515
-    t517 = t516 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t518 = _runtime.select(parallel_rear_elbow_down, t517, t510)
-    del t510, t517
-    t519 = whole_y_rear_elbow_down + t518
-    t520 = whole_y_rear_elbow_down - t518
-    below_beta_0_rear_elbow_down = np.maximum(t519, t168)
-    above_beta_0_rear_elbow_down = np.maximum(t520, t168)
-    t521 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t517 = _runtime.select(spent_beta_rear_elbow_down, t509 * t516 + t479 * t509, t479)
+    del t479, t509, t516
+    t518 = t517 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t519 = _runtime.select(parallel_rear_elbow_down, t518, t511)
+    del t511, t518
+    t520 = whole_y_rear_elbow_down + t519
+    t521 = whole_y_rear_elbow_down - t519
+    below_beta_0_rear_elbow_down = np.maximum(t520, t168)
+    above_beta_0_rear_elbow_down = np.maximum(t521, t168)
+    t522 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t522 = v_2_beta_rear_elbow_down * (t521 / total_beta_0_rear_elbow_down)
-    del t521, total_beta_0_rear_elbow_down
-    t523 = t516 - t522
-    del t522
-    left_along_rear_elbow_down = L1 - np.abs(t523)
-    t524 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t525 = np.maximum(-t524, left_along_rear_elbow_down)
-    del t524
-    spent_along_rear_elbow_down = t525 <= t172
-    del t172, t525
-    t526 = _runtime.select(spent_along_rear_elbow_down, t514 / (t173 - t511), 0.0)
-    del t173, t514
-    t527 = -(_runtime.FEASIBILITY * (play * (1.0 + t526)))
-    del play, t526
-    t528 = t512 & (t143 <= t519) & (t143 <= t520) & (t527 <= left_along_rear_elbow_down)
-    del t512, t519, t520, t527
-    t529 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t523 = v_2_beta_rear_elbow_down * (t522 / total_beta_0_rear_elbow_down)
+    del t522, total_beta_0_rear_elbow_down
+    t524 = t517 - t523
+    del t523
+    left_along_rear_elbow_down = L1 - np.abs(t524)
+    t525 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t526 = np.maximum(-t525, left_along_rear_elbow_down)
+    del t525
+    spent_along_rear_elbow_down = t526 <= t172
+    del t172, t526
+    t527 = _runtime.select(spent_along_rear_elbow_down, t515 / (t173 - t512), 0.0)
+    del t173, t515
+    t528 = -(_runtime.FEASIBILITY * (play * (1.0 + t527)))
+    del play, t527
+    t529 = t513 & (t143 <= t520) & (t143 <= t521) & (t528 <= left_along_rear_elbow_down)
+    del t513, t520, t521, t528
+    t530 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t530 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t531 = v_2_beta_rear_elbow_down * t529 / (t511 * t511 + t530)
-    del t511, t529, t530
-    t532 = whole_y_rear_elbow_down * (t531 * _runtime.sign(-t523))
-    del t523, t531
-    t533 = _runtime.select(spent_along_rear_elbow_down, t518 + t532, t518)
-    del t518, t532
-    t534 = whole_y_rear_elbow_down + t533
-    t535 = whole_y_rear_elbow_down - t533
-    del t533, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t534, t168)
-    above_beta_rear_elbow_down = np.maximum(t535, t168)
-    t536 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t531 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t532 = v_2_beta_rear_elbow_down * t530 / (t512 * t512 + t531)
+    del t512, t530, t531
+    t533 = whole_y_rear_elbow_down * (t532 * _runtime.sign(-t524))
+    del t524, t532
+    t534 = _runtime.select(spent_along_rear_elbow_down, t519 + t533, t519)
+    del t519, t533
+    t535 = whole_y_rear_elbow_down + t534
+    t536 = whole_y_rear_elbow_down - t534
+    del t534, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t535, t168)
+    above_beta_rear_elbow_down = np.maximum(t536, t168)
+    t537 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t537 = t536 / total_beta_rear_elbow_down
+    t538 = t537 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t538 = t516 - v_2_beta_rear_elbow_down * t537
-    del t516, v_2_beta_rear_elbow_down
-    t539 = L1 + t538
-    t540 = t528 & (t143 <= t534) & (t143 <= t535) & (t143 <= t539)
-    del t528, t534, t535
-    t541 = L1 - t538
-    unreachable_4 = np.logical_not(t540 & (t143 <= t541))
-    del t143, t540
-    t542 = _runtime.poison(invalid | unreachable_4)
-    t543 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t539 = t517 - v_2_beta_rear_elbow_down * t538
+    del t517, v_2_beta_rear_elbow_down
+    t540 = L1 + t539
+    t541 = t529 & (t143 <= t535) & (t143 <= t536) & (t143 <= t540)
+    del t529, t535, t536
+    t542 = L1 - t539
+    unreachable_4 = np.logical_not(t541 & (t143 <= t542))
+    del t143, t541
+    t543 = _runtime.poison(invalid | unreachable_4)
+    t544 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t544 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t545 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t545 = _runtime.select(folded, 0.0, t543) + t544
-    del t543
-    below_alpha_rear_elbow_down = np.maximum(t539, t168)
-    del t539
-    above_alpha_rear_elbow_down = np.maximum(t541, t168)
-    del t168, t541
-    t546 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t547 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    t548 = np.arctan2(t546, 2.0 * np.sqrt(t547))
-    del t547
-    t549 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    t546 = _runtime.select(folded, 0.0, t544) + t545
+    del t544
+    below_alpha_rear_elbow_down = np.maximum(t540, t168)
+    del t540
+    above_alpha_rear_elbow_down = np.maximum(t542, t168)
+    del t168, t542
+    t547 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t548 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t549 = np.arctan2(t547, 2.0 * np.sqrt(t548))
+    del t548
+    t550 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t550 = t549 + (t197 - t544)
-    del t197, t544, t549
-    t551 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
+    t551 = t550 + (t197 - t545)
+    del t197, t545, t550
+    t552 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t552 = t548 - np.arctan2(t536, 2.0 * np.sqrt(t551))
-    del t536, t551
-    t553 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t553 = t549 - np.arctan2(t537, 2.0 * np.sqrt(t552))
+    del t537, t552
+    t554 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t554 = t553 | folded | short
-    del folded, short, t553
-    t555 = spent_along | spent_alpha | spent_beta
+    t555 = t554 | folded | short
+    del folded, short, t554
+    t556 = spent_along | spent_alpha | spent_beta
     del spent_along, spent_alpha, spent_beta
-    t556 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t557 = t556 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t556
-    t558 = t557 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    t557 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t558 = t557 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
     del t557
-    t559 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t559 = t558 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t558
+    t560 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t560 = t558 * t559
-    del t558, t559
-    t561 = t184 - L1 * (t192 / (below_alpha + above_alpha))
+    t561 = t559 * t560
+    del t559, t560
+    t562 = t184 - L1 * (t192 / (below_alpha + above_alpha))
     del above_alpha, below_alpha, t184, t192
-    t562 = np.abs(p_1_beta + v_1_beta * t183) + np.abs(t561)
-    del p_1_beta, t183, t561, v_1_beta
-    t563 = 1125899906842624.0 * _runtime.select(t555, t562, 0.0)
-    del t562
-    t564 = _runtime.select(t555, t560, 1.0) <= _runtime.DETERMINED * t563
-    del t555, t563
-    t565 = _runtime.status(invalid, unreachable, t554 | parallel | t564)
-    del parallel, t564, unreachable
-    t566 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t563 = np.abs(p_1_beta + v_1_beta * t183) + np.abs(t562)
+    del p_1_beta, t183, t562, v_1_beta
+    t564 = 1125899906842624.0 * _runtime.select(t556, t563, 0.0)
+    del t563
+    t565 = _runtime.select(t556, t561, 1.0) <= _runtime.DETERMINED * t564
+    del t556, t564
+    t566 = _runtime.status(invalid, unreachable, t555 | parallel | t565)
+    del parallel, t565, unreachable
+    t567 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
     del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t567 = t566 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t566
-    t568 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t313
+    t568 = t567 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t567
+    t569 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t313
     del p_1_beta_front_elbow_down, t313, v_1_beta_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t569 = t314 - L1 * (t322 / total_alpha_front_elbow_down)
+    t570 = t314 - L1 * (t322 / total_alpha_front_elbow_down)
     del t314, t322, total_alpha_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t567, np.abs(t568) + np.abs(t569), 0.0)
-    del t568, t569
-    t570 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    missed_front_elbow_down = _runtime.select(t568, np.abs(t569) + np.abs(t570), 0.0)
+    del t569, t570
+    t571 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t571 = t554 | parallel_front_elbow_down | (_runtime.select(t567, t560, 1.0) <= t570)
-    del parallel_front_elbow_down, t567, t570
-    t572 = _runtime.status(invalid, unreachable_2, t571)
-    del t571, unreachable_2
-    t573 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t572 = t555 | parallel_front_elbow_down | (_runtime.select(t568, t561, 1.0) <= t571)
+    del parallel_front_elbow_down, t568, t571
+    t573 = _runtime.status(invalid, unreachable_2, t572)
+    del t572, unreachable_2
+    t574 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
     del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t574 = t573 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t573
-    t575 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t425
-    del p_1_beta_rear_elbow_up, t425, v_1_beta_rear_elbow_up
+    t575 = t574 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t574
+    t576 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t426
+    del p_1_beta_rear_elbow_up, t426, v_1_beta_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t576 = t426 - L1 * (t434 / total_alpha_rear_elbow_up)
-    del t426, t434, total_alpha_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t574, np.abs(t575) + np.abs(t576), 0.0)
-    del t575, t576
-    t577 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t577 = t427 - L1 * (t435 / total_alpha_rear_elbow_up)
+    del t427, t435, total_alpha_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t575, np.abs(t576) + np.abs(t577), 0.0)
+    del t576, t577
+    t578 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t578 = t554 | parallel_rear_elbow_up | (_runtime.select(t574, t560, 1.0) <= t577)
-    del parallel_rear_elbow_up, t574, t577
-    t579 = _runtime.status(invalid, unreachable_3, t578)
-    del t578, unreachable_3
-    t580 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t579 = t555 | parallel_rear_elbow_up | (_runtime.select(t575, t561, 1.0) <= t578)
+    del parallel_rear_elbow_up, t575, t578
+    t580 = _runtime.status(invalid, unreachable_3, t579)
+    del t579, unreachable_3
+    t581 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
     del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t581 = t580 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t580
-    t582 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t537
-    del p_1_beta_rear_elbow_down, t537, v_1_beta_rear_elbow_down
+    t582 = t581 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t581
+    t583 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t538
+    del p_1_beta_rear_elbow_down, t538, v_1_beta_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t583 = t538 - L1 * (t546 / total_alpha_rear_elbow_down)
-    del t538, t546, total_alpha_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t581, np.abs(t582) + np.abs(t583), 0.0)
-    del t582, t583
-    t584 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t584 = t539 - L1 * (t547 / total_alpha_rear_elbow_down)
+    del t539, t547, total_alpha_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t582, np.abs(t583) + np.abs(t584), 0.0)
+    del t583, t584
+    t585 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t585 = t554 | parallel_rear_elbow_down | (_runtime.select(t581, t560, 1.0) <= t584)
-    del parallel_rear_elbow_down, t554, t560, t581, t584
-    t586 = _runtime.status(invalid, unreachable_4, t585)
-    del invalid, t585, unreachable_4
+    t586 = t555 | parallel_rear_elbow_down | (_runtime.select(t582, t561, 1.0) <= t585)
+    del parallel_rear_elbow_down, t555, t561, t582, t585
+    t587 = _runtime.status(invalid, unreachable_4, t586)
+    del invalid, t586, unreachable_4
     return (
         t51 + t188,
         _runtime.wrap(t191 - t193) + t188,
@@ -2862,22 +2864,22 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t321 + t324) + t318,
         _runtime.wrap(t327 - t329) + t318,
         t201 + t318,
-        t330 + t430,
-        _runtime.wrap(t433 - t436) + t430,
-        _runtime.wrap(t438 + t440) + t430,
-        _runtime.wrap(t433 + t436) + t430,
-        _runtime.wrap(t438 - t440) + t430,
-        t201 + t430,
-        t330 + t542,
-        _runtime.wrap(t545 - t548) + t542,
-        _runtime.wrap(t550 + t552) + t542,
-        _runtime.wrap(t545 + t548) + t542,
-        _runtime.wrap(t550 - t552) + t542,
-        t201 + t542,
-        t565,
-        t572,
-        t579,
-        t586,
+        t330 + t431,
+        _runtime.wrap(t434 - t437) + t431,
+        _runtime.wrap(t439 + t441) + t431,
+        _runtime.wrap(t434 + t437) + t431,
+        _runtime.wrap(t439 - t441) + t431,
+        t201 + t431,
+        t330 + t543,
+        _runtime.wrap(t546 - t549) + t543,
+        _runtime.wrap(t551 + t553) + t543,
+        _runtime.wrap(t546 + t549) + t543,
+        _runtime.wrap(t551 - t553) + t543,
+        t201 + t543,
+        t566,
+        t573,
+        t580,
+        t587,
     )
 
 
@@ -3020,11 +3022,11 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t61 = higher * stheta2A
     del stheta2A
     t62 = t60 - t61
-    room_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
+    margin_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
     play_beta = L1 * play
     t63 = -(_runtime.FEASIBILITY * play_beta)
-    room_beta = t48 - np.abs(-(L1 * t62))
-    t64 = t37 & (t39 <= room_alpha) & (t63 <= room_beta)
+    margin_beta = t48 - np.abs(-(L1 * t62))
+    t64 = t37 & (t39 <= margin_alpha) & (t63 <= margin_beta)
     t65 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
@@ -3104,10 +3106,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del ctheta2A_front_elbow_down, higher
     t98 = t96 + t97
     t99 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t98
-    room_alpha_front_elbow_down = t89 - np.abs(t99)
+    margin_alpha_front_elbow_down = t89 - np.abs(t99)
     del t99
-    room_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
-    t100 = t37 & (t39 <= room_alpha_front_elbow_down) & (t63 <= room_beta_front_elbow_down)
+    margin_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
+    t100 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     t101 = sigma_uv_front_elbow_down * p_1_front_elbow_down
@@ -3163,11 +3165,11 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t56, t58
     t124 = v_2_front_elbow_down * t122 + v_1_front_elbow_down * t123
     del v_1_front_elbow_down
-    room_alpha_rear_elbow_up = t89 - np.abs(t124)
+    margin_alpha_rear_elbow_up = t89 - np.abs(t124)
     del t124
-    room_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
+    margin_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
     del t89
-    t125 = t37 & (t39 <= room_alpha_rear_elbow_up) & (t63 <= room_beta_rear_elbow_up)
+    t125 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
     t126 = sigma_uv_front_elbow_down * t122
     del sigma_uv_front_elbow_down, t122
     t127 = t126 - t102
@@ -3215,11 +3217,11 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t93, t95
     t146 = t96 - t97
     del t96, t97
-    room_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
+    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
     del v_1
-    room_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
+    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
     del t48
-    t147 = t37 & (t39 <= room_alpha_rear_elbow_down) & (t63 <= room_beta_rear_elbow_down)
+    t147 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
     del t37, t39, t63
     p_across_u_rear_elbow_down = sigma_uv * t145
     del sigma_uv, t145
@@ -3282,12 +3284,12 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t29
     t172 = t170 | (np.abs(t31) + np.abs(root) <= t171) | (fore <= t171)
     del fore, root, t170, t171, t31
-    t173 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
-    del room_alpha
+    t173 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    del margin_alpha
     t174 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t175 = np.maximum(-(room_beta * 9.094947017729282e-13), room_beta)
-    del room_beta
+    t175 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    del margin_beta
     t176 = _runtime.VANISHING * play_beta
     del play_beta
     parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
@@ -3298,12 +3300,12 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del left_along
     t179 = _runtime.VANISHING * play
     del play
-    t180 = room_alpha_front_elbow_down * 9.094947017729282e-13
-    t181 = np.maximum(-t180, room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down, t180
-    t182 = room_beta_front_elbow_down * 9.094947017729282e-13
-    t183 = np.maximum(-t182, room_beta_front_elbow_down)
-    del room_beta_front_elbow_down, t182
+    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t180
+    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t182
     t184 = t177 | (t178 <= t179) | (t181 <= t174) | (t183 <= t176)
     del t177, t178, t181, t183
     t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
@@ -3311,30 +3313,30 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t186 = left_along_front_elbow_down * 9.094947017729282e-13
     t187 = np.maximum(-t186, left_along_front_elbow_down)
     del left_along_front_elbow_down, t186
-    t188 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t188, room_alpha_rear_elbow_up) <= t174
-    del room_alpha_rear_elbow_up, t188
-    t189 = t184 | (-t102 <= t185) | (t187 <= t179) | spent_alpha_rear_elbow_up
-    del spent_alpha_rear_elbow_up, t102, t184, t185, t187
-    t190 = room_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t190, room_beta_rear_elbow_up) <= t176
-    del room_beta_rear_elbow_up, t190
-    t191 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t191, left_along_rear_elbow_up) <= t179
-    del left_along_rear_elbow_up, t191
-    t192 = t189 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t189
-    t193 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t194 = np.maximum(-t193, room_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down, t193
-    t195 = room_beta_rear_elbow_down * 9.094947017729282e-13
-    spent_beta_rear_elbow_down = np.maximum(-t195, room_beta_rear_elbow_down) <= t176
-    del room_beta_rear_elbow_down, t176, t195
-    t196 = t192 | (t194 <= t174) | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t174, t192, t194
-    t197 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t198 = np.maximum(-t197, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t197
+    t188 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t189 = np.maximum(-t188, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t188
+    t190 = t184 | (-t102 <= t185) | (t187 <= t179) | (t189 <= t174)
+    del t102, t184, t185, t187, t189
+    t191 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t191, margin_beta_rear_elbow_up) <= t176
+    del margin_beta_rear_elbow_up, t191
+    t192 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t192, left_along_rear_elbow_up) <= t179
+    del left_along_rear_elbow_up, t192
+    t193 = t190 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t190
+    t194 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t195 = np.maximum(-t194, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t194
+    t196 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t197 = np.maximum(-t196, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t196
+    t198 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t199 = np.maximum(-t198, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t198
+    t200 = t193 | (t195 <= t174) | (t197 <= t176) | (t199 <= t179)
+    del t174, t176, t179, t193, t195, t197, t199
     return (
         t14 + t78,
         _runtime.wrap(t81 - t82) + t78,
@@ -3364,7 +3366,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t165,
         t166,
         t167,
-        t196 | (t198 <= t179),
+        t200,
     )
 
 

@@ -2217,8 +2217,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del large_mid, small_mid, t71
     t75 = gap - N_mid
     nearer_right = t74 - t75
-    room_right = np.minimum(farther_right, nearer_right)
-    t76 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    margin_right = np.minimum(farther_right, nearer_right)
+    t76 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
     t77 = _runtime.VANISHING * t47
     spent_right = t76 <= t77
     del t76
@@ -2246,7 +2246,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     heavy_1_right = _runtime.select(spent_right, t90, 1.0)
     gain_1_right = _runtime.select(spent_right, t89 / heavy_1_right, 0.0)
     t91 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
-    t92 = -(_runtime.FEASIBILITY * (t47 + t91)) <= room_right
+    t92 = -(_runtime.FEASIBILITY * (t47 + t91)) <= margin_right
     del t91
     h_left_0 = point_21 + t64
     del point_21, t64
@@ -2257,8 +2257,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t68, t73, t93
     t94 = t74 + t75
     del t74, t75
-    room_left = np.minimum(farther_left, -t94)
-    t95 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    margin_left = np.minimum(farther_left, -t94)
+    t95 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
     spent_left = t95 <= t77
     del t95
     t96 = _runtime.select(-t94 <= farther_left, 1.0, -1.0)
@@ -2272,7 +2272,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     heavy_1_left = _runtime.select(spent_left, t90, 1.0)
     gain_1_left = _runtime.select(spent_left, t99 / heavy_1_left, 0.0)
     t100 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
-    t101 = -(_runtime.FEASIBILITY * (t47 + t100)) <= room_left
+    t101 = -(_runtime.FEASIBILITY * (t47 + t100)) <= margin_left
     del t100
     t102 = -(_runtime.FEASIBILITY * t47)
     t103 = spent_left | spent_right
@@ -2282,1878 +2282,1882 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del play
     t106 = t104 / (t104 + t105 + gain_0_left * gain_0_left)
     del gain_0_left, t104
-    share_left = _runtime.select(spent_left, _runtime.select(room_left < 0.0, t106, 0.0), 0.0)
+    t107 = _runtime.select(margin_left < 0.0, t106, 0.0)
     del t106
-    t107 = room_left * (1.0 - share_left)
-    t108 = heavy_0_left * t107
-    t109 = drawn * drawn
-    t110 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
-    t111 = t83 * (t96 * t109 * t110)
-    del t110, t96
-    t112 = np.maximum(0.0, 4.0 * t107 * t111 + slope_left * slope_left)
-    root_on_1_both = _runtime.select(t103, np.sqrt(t112), 0.0)
-    del t112
-    t113 = slope_left - root_on_1_both
-    t114 = t47 * heavy_0_left
-    t115 = t114 * 5.960464477539063e-08
-    t116 = 1.0 / (t113 - t115)
-    t117 = (t108 * t116 <= 4.547473508864641e-13) & (0.0 < t107 * t116)
-    t118 = 2.0 * t107
-    t119 = 0.0 < -t107
-    t120 = slope_left + root_on_1_both
+    share_left = _runtime.select(spent_left, t107, 0.0)
+    del t107
+    t108 = margin_left * (1.0 - share_left)
+    t109 = heavy_0_left * t108
+    t110 = drawn * drawn
+    t111 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
+    t112 = t83 * (t96 * t110 * t111)
+    del t111, t96
+    t113 = np.maximum(0.0, 4.0 * t108 * t112 + slope_left * slope_left)
+    root_on_1_both = _runtime.select(t103, np.sqrt(t113), 0.0)
+    del t113
+    t114 = slope_left - root_on_1_both
+    t115 = t47 * heavy_0_left
+    t116 = t115 * 5.960464477539063e-08
+    t117 = 1.0 / (t114 - t116)
+    t118 = (t109 * t117 <= 4.547473508864641e-13) & (0.0 < t108 * t117)
+    t119 = 2.0 * t108
+    t120 = 0.0 < -t108
+    t121 = slope_left + root_on_1_both
     del root_on_1_both
-    t121 = t114 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t111)
-    del t114
-    t122 = 1.0 / t121
-    del t121
-    t123 = heavy_0_left * t120 * t122 <= 9.094947017729282e-13
-    t124 = t120 * t122
-    t125 = _runtime.select(t123 & (0.0 < t124), t124, 0.0)
-    del t123, t124
-    far_back_1_both = _runtime.select(t103, t125, 0.0)
-    del t125
-    t126 = _runtime.select(slope_left <= 0.0, _runtime.select(t117, t116 * t118, 0.0), _runtime.select(t119, far_back_1_both, 0.0))
-    del t116, t117
-    t127 = gain_1_right * gain_1_right
+    t122 = t115 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t112)
+    del t115
+    t123 = 1.0 / t122
+    del t122
+    t124 = heavy_0_left * t121 * t123 <= 9.094947017729282e-13
+    t125 = t121 * t123
+    t126 = _runtime.select(t124 & (0.0 < t125), t125, 0.0)
+    del t124, t125
+    far_back_1_both = _runtime.select(t103, t126, 0.0)
+    del t126
+    t127 = _runtime.select(slope_left <= 0.0, _runtime.select(t118, t117 * t119, 0.0), _runtime.select(t120, far_back_1_both, 0.0))
+    del t117, t118
+    t128 = gain_1_right * gain_1_right
     del gain_1_right
-    t128 = t127 / (t105 + t127 + gain_0_right * gain_0_right)
-    del gain_0_right, t127
-    share_right = _runtime.select(spent_right, _runtime.select(room_right < 0.0, t128, 0.0), 0.0)
-    del t128
-    t129 = room_right * (1.0 - share_right)
-    t130 = heavy_0_right * t129
-    t131 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
-    t132 = t83 * (t78 * t109 * t131)
-    del t131, t78
-    t133 = 4.0 * t129 * t132 + slope_right * slope_right
-    root_on_0_both = _runtime.select(t103, np.sqrt(np.maximum(0.0, t133)), 0.0)
-    del t133
-    t134 = slope_right - root_on_0_both
-    t135 = t47 * heavy_0_right
-    t136 = t135 * 5.960464477539063e-08
-    t137 = 1.0 / (t134 - t136)
-    t138 = (t130 * t137 <= 4.547473508864641e-13) & (0.0 < t129 * t137)
-    t139 = 2.0 * t129
-    t140 = 0.0 < -t129
-    t141 = slope_right + root_on_0_both
-    del root_on_0_both
-    t142 = t135 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t132)
-    del t135
-    t143 = 1.0 / t142
-    del t142
-    t144 = heavy_0_right * t141 * t143 <= 9.094947017729282e-13
-    t145 = t141 * t143
-    t146 = _runtime.select(t144 & (0.0 < t145), t145, 0.0)
-    del t144, t145
-    far_back_0_both = _runtime.select(t103, t146, 0.0)
-    del t146
-    t147 = _runtime.select(slope_right <= 0.0, _runtime.select(t138, t137 * t139, 0.0), _runtime.select(t140, far_back_0_both, 0.0))
-    del t137, t138
-    near_back_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t126), t147), 0.0)
-    del t126, t147
-    t148 = near_back_both * (slope_right + t132 * near_back_both)
-    t149 = _runtime.select(0.0 < t148 - t129, far_back_0_both, 0.0)
-    del far_back_0_both, t148
-    t150 = near_back_both * (slope_left + t111 * near_back_both)
-    t151 = _runtime.select(0.0 < t150 - t107, far_back_1_both, 0.0)
-    del far_back_1_both, t150
-    t152 = np.maximum(np.maximum(near_back_both, t149), t151)
-    del near_back_both, t149, t151
-    turn_back_both = _runtime.select(t103, t152, 0.0)
-    del t152
-    t153 = turn_back_both * (slope_left + t111 * turn_back_both)
-    t154 = turn_back_both * (slope_right + t132 * turn_back_both)
-    left_back_both = _runtime.select(t103, np.minimum(t107 - t153, t129 - t154), 0.0)
-    del t153, t154
-    t155 = 1.0 / (t115 + t120)
-    del t115, t120
-    t156 = (-(t108 * t155) <= 4.547473508864641e-13) & (0.0 < -(t107 * t155))
-    del t108
-    t157 = -(t122 * (heavy_0_left * t113)) <= 9.094947017729282e-13
-    del heavy_0_left
-    t158 = -(t113 * t122)
-    del t113, t122
-    t159 = _runtime.select(t157 & (0.0 < t158), t158, 0.0)
-    del t157, t158
-    far_on_1_both = _runtime.select(t103, t159, 0.0)
-    del t159
-    t160 = _runtime.select(0.0 <= slope_left, _runtime.select(t156, -(t118 * t155), 0.0), _runtime.select(t119, far_on_1_both, 0.0))
-    del t118, t119, t155, t156
-    t161 = 1.0 / (t136 + t141)
-    del t136, t141
-    t162 = (-(t130 * t161) <= 4.547473508864641e-13) & (0.0 < -(t129 * t161))
+    t129 = t128 / (t105 + t128 + gain_0_right * gain_0_right)
+    del gain_0_right, t128
+    t130 = _runtime.select(margin_right < 0.0, t129, 0.0)
+    del t129
+    share_right = _runtime.select(spent_right, t130, 0.0)
     del t130
-    t163 = -(t143 * (heavy_0_right * t134)) <= 9.094947017729282e-13
+    t131 = margin_right * (1.0 - share_right)
+    t132 = heavy_0_right * t131
+    t133 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
+    t134 = t83 * (t78 * t110 * t133)
+    del t133, t78
+    t135 = 4.0 * t131 * t134 + slope_right * slope_right
+    root_on_0_both = _runtime.select(t103, np.sqrt(np.maximum(0.0, t135)), 0.0)
+    del t135
+    t136 = slope_right - root_on_0_both
+    t137 = t47 * heavy_0_right
+    t138 = t137 * 5.960464477539063e-08
+    t139 = 1.0 / (t136 - t138)
+    t140 = (t132 * t139 <= 4.547473508864641e-13) & (0.0 < t131 * t139)
+    t141 = 2.0 * t131
+    t142 = 0.0 < -t131
+    t143 = slope_right + root_on_0_both
+    del root_on_0_both
+    t144 = t137 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t134)
+    del t137
+    t145 = 1.0 / t144
+    del t144
+    t146 = heavy_0_right * t143 * t145 <= 9.094947017729282e-13
+    t147 = t143 * t145
+    t148 = _runtime.select(t146 & (0.0 < t147), t147, 0.0)
+    del t146, t147
+    far_back_0_both = _runtime.select(t103, t148, 0.0)
+    del t148
+    t149 = _runtime.select(slope_right <= 0.0, _runtime.select(t140, t139 * t141, 0.0), _runtime.select(t142, far_back_0_both, 0.0))
+    del t139, t140
+    near_back_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t127), t149), 0.0)
+    del t127, t149
+    t150 = near_back_both * (slope_right + t134 * near_back_both)
+    t151 = _runtime.select(0.0 < t150 - t131, far_back_0_both, 0.0)
+    del far_back_0_both, t150
+    t152 = near_back_both * (slope_left + t112 * near_back_both)
+    t153 = _runtime.select(0.0 < t152 - t108, far_back_1_both, 0.0)
+    del far_back_1_both, t152
+    t154 = np.maximum(np.maximum(near_back_both, t151), t153)
+    del near_back_both, t151, t153
+    turn_back_both = _runtime.select(t103, t154, 0.0)
+    del t154
+    t155 = turn_back_both * (slope_left + t112 * turn_back_both)
+    t156 = turn_back_both * (slope_right + t134 * turn_back_both)
+    left_back_both = _runtime.select(t103, np.minimum(t108 - t155, t131 - t156), 0.0)
+    del t155, t156
+    t157 = 1.0 / (t116 + t121)
+    del t116, t121
+    t158 = (-(t109 * t157) <= 4.547473508864641e-13) & (0.0 < -(t108 * t157))
+    del t109
+    t159 = -(t123 * (heavy_0_left * t114)) <= 9.094947017729282e-13
+    del heavy_0_left
+    t160 = -(t114 * t123)
+    del t114, t123
+    t161 = _runtime.select(t159 & (0.0 < t160), t160, 0.0)
+    del t159, t160
+    far_on_1_both = _runtime.select(t103, t161, 0.0)
+    del t161
+    t162 = _runtime.select(0.0 <= slope_left, _runtime.select(t158, -(t119 * t157), 0.0), _runtime.select(t120, far_on_1_both, 0.0))
+    del t119, t120, t157, t158
+    t163 = 1.0 / (t138 + t143)
+    del t138, t143
+    t164 = (-(t132 * t163) <= 4.547473508864641e-13) & (0.0 < -(t131 * t163))
+    del t132
+    t165 = -(t145 * (heavy_0_right * t136)) <= 9.094947017729282e-13
     del heavy_0_right
-    t164 = -(t134 * t143)
-    del t134, t143
-    t165 = _runtime.select(t163 & (0.0 < t164), t164, 0.0)
-    del t163, t164
-    far_on_0_both = _runtime.select(t103, t165, 0.0)
-    del t165
-    t166 = _runtime.select(0.0 <= slope_right, _runtime.select(t162, -(t139 * t161), 0.0), _runtime.select(t140, far_on_0_both, 0.0))
-    del t139, t140, t161, t162
-    near_on_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t160), t166), 0.0)
-    del t160, t166
-    t167 = near_on_both * (slope_right - t132 * near_on_both)
-    t168 = _runtime.select(0.0 < -(t129 + t167), far_on_0_both, 0.0)
-    del far_on_0_both, t167
-    t169 = near_on_both * (slope_left - t111 * near_on_both)
-    t170 = _runtime.select(0.0 < -(t107 + t169), far_on_1_both, 0.0)
-    del far_on_1_both, t169
-    t171 = np.maximum(np.maximum(near_on_both, t168), t170)
-    del near_on_both, t168, t170
-    turn_on_both = _runtime.select(t103, t171, 0.0)
-    del t171
-    t172 = turn_on_both * (slope_left - t111 * turn_on_both)
-    del slope_left, t111
-    t173 = turn_on_both * (slope_right - t132 * turn_on_both)
-    del slope_right, t132
-    left_on_both = _runtime.select(t103, np.minimum(t107 + t172, t129 + t173), 0.0)
-    del t107, t129, t172, t173
-    t174 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
+    t166 = -(t136 * t145)
+    del t136, t145
+    t167 = _runtime.select(t165 & (0.0 < t166), t166, 0.0)
+    del t165, t166
+    far_on_0_both = _runtime.select(t103, t167, 0.0)
+    del t167
+    t168 = _runtime.select(0.0 <= slope_right, _runtime.select(t164, -(t141 * t163), 0.0), _runtime.select(t142, far_on_0_both, 0.0))
+    del t141, t142, t163, t164
+    near_on_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t162), t168), 0.0)
+    del t162, t168
+    t169 = near_on_both * (slope_right - t134 * near_on_both)
+    t170 = _runtime.select(0.0 < -(t131 + t169), far_on_0_both, 0.0)
+    del far_on_0_both, t169
+    t171 = near_on_both * (slope_left - t112 * near_on_both)
+    t172 = _runtime.select(0.0 < -(t108 + t171), far_on_1_both, 0.0)
+    del far_on_1_both, t171
+    t173 = np.maximum(np.maximum(near_on_both, t170), t172)
+    del near_on_both, t170, t172
+    turn_on_both = _runtime.select(t103, t173, 0.0)
+    del t173
+    t174 = turn_on_both * (slope_left - t112 * turn_on_both)
+    del slope_left, t112
+    t175 = turn_on_both * (slope_right - t134 * turn_on_both)
+    del slope_right, t134
+    left_on_both = _runtime.select(t103, np.minimum(t108 + t174, t131 + t175), 0.0)
+    del t108, t131, t174, t175
+    t176 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
     del left_back_both, left_on_both, turn_back_both, turn_on_both
-    turn_both = _runtime.select(t103, t174, 0.0)
-    del t174
-    t175 = t99 + t47 * heavy_1_left * 5.960464477539063e-08
+    turn_both = _runtime.select(t103, t176, 0.0)
+    del t176
+    t177 = margin_left * share_left * _runtime.sign(-t98)
+    del margin_left, share_left, t98
+    t178 = t99 + t47 * heavy_1_left * 5.960464477539063e-08
     del heavy_1_left, t99
-    t176 = room_left * share_left * _runtime.sign(-t98) / t175
-    del room_left, share_left, t175, t98
-    aside_left = _runtime.select(spent_left, -t176, 0.0)
-    del spent_left, t176
-    t177 = room_right * share_right * _runtime.sign(-t88)
-    del room_right, share_right, t88
-    t178 = t89 + t47 * heavy_1_right * 5.960464477539063e-08
+    aside_left = _runtime.select(spent_left, -(t177 / t178), 0.0)
+    del spent_left, t177, t178
+    t179 = margin_right * share_right * _runtime.sign(-t88)
+    del margin_right, share_right, t88
+    t180 = t89 + t47 * heavy_1_right * 5.960464477539063e-08
     del heavy_1_right, t89
-    aside_right = _runtime.select(spent_right, -(t177 / t178), 0.0)
-    del spent_right, t177, t178
-    t179 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
+    aside_right = _runtime.select(spent_right, -(t179 / t180), 0.0)
+    del spent_right, t179, t180
+    t181 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
     del aside_left, aside_right
-    lean = _runtime.select(t103, turn_both + t179 - t83 * (drawn * turn_both), 0.0)
-    del t179
-    t180 = lean * lean
-    t181 = 1.0 + t180
-    t182 = 1.0 / np.sqrt(t181)
-    t183 = 1.0 / (t181 * (1.0 + t182))
+    lean = _runtime.select(t103, turn_both + t181 - t83 * (drawn * turn_both), 0.0)
     del t181
-    t184 = elbow_11 * t180 * t183 + t182 * (elbow_21 * lean)
-    t185 = turn_both * turn_both
-    t186 = elbow_11 - r_right_0
-    t187 = 1.0 + t185
-    t188 = 1.0 / np.sqrt(t187)
-    t189 = 1.0 / (t187 * (1.0 + t188))
-    del t187
-    t190 = elbow_21 - h_right_0
-    t191 = t184 - t185 * t186 * t189 - t188 * (turn_both * t190)
-    swing_21 = t182 * (elbow_11 * lean) - t183 * (elbow_21 * t180)
-    del t180, t182, t183
-    more_right_21 = swing_21 + t189 * (t185 * t190) - t188 * (turn_both * t186)
-    del t186, t190
-    t192 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
-    change_right = _runtime.select(t103, t191 * (t191 - 2.0 * r_right_0) + t192, 0.0)
-    del t192
-    t193 = nearer_right - change_right
+    t182 = lean * lean
+    t183 = 1.0 + t182
+    t184 = 1.0 / np.sqrt(t183)
+    t185 = 1.0 / (t183 * (1.0 + t184))
+    del t183
+    t186 = elbow_11 * t182 * t185 + t184 * (elbow_21 * lean)
+    t187 = turn_both * turn_both
+    t188 = elbow_11 - r_right_0
+    t189 = 1.0 + t187
+    t190 = 1.0 / np.sqrt(t189)
+    t191 = 1.0 / (t189 * (1.0 + t190))
+    del t189
+    t192 = elbow_21 - h_right_0
+    t193 = t186 - t187 * t188 * t191 - t190 * (turn_both * t192)
+    swing_21 = t184 * (elbow_11 * lean) - t185 * (elbow_21 * t182)
+    del t182, t184, t185
+    more_right_21 = swing_21 + t191 * (t187 * t192) - t190 * (turn_both * t188)
+    del t188, t192
+    t194 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
+    change_right = _runtime.select(t103, t193 * (t193 - 2.0 * r_right_0) + t194, 0.0)
+    del t194
+    t195 = nearer_right - change_right
     del nearer_right
-    t194 = farther_right + change_right
+    t196 = farther_right + change_right
     del change_right, farther_right
-    t195 = t46 & t92 & t101 & (t102 <= t193) & (t102 <= t194)
+    t197 = t46 & t92 & t101 & (t102 <= t195) & (t102 <= t196)
     del t101, t92
-    t196 = elbow_11 - r_left_0
+    t198 = elbow_11 - r_left_0
     del elbow_11
-    t197 = elbow_21 - h_left_0
-    t198 = t184 - t189 * (t185 * t196) - t188 * (turn_both * t197)
-    del t184
-    more_left_21 = swing_21 + t189 * (t185 * t197) - t188 * (turn_both * t196)
-    del swing_21, t185, t188, t189, t196, t197
-    t199 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
-    change_left = _runtime.select(t103, t198 * (t198 - 2.0 * r_left_0) + t199, 0.0)
-    del t199
-    t200 = -(t94 + change_left)
+    t199 = elbow_21 - h_left_0
+    t200 = t186 - t191 * (t187 * t198) - t190 * (turn_both * t199)
+    del t186
+    more_left_21 = swing_21 + t191 * (t187 * t199) - t190 * (turn_both * t198)
+    del swing_21, t187, t190, t191, t198, t199
+    t201 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
+    change_left = _runtime.select(t103, t200 * (t200 - 2.0 * r_left_0) + t201, 0.0)
+    del t201
+    t202 = -(t94 + change_left)
     del t94
-    t201 = farther_left + change_left
+    t203 = farther_left + change_left
     del change_left, farther_left
-    unreachable = np.logical_not(t195 & (t102 <= t200) & (t102 <= t201))
-    del t195
-    t202 = _runtime.poison(invalid | unreachable)
-    t203 = t27 + t202
+    unreachable = np.logical_not(t197 & (t102 <= t202) & (t102 <= t203))
+    del t197
+    t204 = _runtime.poison(invalid | unreachable)
+    t205 = t27 + t204
     h_right = _runtime.select(t103, h_right_0 + more_right_21, h_right_0)
     del h_right_0, more_right_21
-    r_right = _runtime.select(t103, r_right_0 - t191, r_right_0)
-    del r_right_0, t191
-    t204 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(h_right) + np.abs(r_right) <= t204
-    t205 = np.arctan2(stheta2A, ctheta2A)
+    r_right = _runtime.select(t103, r_right_0 - t193, r_right_0)
+    del r_right_0, t193
+    t206 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(h_right) + np.abs(r_right) <= t206
+    t207 = np.arctan2(stheta2A, ctheta2A)
     del ctheta2A
-    t206 = L1 * fore_arm
-    short_right = t206 <= _runtime.VANISHING * t48
-    t207 = 2.0 * fore_arm
-    t208 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t206))
-    M_right = np.maximum(t194, t208)
-    del t194
-    N_right = np.maximum(t193, t208)
-    del t193
-    t209 = 1.0 / (M_right + N_right)
-    ahead_1_right = _runtime.select(short_right, size, t69 + t207 * M_right * t209)
-    t210 = t72 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    t208 = L1 * fore_arm
+    short_right = t208 <= _runtime.VANISHING * t48
+    t209 = 2.0 * fore_arm
+    t210 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t208))
+    M_right = np.maximum(t196, t210)
+    del t196
+    N_right = np.maximum(t195, t210)
+    del t195
+    t211 = 1.0 / (M_right + N_right)
+    ahead_1_right = _runtime.select(short_right, size, t69 + t209 * M_right * t211)
+    t212 = t72 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
     del lean, turn_both
-    t211 = _runtime.select(t103, t210, t72)
-    del t210
-    sigma_right = _runtime.sign(-t211)
-    t212 = 2.0 * sigma_right
-    t213 = np.sqrt(M_right * N_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t209 * (t212 * t213))
-    del t209
-    t214 = fore_arm * s_bend_right
+    t213 = _runtime.select(t103, t212, t72)
+    del t212
+    sigma_right = _runtime.sign(-t213)
+    t214 = 2.0 * sigma_right
+    t215 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t211 * (t214 * t215))
+    del t211
+    t216 = fore_arm * s_bend_right
     del s_bend_right
-    t215 = np.arctan2(h_right * ahead_1_right - r_right * t214, r_right * ahead_1_right + h_right * t214)
-    del ahead_1_right, h_right, r_right, t214
-    t216 = _runtime.wrap_cut(_runtime.select(folded_right, t205, t215))
-    del t215
-    t217 = t216 + t202
-    del t216
+    t217 = np.arctan2(h_right * ahead_1_right - r_right * t216, r_right * ahead_1_right + h_right * t216)
+    del ahead_1_right, h_right, r_right, t216
+    t218 = _runtime.wrap_cut(_runtime.select(folded_right, t207, t217))
+    del t217
+    t219 = t218 + t204
+    del t218
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t218 = 1.0 / fore_arm
-    t219 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t218), _runtime.select(bare_right, 1.0, a3 * t218))
-    del bare_right, t218
-    t220 = sigma_right * np.arctan2(2.0 * t213, M_right - N_right)
-    del t213
-    t221 = t219 + _runtime.select(short_right, 0.0, t220)
-    del t220
-    t222 = _runtime.wrap(t221) + t202
-    del t221
+    t220 = 1.0 / fore_arm
+    t221 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t220), _runtime.select(bare_right, 1.0, a3 * t220))
+    del bare_right, t220
+    t222 = sigma_right * np.arctan2(2.0 * t215, M_right - N_right)
+    del t215
+    t223 = t221 + _runtime.select(short_right, 0.0, t222)
+    del t222
+    t224 = _runtime.wrap(t223) + t204
+    del t223
     h_left = _runtime.select(t103, h_left_0 + more_left_21, h_left_0)
     del h_left_0, more_left_21
-    r_left = _runtime.select(t103, r_left_0 - t198, r_left_0)
-    del r_left_0, t198
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t204
-    M_left = np.maximum(t201, 0.0)
-    del t201
-    N_left = np.maximum(t200, 0.0)
-    del t200
-    t223 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t69 + t207 * M_left * t223)
-    t224 = h_left * ahead_1_left
-    t225 = np.sqrt(M_left * N_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t223 * (t212 * t225))
-    del t212, t223
-    t226 = fore_arm * s_bend_left
+    r_left = _runtime.select(t103, r_left_0 - t200, r_left_0)
+    del r_left_0, t200
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t206
+    M_left = np.maximum(t203, 0.0)
+    del t203
+    N_left = np.maximum(t202, 0.0)
+    del t202
+    t225 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t69 + t209 * M_left * t225)
+    t226 = h_left * ahead_1_left
+    t227 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t225 * (t214 * t227))
+    del t214, t225
+    t228 = fore_arm * s_bend_left
     del s_bend_left
-    t227 = r_left * t226
-    t228 = r_left * ahead_1_left
+    t229 = r_left * t228
+    t230 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t229 = h_left * t226
-    del h_left, t226
-    t230 = _runtime.select(folded_left, t205, np.arctan2(t224 - t227, t228 + t229))
-    t231 = sigma_right * np.arctan2(2.0 * t225, M_left - N_left)
-    del t225
-    t232 = _runtime.select(short_right, 0.0, t231)
-    del t231
-    t233 = _runtime.wrap(principal_pitch)
+    t231 = h_left * t228
+    del h_left, t228
+    t232 = _runtime.select(folded_left, t207, np.arctan2(t226 - t229, t230 + t231))
+    t233 = sigma_right * np.arctan2(2.0 * t227, M_left - N_left)
+    del t227
+    t234 = _runtime.select(short_right, 0.0, t233)
+    del t233
+    t235 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t234 = t233 + t202
-    t235 = _runtime.select(folded_left, t205, np.arctan2(t224 + t227, t228 - t229))
-    del t205, t224, t227, t228, t229
+    t236 = t235 + t204
+    t237 = _runtime.select(folded_left, t207, np.arctan2(t226 + t229, t230 - t231))
+    del t207, t226, t229, t230, t231
     up_front_elbow_down_alike = t51 - t53
     del t51, t53
     out_front_elbow_down_alike = t54 + t55
     del t54, t55
-    t236 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t237 = up_front_elbow_down_alike * up_front_elbow_down_alike
-    t238 = 1.0 / np.sqrt(t236 + t237)
-    del t236, t237
-    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t238)
+    t238 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t239 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t240 = 1.0 / np.sqrt(t238 + t239)
+    del t238, t239
+    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t240)
     del up_front_elbow_down_alike
     elbow_21_front_elbow_down_alike = L1 * stheta2A_front_elbow_down_alike
-    t239 = out_front_elbow_down_alike * t238
-    del out_front_elbow_down_alike, t238
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t239)
+    t241 = out_front_elbow_down_alike * t240
+    del out_front_elbow_down_alike, t240
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t241)
     c_relative_front_elbow_down_alike = t59 - t60
     del t59, t60
-    t240 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t242 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t61 + t62
     del t61, t62
-    t241 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t240 - t241
-    del t240, t241
-    t242 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t243 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t244 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t243 + t244
-    del t243, t244
-    point_21_front_elbow_down_alike = t242 + a3 * stheta23A_front_elbow_down_alike
-    del t242
-    t245 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t246 = t245 + t_phi * stheta23A_front_elbow_down_alike
-    del t245
-    t247 = d * t246
-    del t246
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t247
-    t248 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t243 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t242 - t243
+    del t242, t243
+    t244 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t245 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t246 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t245 + t246
+    del t245, t246
+    point_21_front_elbow_down_alike = t244 + a3 * stheta23A_front_elbow_down_alike
+    del t244
+    t247 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t248 = t247 + t_phi * stheta23A_front_elbow_down_alike
+    del t247
+    t249 = d * t248
+    del t248
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t249
+    t250 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    t249 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t249 + a3 * ctheta23A_front_elbow_down_alike
-    del t249
-    t250 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
-    del stheta23A_front_elbow_down_alike
-    t251 = t_phi * ctheta23A_front_elbow_down_alike - t250
-    del ctheta23A_front_elbow_down_alike, t250
-    t252 = d * t251
+    t251 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t251 + a3 * ctheta23A_front_elbow_down_alike
     del t251
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t252
-    t253 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t254 = t248 + t253
-    del t248, t253
-    gap_front_elbow_down_alike = t252 * t252 + t247 * t247
-    t255 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t252 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
+    del stheta23A_front_elbow_down_alike
+    t253 = t_phi * ctheta23A_front_elbow_down_alike - t252
+    del ctheta23A_front_elbow_down_alike, t252
+    t254 = d * t253
+    del t253
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t254
+    t255 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t256 = t250 + t255
+    del t250, t255
+    gap_front_elbow_down_alike = t254 * t254 + t249 * t249
+    t257 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t256 = 0.0 <= straight_mid_front_elbow_down_alike
+    t258 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
-    t257 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t257 * t257 / large_mid_front_elbow_down_alike
-    t258 = _runtime.select(t256, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t39 * t258
-    del t258
-    t259 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
-    t260 = 2.0 * point_11_front_elbow_down_alike * t252 + 2.0 * point_21_front_elbow_down_alike * t247
-    farther_right_front_elbow_down_alike = _runtime.select(t48 * t254 < t255, t254 - t70, t259 - t260)
-    del t254
-    t261 = _runtime.select(t256, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t256
-    N_mid_front_elbow_down_alike = t39 * t261
-    del t261
-    t262 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t260 - t262
-    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t263 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t264 = np.maximum(-t263, room_right_front_elbow_down_alike)
+    t259 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t259 * t259 / large_mid_front_elbow_down_alike
+    t260 = _runtime.select(t258, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t39 * t260
+    del t260
+    t261 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
+    t262 = 2.0 * point_11_front_elbow_down_alike * t254 + 2.0 * point_21_front_elbow_down_alike * t249
+    farther_right_front_elbow_down_alike = _runtime.select(t48 * t256 < t257, t256 - t70, t261 - t262)
+    del t256
+    t263 = _runtime.select(t258, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t258
+    N_mid_front_elbow_down_alike = t39 * t263
     del t263
-    spent_right_front_elbow_down_alike = t264 <= t77
-    del t264
-    t265 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t266 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t267 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
-    t268 = _runtime.select(t267, 1.0, -1.0)
-    del t267
-    t269 = (t265 - t266) * t268
-    del t265, t266
-    t270 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t270 + a_3W * c_relative_front_elbow_down_alike
-    del t270
-    t271 = 2.0 * drawn_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t269 * t271
-    t272 = 1.0 - t83 * drawn_front_elbow_down_alike
-    t273 = t82 * np.sqrt(fore + L1 * (t272 * t272)) / 2000000.0
-    del fore, t272, t82
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t274 = t81 * (t273 + np.abs(tilt_front_elbow_down_alike))
-    del t273, t81, tilt_front_elbow_down_alike
-    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t274, 1.0)
-    t275 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
-    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t275, 0.0)
-    del t275
-    t276 = t39 * t269
+    t264 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t262 - t264
+    margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t265 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t266 = np.maximum(-t265, margin_right_front_elbow_down_alike)
+    del t265
+    spent_right_front_elbow_down_alike = t266 <= t77
+    del t266
+    t267 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t268 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t269 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
+    t270 = _runtime.select(t269, 1.0, -1.0)
     del t269
-    t277 = np.abs(t276)
+    t271 = (t267 - t268) * t270
+    del t267, t268
+    t272 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t272 + a_3W * c_relative_front_elbow_down_alike
+    del t272
+    t273 = 2.0 * drawn_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t271 * t273
+    t274 = 1.0 - t83 * drawn_front_elbow_down_alike
+    t275 = t82 * np.sqrt(fore + L1 * (t274 * t274)) / 2000000.0
+    del fore, t274, t82
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t276 = t81 * (t275 + np.abs(tilt_front_elbow_down_alike))
+    del t275, t81, tilt_front_elbow_down_alike
+    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t276, 1.0)
+    t277 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
+    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t277, 0.0)
+    del t277
+    t278 = t39 * t271
+    del t271
+    t279 = np.abs(t278)
     heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t90, 1.0)
-    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t277 / heavy_1_right_front_elbow_down_alike, 0.0)
-    t278 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
-    t279 = _runtime.select(spent_right_front_elbow_down_alike, t278, 0.0)
-    del t278
-    t280 = -(_runtime.FEASIBILITY * (t47 + t279)) <= room_right_front_elbow_down_alike
-    del t279
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t247
-    del point_21_front_elbow_down_alike, t247
-    t281 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t252
-    del point_11_front_elbow_down_alike, t252
-    t282 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t283 = t281 + t282
-    del t281, t282
-    farther_left_front_elbow_down_alike = _runtime.select(t48 * t283 < t255, t283 - t70, t259 + t260)
-    del t255, t259, t283
-    t284 = t260 + t262
-    del t260, t262
-    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t284)
-    t285 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t286 = np.maximum(-t285, room_left_front_elbow_down_alike)
-    del t285
-    spent_left_front_elbow_down_alike = t286 <= t77
-    del t286
-    t287 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t288 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t289 = _runtime.select(-t284 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
-    t290 = (t287 - t288) * t289
-    del t287, t288
-    slope_left_front_elbow_down_alike = t271 * t290
-    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t274, 1.0)
-    t291 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
-    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t291, 0.0)
-    del t291
-    t292 = t39 * t290
-    del t290
-    t293 = np.abs(t292)
+    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t279 / heavy_1_right_front_elbow_down_alike, 0.0)
+    t280 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
+    t281 = _runtime.select(spent_right_front_elbow_down_alike, t280, 0.0)
+    del t280
+    t282 = -(_runtime.FEASIBILITY * (t47 + t281)) <= margin_right_front_elbow_down_alike
+    del t281
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t249
+    del point_21_front_elbow_down_alike, t249
+    t283 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t254
+    del point_11_front_elbow_down_alike, t254
+    t284 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t285 = t283 + t284
+    del t283, t284
+    farther_left_front_elbow_down_alike = _runtime.select(t48 * t285 < t257, t285 - t70, t261 + t262)
+    del t257, t261, t285
+    t286 = t262 + t264
+    del t262, t264
+    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t286)
+    t287 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t288 = np.maximum(-t287, margin_left_front_elbow_down_alike)
+    del t287
+    spent_left_front_elbow_down_alike = t288 <= t77
+    del t288
+    t289 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t290 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t291 = _runtime.select(-t286 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
+    t292 = (t289 - t290) * t291
+    del t289, t290
+    slope_left_front_elbow_down_alike = t273 * t292
+    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t276, 1.0)
+    t293 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
+    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t293, 0.0)
+    del t293
+    t294 = t39 * t292
+    del t292
+    t295 = np.abs(t294)
     heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t90, 1.0)
-    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t293 / heavy_1_left_front_elbow_down_alike, 0.0)
-    t294 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
-    t295 = _runtime.select(spent_left_front_elbow_down_alike, t294, 0.0)
-    del t294
-    t296 = -(_runtime.FEASIBILITY * (t47 + t295)) <= room_left_front_elbow_down_alike
-    del t295
-    t297 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
-    t298 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
+    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t295 / heavy_1_left_front_elbow_down_alike, 0.0)
+    t296 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
+    t297 = _runtime.select(spent_left_front_elbow_down_alike, t296, 0.0)
+    del t296
+    t298 = -(_runtime.FEASIBILITY * (t47 + t297)) <= margin_left_front_elbow_down_alike
+    del t297
+    t299 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
+    t300 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
     del gain_1_left_front_elbow_down_alike
-    t299 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
+    t301 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
     del gain_0_left_front_elbow_down_alike
-    t300 = _runtime.select(room_left_front_elbow_down_alike < 0.0, t298 / (t105 + t298 + t299), 0.0)
-    del t298, t299
-    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t300, 0.0)
-    del t300
-    t301 = room_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
-    t302 = heavy_0_left_front_elbow_down_alike * t301
-    t303 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
-    t304 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t305 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t306 = t83 * (t289 * t303 * (L1 - t304 - t305))
-    del t289, t304, t305
-    t307 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t308 = np.sqrt(np.maximum(0.0, 4.0 * t301 * t306 + t307))
-    del t307
-    root_on_1_both_front_elbow_down_alike = _runtime.select(t297, t308, 0.0)
-    del t308
-    t309 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
-    t310 = t47 * heavy_0_left_front_elbow_down_alike
-    t311 = t310 * 5.960464477539063e-08
-    t312 = 1.0 / (t309 - t311)
-    t313 = (t302 * t312 <= 4.547473508864641e-13) & (0.0 < t301 * t312)
-    t314 = 2.0 * t301
-    t315 = 0.0 < -t301
-    t316 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
-    del root_on_1_both_front_elbow_down_alike
-    t317 = t310 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t306)
-    del t310
-    t318 = 1.0 / t317
-    del t317
-    t319 = heavy_0_left_front_elbow_down_alike * t316 * t318
-    t320 = t316 * t318
-    t321 = (t319 <= 9.094947017729282e-13) & (0.0 < t320)
-    del t319
-    far_back_1_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t321, t320, 0.0), 0.0)
-    del t320, t321
-    t322 = _runtime.select(t315, far_back_1_both_front_elbow_down_alike, 0.0)
-    t323 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t313, t312 * t314, 0.0), t322)
-    del t312, t313, t322
-    t324 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
-    del gain_1_right_front_elbow_down_alike
-    t325 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
-    del gain_0_right_front_elbow_down_alike
-    t326 = _runtime.select(room_right_front_elbow_down_alike < 0.0, t324 / (t105 + t324 + t325), 0.0)
-    del t324, t325
-    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t326, 0.0)
-    del t326
-    t327 = room_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
-    t328 = heavy_0_right_front_elbow_down_alike * t327
-    t329 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t330 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t331 = t83 * (t268 * t303 * (L1 - t329 - t330))
-    del t268, t329, t330
-    t332 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t333 = np.sqrt(np.maximum(0.0, 4.0 * t327 * t331 + t332))
-    del t332
-    root_on_0_both_front_elbow_down_alike = _runtime.select(t297, t333, 0.0)
-    del t333
-    t334 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
-    t335 = t47 * heavy_0_right_front_elbow_down_alike
-    t336 = t335 * 5.960464477539063e-08
-    t337 = 1.0 / (t334 - t336)
-    t338 = (t328 * t337 <= 4.547473508864641e-13) & (0.0 < t327 * t337)
-    t339 = 2.0 * t327
-    t340 = 0.0 < -t327
-    t341 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
-    del root_on_0_both_front_elbow_down_alike
-    t342 = t335 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t331)
-    del t335
-    t343 = 1.0 / t342
-    del t342
-    t344 = heavy_0_right_front_elbow_down_alike * t341 * t343
-    t345 = t341 * t343
-    t346 = (t344 <= 9.094947017729282e-13) & (0.0 < t345)
-    del t344
-    far_back_0_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t346, t345, 0.0), 0.0)
-    del t345, t346
-    t347 = _runtime.select(t340, far_back_0_both_front_elbow_down_alike, 0.0)
-    t348 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t338, t337 * t339, 0.0), t347)
-    del t337, t338, t347
-    near_back_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(np.maximum(0.0, t323), t348), 0.0)
-    del t323, t348
-    t349 = slope_right_front_elbow_down_alike + t331 * near_back_both_front_elbow_down_alike
-    t350 = near_back_both_front_elbow_down_alike * t349 - t327
-    del t349
-    t351 = _runtime.select(0.0 < t350, far_back_0_both_front_elbow_down_alike, 0.0)
-    del far_back_0_both_front_elbow_down_alike, t350
-    t352 = np.maximum(near_back_both_front_elbow_down_alike, t351)
-    del t351
-    t353 = slope_left_front_elbow_down_alike + t306 * near_back_both_front_elbow_down_alike
-    t354 = near_back_both_front_elbow_down_alike * t353 - t301
-    del near_back_both_front_elbow_down_alike, t353
-    t355 = _runtime.select(0.0 < t354, far_back_1_both_front_elbow_down_alike, 0.0)
-    del far_back_1_both_front_elbow_down_alike, t354
-    turn_back_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(t352, t355), 0.0)
-    del t352, t355
-    t356 = slope_left_front_elbow_down_alike + t306 * turn_back_both_front_elbow_down_alike
-    t357 = t301 - turn_back_both_front_elbow_down_alike * t356
-    del t356
-    t358 = slope_right_front_elbow_down_alike + t331 * turn_back_both_front_elbow_down_alike
-    t359 = t327 - turn_back_both_front_elbow_down_alike * t358
-    del t358
-    left_back_both_front_elbow_down_alike = _runtime.select(t297, np.minimum(t357, t359), 0.0)
-    del t357, t359
-    t360 = 1.0 / (t311 + t316)
-    del t311, t316
-    t361 = (-(t302 * t360) <= 4.547473508864641e-13) & (0.0 < -(t301 * t360))
+    t302 = _runtime.select(margin_left_front_elbow_down_alike < 0.0, t300 / (t105 + t300 + t301), 0.0)
+    del t300, t301
+    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t302, 0.0)
     del t302
-    t362 = t318 * (heavy_0_left_front_elbow_down_alike * t309)
-    del heavy_0_left_front_elbow_down_alike
-    t363 = -(t309 * t318)
-    del t309, t318
-    t364 = (-t362 <= 9.094947017729282e-13) & (0.0 < t363)
-    del t362
-    far_on_1_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t364, t363, 0.0), 0.0)
-    del t363, t364
-    t365 = _runtime.select(t315, far_on_1_both_front_elbow_down_alike, 0.0)
-    del t315
-    t366 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t361, -(t314 * t360), 0.0), t365)
-    del t314, t360, t361, t365
-    t367 = 1.0 / (t336 + t341)
-    del t336, t341
-    t368 = (-(t328 * t367) <= 4.547473508864641e-13) & (0.0 < -(t327 * t367))
+    t303 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t304 = heavy_0_left_front_elbow_down_alike * t303
+    t305 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
+    t306 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t307 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t308 = t83 * (t291 * t305 * (L1 - t306 - t307))
+    del t291, t306, t307
+    t309 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t310 = np.sqrt(np.maximum(0.0, 4.0 * t303 * t308 + t309))
+    del t309
+    root_on_1_both_front_elbow_down_alike = _runtime.select(t299, t310, 0.0)
+    del t310
+    t311 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
+    t312 = t47 * heavy_0_left_front_elbow_down_alike
+    t313 = t312 * 5.960464477539063e-08
+    t314 = 1.0 / (t311 - t313)
+    t315 = (t304 * t314 <= 4.547473508864641e-13) & (0.0 < t303 * t314)
+    t316 = 2.0 * t303
+    t317 = 0.0 < -t303
+    t318 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
+    del root_on_1_both_front_elbow_down_alike
+    t319 = t312 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t308)
+    del t312
+    t320 = 1.0 / t319
+    del t319
+    t321 = heavy_0_left_front_elbow_down_alike * t318 * t320
+    t322 = t318 * t320
+    t323 = (t321 <= 9.094947017729282e-13) & (0.0 < t322)
+    del t321
+    far_back_1_both_front_elbow_down_alike = _runtime.select(t299, _runtime.select(t323, t322, 0.0), 0.0)
+    del t322, t323
+    t324 = _runtime.select(t317, far_back_1_both_front_elbow_down_alike, 0.0)
+    t325 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t315, t314 * t316, 0.0), t324)
+    del t314, t315, t324
+    t326 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
+    del gain_1_right_front_elbow_down_alike
+    t327 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
+    del gain_0_right_front_elbow_down_alike
+    t328 = _runtime.select(margin_right_front_elbow_down_alike < 0.0, t326 / (t105 + t326 + t327), 0.0)
+    del t326, t327
+    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t328, 0.0)
     del t328
-    t369 = t343 * (heavy_0_right_front_elbow_down_alike * t334)
+    t329 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t330 = heavy_0_right_front_elbow_down_alike * t329
+    t331 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t332 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t333 = t83 * (t270 * t305 * (L1 - t331 - t332))
+    del t270, t331, t332
+    t334 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t335 = np.sqrt(np.maximum(0.0, 4.0 * t329 * t333 + t334))
+    del t334
+    root_on_0_both_front_elbow_down_alike = _runtime.select(t299, t335, 0.0)
+    del t335
+    t336 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
+    t337 = t47 * heavy_0_right_front_elbow_down_alike
+    t338 = t337 * 5.960464477539063e-08
+    t339 = 1.0 / (t336 - t338)
+    t340 = (t330 * t339 <= 4.547473508864641e-13) & (0.0 < t329 * t339)
+    t341 = 2.0 * t329
+    t342 = 0.0 < -t329
+    t343 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
+    del root_on_0_both_front_elbow_down_alike
+    t344 = t337 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t333)
+    del t337
+    t345 = 1.0 / t344
+    del t344
+    t346 = heavy_0_right_front_elbow_down_alike * t343 * t345
+    t347 = t343 * t345
+    t348 = (t346 <= 9.094947017729282e-13) & (0.0 < t347)
+    del t346
+    far_back_0_both_front_elbow_down_alike = _runtime.select(t299, _runtime.select(t348, t347, 0.0), 0.0)
+    del t347, t348
+    t349 = _runtime.select(t342, far_back_0_both_front_elbow_down_alike, 0.0)
+    t350 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t340, t339 * t341, 0.0), t349)
+    del t339, t340, t349
+    near_back_both_front_elbow_down_alike = _runtime.select(t299, np.maximum(np.maximum(0.0, t325), t350), 0.0)
+    del t325, t350
+    t351 = slope_right_front_elbow_down_alike + t333 * near_back_both_front_elbow_down_alike
+    t352 = near_back_both_front_elbow_down_alike * t351 - t329
+    del t351
+    t353 = _runtime.select(0.0 < t352, far_back_0_both_front_elbow_down_alike, 0.0)
+    del far_back_0_both_front_elbow_down_alike, t352
+    t354 = np.maximum(near_back_both_front_elbow_down_alike, t353)
+    del t353
+    t355 = slope_left_front_elbow_down_alike + t308 * near_back_both_front_elbow_down_alike
+    t356 = near_back_both_front_elbow_down_alike * t355 - t303
+    del near_back_both_front_elbow_down_alike, t355
+    t357 = _runtime.select(0.0 < t356, far_back_1_both_front_elbow_down_alike, 0.0)
+    del far_back_1_both_front_elbow_down_alike, t356
+    turn_back_both_front_elbow_down_alike = _runtime.select(t299, np.maximum(t354, t357), 0.0)
+    del t354, t357
+    t358 = slope_left_front_elbow_down_alike + t308 * turn_back_both_front_elbow_down_alike
+    t359 = t303 - turn_back_both_front_elbow_down_alike * t358
+    del t358
+    t360 = slope_right_front_elbow_down_alike + t333 * turn_back_both_front_elbow_down_alike
+    t361 = t329 - turn_back_both_front_elbow_down_alike * t360
+    del t360
+    left_back_both_front_elbow_down_alike = _runtime.select(t299, np.minimum(t359, t361), 0.0)
+    del t359, t361
+    t362 = 1.0 / (t313 + t318)
+    del t313, t318
+    t363 = (-(t304 * t362) <= 4.547473508864641e-13) & (0.0 < -(t303 * t362))
+    del t304
+    t364 = t320 * (heavy_0_left_front_elbow_down_alike * t311)
+    del heavy_0_left_front_elbow_down_alike
+    t365 = -(t311 * t320)
+    del t311, t320
+    t366 = (-t364 <= 9.094947017729282e-13) & (0.0 < t365)
+    del t364
+    far_on_1_both_front_elbow_down_alike = _runtime.select(t299, _runtime.select(t366, t365, 0.0), 0.0)
+    del t365, t366
+    t367 = _runtime.select(t317, far_on_1_both_front_elbow_down_alike, 0.0)
+    del t317
+    t368 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t363, -(t316 * t362), 0.0), t367)
+    del t316, t362, t363, t367
+    t369 = 1.0 / (t338 + t343)
+    del t338, t343
+    t370 = (-(t330 * t369) <= 4.547473508864641e-13) & (0.0 < -(t329 * t369))
+    del t330
+    t371 = t345 * (heavy_0_right_front_elbow_down_alike * t336)
     del heavy_0_right_front_elbow_down_alike
-    t370 = -(t334 * t343)
-    del t334, t343
-    t371 = (-t369 <= 9.094947017729282e-13) & (0.0 < t370)
-    del t369
-    far_on_0_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t371, t370, 0.0), 0.0)
-    del t370, t371
-    t372 = _runtime.select(t340, far_on_0_both_front_elbow_down_alike, 0.0)
-    del t340
-    t373 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t368, -(t339 * t367), 0.0), t372)
-    del t339, t367, t368, t372
-    near_on_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(np.maximum(0.0, t366), t373), 0.0)
-    del t366, t373
-    t374 = slope_right_front_elbow_down_alike - t331 * near_on_both_front_elbow_down_alike
-    t375 = t327 + near_on_both_front_elbow_down_alike * t374
-    del t374
-    t376 = _runtime.select(0.0 < -t375, far_on_0_both_front_elbow_down_alike, 0.0)
-    del far_on_0_both_front_elbow_down_alike, t375
-    t377 = np.maximum(near_on_both_front_elbow_down_alike, t376)
+    t372 = -(t336 * t345)
+    del t336, t345
+    t373 = (-t371 <= 9.094947017729282e-13) & (0.0 < t372)
+    del t371
+    far_on_0_both_front_elbow_down_alike = _runtime.select(t299, _runtime.select(t373, t372, 0.0), 0.0)
+    del t372, t373
+    t374 = _runtime.select(t342, far_on_0_both_front_elbow_down_alike, 0.0)
+    del t342
+    t375 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t370, -(t341 * t369), 0.0), t374)
+    del t341, t369, t370, t374
+    near_on_both_front_elbow_down_alike = _runtime.select(t299, np.maximum(np.maximum(0.0, t368), t375), 0.0)
+    del t368, t375
+    t376 = slope_right_front_elbow_down_alike - t333 * near_on_both_front_elbow_down_alike
+    t377 = t329 + near_on_both_front_elbow_down_alike * t376
     del t376
-    t378 = slope_left_front_elbow_down_alike - t306 * near_on_both_front_elbow_down_alike
-    t379 = t301 + near_on_both_front_elbow_down_alike * t378
-    del near_on_both_front_elbow_down_alike, t378
-    t380 = _runtime.select(0.0 < -t379, far_on_1_both_front_elbow_down_alike, 0.0)
-    del far_on_1_both_front_elbow_down_alike, t379
-    turn_on_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(t377, t380), 0.0)
-    del t377, t380
-    t381 = slope_left_front_elbow_down_alike - t306 * turn_on_both_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike, t306
-    t382 = t301 + turn_on_both_front_elbow_down_alike * t381
-    del t301, t381
-    t383 = slope_right_front_elbow_down_alike - t331 * turn_on_both_front_elbow_down_alike
-    del slope_right_front_elbow_down_alike, t331
-    t384 = t327 + turn_on_both_front_elbow_down_alike * t383
-    del t327, t383
-    left_on_both_front_elbow_down_alike = _runtime.select(t297, np.minimum(t382, t384), 0.0)
-    del t382, t384
-    t385 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
+    t378 = _runtime.select(0.0 < -t377, far_on_0_both_front_elbow_down_alike, 0.0)
+    del far_on_0_both_front_elbow_down_alike, t377
+    t379 = np.maximum(near_on_both_front_elbow_down_alike, t378)
+    del t378
+    t380 = slope_left_front_elbow_down_alike - t308 * near_on_both_front_elbow_down_alike
+    t381 = t303 + near_on_both_front_elbow_down_alike * t380
+    del near_on_both_front_elbow_down_alike, t380
+    t382 = _runtime.select(0.0 < -t381, far_on_1_both_front_elbow_down_alike, 0.0)
+    del far_on_1_both_front_elbow_down_alike, t381
+    turn_on_both_front_elbow_down_alike = _runtime.select(t299, np.maximum(t379, t382), 0.0)
+    del t379, t382
+    t383 = slope_left_front_elbow_down_alike - t308 * turn_on_both_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike, t308
+    t384 = t303 + turn_on_both_front_elbow_down_alike * t383
+    del t303, t383
+    t385 = slope_right_front_elbow_down_alike - t333 * turn_on_both_front_elbow_down_alike
+    del slope_right_front_elbow_down_alike, t333
+    t386 = t329 + turn_on_both_front_elbow_down_alike * t385
+    del t329, t385
+    left_on_both_front_elbow_down_alike = _runtime.select(t299, np.minimum(t384, t386), 0.0)
+    del t384, t386
+    t387 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
     del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
-    t386 = _runtime.select(t385, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
-    del t385, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
-    turn_both_front_elbow_down_alike = _runtime.select(t297, t386, 0.0)
-    del t386
-    t387 = room_left_front_elbow_down_alike * share_left_front_elbow_down_alike
-    del room_left_front_elbow_down_alike, share_left_front_elbow_down_alike
-    t388 = t47 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
+    t388 = _runtime.select(t387, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
+    del t387, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
+    turn_both_front_elbow_down_alike = _runtime.select(t299, t388, 0.0)
+    del t388
+    t389 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    del margin_left_front_elbow_down_alike, share_left_front_elbow_down_alike
+    t390 = t47 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_left_front_elbow_down_alike
-    t389 = -(t387 * _runtime.sign(-t292) / (t293 + t388))
-    del t292, t293, t387, t388
-    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t389, 0.0)
-    del spent_left_front_elbow_down_alike, t389
-    t390 = room_right_front_elbow_down_alike * share_right_front_elbow_down_alike
-    del room_right_front_elbow_down_alike, share_right_front_elbow_down_alike
-    t391 = t47 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
+    t391 = -(t389 * _runtime.sign(-t294) / (t295 + t390))
+    del t294, t295, t389, t390
+    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t391, 0.0)
+    del spent_left_front_elbow_down_alike, t391
+    t392 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    del margin_right_front_elbow_down_alike, share_right_front_elbow_down_alike
+    t393 = t47 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_right_front_elbow_down_alike
-    t392 = -(t390 * _runtime.sign(-t276) / (t277 + t391))
-    del t276, t277, t390, t391
-    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t392, 0.0)
-    del spent_right_front_elbow_down_alike, t392
-    t393 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
-    t394 = _runtime.select(t393, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
-    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t393
-    t395 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t396 = turn_both_front_elbow_down_alike + t394 - t83 * t395
-    del t394, t395
-    lean_front_elbow_down_alike = _runtime.select(t297, t396, 0.0)
-    del t396
-    t397 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
-    t398 = 1.0 + t397
-    t399 = 1.0 / np.sqrt(t398)
-    t400 = 1.0 / (t398 * (1.0 + t399))
+    t394 = -(t392 * _runtime.sign(-t278) / (t279 + t393))
+    del t278, t279, t392, t393
+    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t394, 0.0)
+    del spent_right_front_elbow_down_alike, t394
+    t395 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
+    t396 = _runtime.select(t395, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
+    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t395
+    t397 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t398 = turn_both_front_elbow_down_alike + t396 - t83 * t397
+    del t396, t397
+    lean_front_elbow_down_alike = _runtime.select(t299, t398, 0.0)
     del t398
-    t401 = elbow_11_front_elbow_down_alike * t397 * t400
-    t402 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
-    t403 = t401 + t399 * t402
-    del t401, t402
-    t404 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t405 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
-    t406 = 1.0 + t404
-    t407 = 1.0 / np.sqrt(t406)
-    t408 = 1.0 / (t406 * (1.0 + t407))
-    del t406
-    t409 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
-    t410 = t407 * (turn_both_front_elbow_down_alike * t409)
-    t411 = t403 - t404 * t405 * t408 - t410
-    del t410
-    t412 = t411 - 2.0 * r_right_0_front_elbow_down_alike
-    t413 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
-    t414 = t400 * (elbow_21_front_elbow_down_alike * t397)
-    del t397, t400
-    swing_21_front_elbow_down_alike = t399 * t413 - t414
-    del t399, t413, t414
-    t415 = swing_21_front_elbow_down_alike + t408 * (t404 * t409)
-    del t409
-    t416 = t407 * (turn_both_front_elbow_down_alike * t405)
-    del t405
-    more_right_21_front_elbow_down_alike = t415 - t416
-    del t415, t416
-    t417 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
-    t418 = t411 * t412 + more_right_21_front_elbow_down_alike * t417
-    del t412, t417
-    change_right_front_elbow_down_alike = _runtime.select(t297, t418, 0.0)
-    del t418
-    t419 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
-    del nearer_right_front_elbow_down_alike
-    t420 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
-    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
-    t421 = t46 & t280 & t296 & (t102 <= t419) & (t102 <= t420)
-    del t280, t296
-    t422 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
-    del elbow_11_front_elbow_down_alike
-    t423 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
-    t424 = t407 * (turn_both_front_elbow_down_alike * t423)
-    t425 = t403 - t408 * (t404 * t422) - t424
-    del t403, t424
-    t426 = t425 * (t425 - 2.0 * r_left_0_front_elbow_down_alike)
-    t427 = swing_21_front_elbow_down_alike + t408 * (t404 * t423)
-    del swing_21_front_elbow_down_alike, t404, t408, t423
-    t428 = t407 * (turn_both_front_elbow_down_alike * t422)
-    del t407, t422
-    more_left_21_front_elbow_down_alike = t427 - t428
-    del t427, t428
-    t429 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
-    t430 = t426 + more_left_21_front_elbow_down_alike * t429
-    del t426, t429
-    change_left_front_elbow_down_alike = _runtime.select(t297, t430, 0.0)
-    del t430
-    t431 = -(t284 + change_left_front_elbow_down_alike)
-    del t284
-    t432 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
-    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t421 & (t102 <= t431) & (t102 <= t432))
-    del t421
-    t433 = _runtime.poison(invalid | unreachable_2)
-    t434 = t27 + t433
-    del t27
-    t435 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
-    del more_right_21_front_elbow_down_alike
-    h_right_front_elbow_down_alike = _runtime.select(t297, t435, h_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, t435
-    r_right_front_elbow_down_alike = _runtime.select(t297, r_right_0_front_elbow_down_alike - t411, r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t411
-    t436 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
-    folded_right_front_elbow_down_alike = t436 <= t204
-    del t436
-    t437 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike
-    M_right_front_elbow_down_alike = np.maximum(t420, t208)
+    t399 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
+    t400 = 1.0 + t399
+    t401 = 1.0 / np.sqrt(t400)
+    t402 = 1.0 / (t400 * (1.0 + t401))
+    del t400
+    t403 = elbow_11_front_elbow_down_alike * t399 * t402
+    t404 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
+    t405 = t403 + t401 * t404
+    del t403, t404
+    t406 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t407 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
+    t408 = 1.0 + t406
+    t409 = 1.0 / np.sqrt(t408)
+    t410 = 1.0 / (t408 * (1.0 + t409))
+    del t408
+    t411 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
+    t412 = t409 * (turn_both_front_elbow_down_alike * t411)
+    t413 = t405 - t406 * t407 * t410 - t412
+    del t412
+    t414 = t413 - 2.0 * r_right_0_front_elbow_down_alike
+    t415 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
+    t416 = t402 * (elbow_21_front_elbow_down_alike * t399)
+    del t399, t402
+    swing_21_front_elbow_down_alike = t401 * t415 - t416
+    del t401, t415, t416
+    t417 = swing_21_front_elbow_down_alike + t410 * (t406 * t411)
+    del t411
+    t418 = t409 * (turn_both_front_elbow_down_alike * t407)
+    del t407
+    more_right_21_front_elbow_down_alike = t417 - t418
+    del t417, t418
+    t419 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
+    t420 = t413 * t414 + more_right_21_front_elbow_down_alike * t419
+    del t414, t419
+    change_right_front_elbow_down_alike = _runtime.select(t299, t420, 0.0)
     del t420
-    N_right_front_elbow_down_alike = np.maximum(t419, t208)
-    del t419
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t438 = 1.0 / whole_right_front_elbow_down_alike
-    del whole_right_front_elbow_down_alike
-    t439 = t69 + t207 * M_right_front_elbow_down_alike * t438
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t439)
-    del t439
-    t440 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t441 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
-    t442 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
-    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
-    t443 = t257 * (1.0 + t441) - straight_mid_front_elbow_down_alike * t442
-    del t441, t442
-    t444 = _runtime.select(t297, t443, t257)
-    del t443
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t444)
-    t445 = 2.0 * sigma_right_front_elbow_down_alike
-    t446 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t447 = np.sqrt(t446)
-    del t446
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t438 * (t445 * t447))
-    del t438
-    t448 = fore_arm * s_bend_right_front_elbow_down_alike
-    del s_bend_right_front_elbow_down_alike
-    t449 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    del ahead_1_right_front_elbow_down_alike
-    t450 = np.arctan2(t440 - r_right_front_elbow_down_alike * t448, t449 + h_right_front_elbow_down_alike * t448)
-    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t440, t448, t449
-    t451 = _runtime.select(folded_right_front_elbow_down_alike, t437, t450)
-    del t450
-    t452 = _runtime.wrap_cut(t451) + t433
-    del t451
-    t453 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    t454 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t447, t453)
-    del t447, t453
-    t455 = t219 + _runtime.select(short_right, 0.0, t454)
-    del t454
-    t456 = _runtime.wrap(t455) + t433
-    del t455
-    t457 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
-    del more_left_21_front_elbow_down_alike
-    h_left_front_elbow_down_alike = _runtime.select(t297, t457, h_left_0_front_elbow_down_alike)
-    del h_left_0_front_elbow_down_alike, t457
-    r_left_front_elbow_down_alike = _runtime.select(t297, r_left_0_front_elbow_down_alike - t425, r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t425
-    t458 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t458 <= t204
-    del t458
-    M_left_front_elbow_down_alike = np.maximum(t432, 0.0)
+    t421 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
+    del nearer_right_front_elbow_down_alike
+    t422 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
+    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
+    t423 = t46 & t282 & t298 & (t102 <= t421) & (t102 <= t422)
+    del t282, t298
+    t424 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
+    del elbow_11_front_elbow_down_alike
+    t425 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
+    t426 = t409 * (turn_both_front_elbow_down_alike * t425)
+    t427 = t405 - t410 * (t406 * t424) - t426
+    del t405, t426
+    t428 = t427 * (t427 - 2.0 * r_left_0_front_elbow_down_alike)
+    t429 = swing_21_front_elbow_down_alike + t410 * (t406 * t425)
+    del swing_21_front_elbow_down_alike, t406, t410, t425
+    t430 = t409 * (turn_both_front_elbow_down_alike * t424)
+    del t409, t424
+    more_left_21_front_elbow_down_alike = t429 - t430
+    del t429, t430
+    t431 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
+    t432 = t428 + more_left_21_front_elbow_down_alike * t431
+    del t428, t431
+    change_left_front_elbow_down_alike = _runtime.select(t299, t432, 0.0)
     del t432
-    N_left_front_elbow_down_alike = np.maximum(t431, 0.0)
-    del t431
-    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t459 = 1.0 / whole_left_front_elbow_down_alike
-    del whole_left_front_elbow_down_alike
-    t460 = t69 + t207 * M_left_front_elbow_down_alike * t459
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t460)
+    t433 = -(t286 + change_left_front_elbow_down_alike)
+    del t286
+    t434 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
+    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t423 & (t102 <= t433) & (t102 <= t434))
+    del t423
+    t435 = _runtime.poison(invalid | unreachable_2)
+    t436 = t27 + t435
+    del t27
+    t437 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
+    del more_right_21_front_elbow_down_alike
+    h_right_front_elbow_down_alike = _runtime.select(t299, t437, h_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, t437
+    r_right_front_elbow_down_alike = _runtime.select(t299, r_right_0_front_elbow_down_alike - t413, r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t413
+    t438 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
+    folded_right_front_elbow_down_alike = t438 <= t206
+    del t438
+    t439 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(t422, t210)
+    del t422
+    N_right_front_elbow_down_alike = np.maximum(t421, t210)
+    del t421
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t440 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    t441 = t69 + t209 * M_right_front_elbow_down_alike * t440
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t441)
+    del t441
+    t442 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t443 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t444 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
+    t445 = t259 * (1.0 + t443) - straight_mid_front_elbow_down_alike * t444
+    del t443, t444
+    t446 = _runtime.select(t299, t445, t259)
+    del t445
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t446)
+    t447 = 2.0 * sigma_right_front_elbow_down_alike
+    t448 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t449 = np.sqrt(t448)
+    del t448
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t440 * (t447 * t449))
+    del t440
+    t450 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
+    t451 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    t452 = np.arctan2(t442 - r_right_front_elbow_down_alike * t450, t451 + h_right_front_elbow_down_alike * t450)
+    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t442, t450, t451
+    t453 = _runtime.select(folded_right_front_elbow_down_alike, t439, t452)
+    del t452
+    t454 = _runtime.wrap_cut(t453) + t435
+    del t453
+    t455 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t456 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t449, t455)
+    del t449, t455
+    t457 = t221 + _runtime.select(short_right, 0.0, t456)
+    del t456
+    t458 = _runtime.wrap(t457) + t435
+    del t457
+    t459 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
+    del more_left_21_front_elbow_down_alike
+    h_left_front_elbow_down_alike = _runtime.select(t299, t459, h_left_0_front_elbow_down_alike)
+    del h_left_0_front_elbow_down_alike, t459
+    r_left_front_elbow_down_alike = _runtime.select(t299, r_left_0_front_elbow_down_alike - t427, r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t427
+    t460 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t460 <= t206
     del t460
-    t461 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t462 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t463 = np.sqrt(t462)
+    M_left_front_elbow_down_alike = np.maximum(t434, 0.0)
+    del t434
+    N_left_front_elbow_down_alike = np.maximum(t433, 0.0)
+    del t433
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t461 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
+    t462 = t69 + t209 * M_left_front_elbow_down_alike * t461
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t462)
     del t462
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t459 * (t445 * t463))
-    del t445, t459
-    t464 = fore_arm * s_bend_left_front_elbow_down_alike
+    t463 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t464 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t465 = np.sqrt(t464)
+    del t464
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t461 * (t447 * t465))
+    del t447, t461
+    t466 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t465 = r_left_front_elbow_down_alike * t464
-    t466 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t467 = r_left_front_elbow_down_alike * t466
+    t468 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t467 = h_left_front_elbow_down_alike * t464
-    del h_left_front_elbow_down_alike, t464
-    t468 = _runtime.select(folded_left_front_elbow_down_alike, t437, np.arctan2(t461 - t465, t466 + t467))
-    t469 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    t470 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t463, t469)
-    del t463, t469
-    t471 = _runtime.select(short_right, 0.0, t470)
-    del t470
-    t472 = t233 + t433
-    t473 = _runtime.select(folded_left_front_elbow_down_alike, t437, np.arctan2(t461 + t465, t466 - t467))
-    del t437, t461, t465, t466, t467
-    t474 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t26))
+    t469 = h_left_front_elbow_down_alike * t466
+    del h_left_front_elbow_down_alike, t466
+    t470 = _runtime.select(folded_left_front_elbow_down_alike, t439, np.arctan2(t463 - t467, t468 + t469))
+    t471 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t472 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t465, t471)
+    del t465, t471
+    t473 = _runtime.select(short_right, 0.0, t472)
+    del t472
+    t474 = t235 + t435
+    t475 = _runtime.select(folded_left_front_elbow_down_alike, t439, np.arctan2(t463 + t467, t468 - t469))
+    del t439, t463, t467, t468, t469
+    t476 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t26))
     del t26, t3
     ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t57)
     del t57
-    t475 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t475 - stheta2A * s_relative_front_elbow_down_alike
-    del t475
-    t476 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
-    t477 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    t477 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t477 - stheta2A * s_relative_front_elbow_down_alike
+    del t477
+    t478 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
+    t479 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
     del s_relative_front_elbow_down_alike
-    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t477
-    del c_relative_front_elbow_down_alike, t477
-    point_21_rear_elbow_up_alike = t476 + a3 * stheta23A_rear_elbow_up_alike
-    del t476
-    t478 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
-    t479 = d * (t478 + t_phi * stheta23A_rear_elbow_up_alike)
+    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t479
+    del c_relative_front_elbow_down_alike, t479
+    point_21_rear_elbow_up_alike = t478 + a3 * stheta23A_rear_elbow_up_alike
     del t478
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t479
-    t480 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t480 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t481 = d * (t480 + t_phi * stheta23A_rear_elbow_up_alike)
+    del t480
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t481
+    t482 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
     elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
-    t481 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t481 + a3 * ctheta23A_rear_elbow_up_alike
-    del t481
-    t482 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
+    t483 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t483 + a3 * ctheta23A_rear_elbow_up_alike
+    del t483
+    t484 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
-    t483 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t482)
-    del ctheta23A_rear_elbow_up_alike, t482
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t483
-    t484 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t485 = t480 + t484
-    del t480, t484
-    gap_rear_elbow_up_alike = t483 * t483 + t479 * t479
-    t486 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t487 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t488 = 2.0 * point_11_rear_elbow_up_alike * t483 + 2.0 * point_21_rear_elbow_up_alike * t479
-    farther_right_rear_elbow_up_alike = _runtime.select(t48 * t485 < t486, t485 - t70, t487 - t488)
-    del t485
-    t489 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    t485 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t484)
+    del ctheta23A_rear_elbow_up_alike, t484
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t485
+    t486 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t487 = t482 + t486
+    del t482, t486
+    gap_rear_elbow_up_alike = t485 * t485 + t481 * t481
+    t488 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t489 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t490 = 2.0 * point_11_rear_elbow_up_alike * t485 + 2.0 * point_21_rear_elbow_up_alike * t481
+    farther_right_rear_elbow_up_alike = _runtime.select(t48 * t487 < t488, t487 - t70, t489 - t490)
+    del t487
+    t491 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t488 + t489
-    room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t490 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t491 = np.maximum(-t490, room_right_rear_elbow_up_alike)
-    del t490
-    spent_right_rear_elbow_up_alike = t491 <= t77
-    del t491
-    t492 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t493 = t492 - stheta2A * r_right_0_rear_elbow_up_alike
+    nearer_right_rear_elbow_up_alike = t490 + t491
+    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t492 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t493 = np.maximum(-t492, margin_right_rear_elbow_up_alike)
     del t492
-    t494 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
-    t495 = _runtime.select(t494, 1.0, -1.0)
-    del t494
-    t496 = t493 * t495
+    spent_right_rear_elbow_up_alike = t493 <= t77
     del t493
-    slope_right_rear_elbow_up_alike = t271 * t496
-    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t274, 1.0)
-    t497 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
-    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t497, 0.0)
-    del t497
-    t498 = t39 * t496
+    t494 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t495 = t494 - stheta2A * r_right_0_rear_elbow_up_alike
+    del t494
+    t496 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
+    t497 = _runtime.select(t496, 1.0, -1.0)
     del t496
-    t499 = np.abs(t498)
+    t498 = t495 * t497
+    del t495
+    slope_right_rear_elbow_up_alike = t273 * t498
+    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t276, 1.0)
+    t499 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
+    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t499, 0.0)
+    del t499
+    t500 = t39 * t498
+    del t498
+    t501 = np.abs(t500)
     heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t90, 1.0)
-    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t499 / heavy_1_right_rear_elbow_up_alike, 0.0)
-    t500 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
-    t501 = _runtime.select(spent_right_rear_elbow_up_alike, t500, 0.0)
-    del t500
-    t502 = -(_runtime.FEASIBILITY * (t47 + t501)) <= room_right_rear_elbow_up_alike
-    del t501
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t479
-    del point_21_rear_elbow_up_alike, t479
-    t503 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t483
-    del point_11_rear_elbow_up_alike, t483
-    t504 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t505 = t503 + t504
-    del t503, t504
-    farther_left_rear_elbow_up_alike = _runtime.select(t48 * t505 < t486, t505 - t70, t487 + t488)
-    del t486, t487, t505
-    t506 = t488 - t489
-    del t488, t489
-    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t506)
-    t507 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t508 = np.maximum(-t507, room_left_rear_elbow_up_alike)
-    del t507
-    spent_left_rear_elbow_up_alike = t508 <= t77
-    del t508
-    t509 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    t510 = t509 - stheta2A * r_left_0_rear_elbow_up_alike
+    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t501 / heavy_1_right_rear_elbow_up_alike, 0.0)
+    t502 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
+    t503 = _runtime.select(spent_right_rear_elbow_up_alike, t502, 0.0)
+    del t502
+    t504 = -(_runtime.FEASIBILITY * (t47 + t503)) <= margin_right_rear_elbow_up_alike
+    del t503
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t481
+    del point_21_rear_elbow_up_alike, t481
+    t505 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t485
+    del point_11_rear_elbow_up_alike, t485
+    t506 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t507 = t505 + t506
+    del t505, t506
+    farther_left_rear_elbow_up_alike = _runtime.select(t48 * t507 < t488, t507 - t70, t489 + t490)
+    del t488, t489, t507
+    t508 = t490 - t491
+    del t490, t491
+    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t508)
+    t509 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t510 = np.maximum(-t509, margin_left_rear_elbow_up_alike)
     del t509
-    t511 = _runtime.select(-t506 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
-    t512 = t510 * t511
+    spent_left_rear_elbow_up_alike = t510 <= t77
     del t510
-    slope_left_rear_elbow_up_alike = t271 * t512
-    del t271
-    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t274, 1.0)
-    del t274
-    t513 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
-    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t513, 0.0)
-    del t513
-    t514 = t39 * t512
+    t511 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    t512 = t511 - stheta2A * r_left_0_rear_elbow_up_alike
+    del t511
+    t513 = _runtime.select(-t508 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
+    t514 = t512 * t513
     del t512
-    t515 = np.abs(t514)
+    slope_left_rear_elbow_up_alike = t273 * t514
+    del t273
+    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t276, 1.0)
+    del t276
+    t515 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
+    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t515, 0.0)
+    del t515
+    t516 = t39 * t514
+    del t514
+    t517 = np.abs(t516)
     heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t90, 1.0)
-    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t515 / heavy_1_left_rear_elbow_up_alike, 0.0)
-    t516 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
-    t517 = _runtime.select(spent_left_rear_elbow_up_alike, t516, 0.0)
-    del t516
-    t518 = -(_runtime.FEASIBILITY * (t47 + t517)) <= room_left_rear_elbow_up_alike
-    del t517
-    t519 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
-    t520 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
+    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t517 / heavy_1_left_rear_elbow_up_alike, 0.0)
+    t518 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
+    t519 = _runtime.select(spent_left_rear_elbow_up_alike, t518, 0.0)
+    del t518
+    t520 = -(_runtime.FEASIBILITY * (t47 + t519)) <= margin_left_rear_elbow_up_alike
+    del t519
+    t521 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
+    t522 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
     del gain_1_left_rear_elbow_up_alike
-    t521 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
+    t523 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
     del gain_0_left_rear_elbow_up_alike
-    t522 = _runtime.select(room_left_rear_elbow_up_alike < 0.0, t520 / (t105 + t520 + t521), 0.0)
-    del t520, t521
-    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t522, 0.0)
-    del t522
-    t523 = room_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
-    t524 = heavy_0_left_rear_elbow_up_alike * t523
-    t525 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t526 = L1 - t525 - stheta2A * h_left_0_rear_elbow_up_alike
-    del t525
-    t527 = t83 * (t303 * t511 * t526)
-    del t511, t526
-    t528 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t529 = np.sqrt(np.maximum(0.0, 4.0 * t523 * t527 + t528))
-    del t528
-    root_on_1_both_rear_elbow_up_alike = _runtime.select(t519, t529, 0.0)
-    del t529
-    t530 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
-    t531 = t47 * heavy_0_left_rear_elbow_up_alike
-    t532 = t531 * 5.960464477539063e-08
-    t533 = 1.0 / (t530 - t532)
-    t534 = (t524 * t533 <= 4.547473508864641e-13) & (0.0 < t523 * t533)
-    t535 = 2.0 * t523
-    t536 = 0.0 < -t523
-    t537 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
-    del root_on_1_both_rear_elbow_up_alike
-    t538 = t531 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t527)
-    del t531
-    t539 = 1.0 / t538
-    del t538
-    t540 = heavy_0_left_rear_elbow_up_alike * t537 * t539
-    t541 = t537 * t539
-    t542 = (t540 <= 9.094947017729282e-13) & (0.0 < t541)
-    del t540
-    far_back_1_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t542, t541, 0.0), 0.0)
-    del t541, t542
-    t543 = _runtime.select(t536, far_back_1_both_rear_elbow_up_alike, 0.0)
-    t544 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t534, t533 * t535, 0.0), t543)
-    del t533, t534, t543
-    t545 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
-    del gain_1_right_rear_elbow_up_alike
-    t546 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
-    del gain_0_right_rear_elbow_up_alike
-    t547 = _runtime.select(room_right_rear_elbow_up_alike < 0.0, t545 / (t105 + t545 + t546), 0.0)
-    del t545, t546
-    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t547, 0.0)
-    del t547
-    t548 = room_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
-    t549 = heavy_0_right_rear_elbow_up_alike * t548
-    t550 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t551 = L1 - t550 - stheta2A * h_right_0_rear_elbow_up_alike
-    del t550
-    t552 = t83 * (t303 * t495 * t551)
-    del t303, t495, t551
-    t553 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t554 = np.sqrt(np.maximum(0.0, 4.0 * t548 * t552 + t553))
-    del t553
-    root_on_0_both_rear_elbow_up_alike = _runtime.select(t519, t554, 0.0)
-    del t554
-    t555 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
-    t556 = t47 * heavy_0_right_rear_elbow_up_alike
-    t557 = t556 * 5.960464477539063e-08
-    t558 = 1.0 / (t555 - t557)
-    t559 = (t549 * t558 <= 4.547473508864641e-13) & (0.0 < t548 * t558)
-    t560 = 2.0 * t548
-    t561 = 0.0 < -t548
-    t562 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
-    del root_on_0_both_rear_elbow_up_alike
-    t563 = t556 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t552)
-    del t556
-    t564 = 1.0 / t563
-    del t563
-    t565 = heavy_0_right_rear_elbow_up_alike * t562 * t564
-    t566 = t562 * t564
-    t567 = (t565 <= 9.094947017729282e-13) & (0.0 < t566)
-    del t565
-    far_back_0_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t567, t566, 0.0), 0.0)
-    del t566, t567
-    t568 = _runtime.select(t561, far_back_0_both_rear_elbow_up_alike, 0.0)
-    t569 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t559, t558 * t560, 0.0), t568)
-    del t558, t559, t568
-    near_back_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(np.maximum(0.0, t544), t569), 0.0)
-    del t544, t569
-    t570 = slope_right_rear_elbow_up_alike + t552 * near_back_both_rear_elbow_up_alike
-    t571 = near_back_both_rear_elbow_up_alike * t570 - t548
-    del t570
-    t572 = _runtime.select(0.0 < t571, far_back_0_both_rear_elbow_up_alike, 0.0)
-    del far_back_0_both_rear_elbow_up_alike, t571
-    t573 = np.maximum(near_back_both_rear_elbow_up_alike, t572)
-    del t572
-    t574 = slope_left_rear_elbow_up_alike + t527 * near_back_both_rear_elbow_up_alike
-    t575 = near_back_both_rear_elbow_up_alike * t574 - t523
-    del near_back_both_rear_elbow_up_alike, t574
-    t576 = _runtime.select(0.0 < t575, far_back_1_both_rear_elbow_up_alike, 0.0)
-    del far_back_1_both_rear_elbow_up_alike, t575
-    turn_back_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(t573, t576), 0.0)
-    del t573, t576
-    t577 = slope_left_rear_elbow_up_alike + t527 * turn_back_both_rear_elbow_up_alike
-    t578 = t523 - turn_back_both_rear_elbow_up_alike * t577
-    del t577
-    t579 = slope_right_rear_elbow_up_alike + t552 * turn_back_both_rear_elbow_up_alike
-    t580 = t548 - turn_back_both_rear_elbow_up_alike * t579
-    del t579
-    left_back_both_rear_elbow_up_alike = _runtime.select(t519, np.minimum(t578, t580), 0.0)
-    del t578, t580
-    t581 = 1.0 / (t532 + t537)
-    del t532, t537
-    t582 = (-(t524 * t581) <= 4.547473508864641e-13) & (0.0 < -(t523 * t581))
+    t524 = _runtime.select(margin_left_rear_elbow_up_alike < 0.0, t522 / (t105 + t522 + t523), 0.0)
+    del t522, t523
+    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t524, 0.0)
     del t524
-    t583 = t539 * (heavy_0_left_rear_elbow_up_alike * t530)
-    del heavy_0_left_rear_elbow_up_alike
-    t584 = -(t530 * t539)
-    del t530, t539
-    t585 = (-t583 <= 9.094947017729282e-13) & (0.0 < t584)
-    del t583
-    far_on_1_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t585, t584, 0.0), 0.0)
-    del t584, t585
-    t586 = _runtime.select(t536, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del t536
-    t587 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t582, -(t535 * t581), 0.0), t586)
-    del t535, t581, t582, t586
-    t588 = 1.0 / (t557 + t562)
-    del t557, t562
-    t589 = (-(t549 * t588) <= 4.547473508864641e-13) & (0.0 < -(t548 * t588))
+    t525 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t526 = heavy_0_left_rear_elbow_up_alike * t525
+    t527 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t528 = L1 - t527 - stheta2A * h_left_0_rear_elbow_up_alike
+    del t527
+    t529 = t83 * (t305 * t513 * t528)
+    del t513, t528
+    t530 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t531 = np.sqrt(np.maximum(0.0, 4.0 * t525 * t529 + t530))
+    del t530
+    root_on_1_both_rear_elbow_up_alike = _runtime.select(t521, t531, 0.0)
+    del t531
+    t532 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
+    t533 = t47 * heavy_0_left_rear_elbow_up_alike
+    t534 = t533 * 5.960464477539063e-08
+    t535 = 1.0 / (t532 - t534)
+    t536 = (t526 * t535 <= 4.547473508864641e-13) & (0.0 < t525 * t535)
+    t537 = 2.0 * t525
+    t538 = 0.0 < -t525
+    t539 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
+    del root_on_1_both_rear_elbow_up_alike
+    t540 = t533 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t529)
+    del t533
+    t541 = 1.0 / t540
+    del t540
+    t542 = heavy_0_left_rear_elbow_up_alike * t539 * t541
+    t543 = t539 * t541
+    t544 = (t542 <= 9.094947017729282e-13) & (0.0 < t543)
+    del t542
+    far_back_1_both_rear_elbow_up_alike = _runtime.select(t521, _runtime.select(t544, t543, 0.0), 0.0)
+    del t543, t544
+    t545 = _runtime.select(t538, far_back_1_both_rear_elbow_up_alike, 0.0)
+    t546 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t536, t535 * t537, 0.0), t545)
+    del t535, t536, t545
+    t547 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
+    del gain_1_right_rear_elbow_up_alike
+    t548 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
+    del gain_0_right_rear_elbow_up_alike
+    t549 = _runtime.select(margin_right_rear_elbow_up_alike < 0.0, t547 / (t105 + t547 + t548), 0.0)
+    del t547, t548
+    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t549, 0.0)
     del t549
-    t590 = t564 * (heavy_0_right_rear_elbow_up_alike * t555)
+    t550 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t551 = heavy_0_right_rear_elbow_up_alike * t550
+    t552 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t553 = L1 - t552 - stheta2A * h_right_0_rear_elbow_up_alike
+    del t552
+    t554 = t83 * (t305 * t497 * t553)
+    del t305, t497, t553
+    t555 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t556 = np.sqrt(np.maximum(0.0, 4.0 * t550 * t554 + t555))
+    del t555
+    root_on_0_both_rear_elbow_up_alike = _runtime.select(t521, t556, 0.0)
+    del t556
+    t557 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
+    t558 = t47 * heavy_0_right_rear_elbow_up_alike
+    t559 = t558 * 5.960464477539063e-08
+    t560 = 1.0 / (t557 - t559)
+    t561 = (t551 * t560 <= 4.547473508864641e-13) & (0.0 < t550 * t560)
+    t562 = 2.0 * t550
+    t563 = 0.0 < -t550
+    t564 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
+    del root_on_0_both_rear_elbow_up_alike
+    t565 = t558 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t554)
+    del t558
+    t566 = 1.0 / t565
+    del t565
+    t567 = heavy_0_right_rear_elbow_up_alike * t564 * t566
+    t568 = t564 * t566
+    t569 = (t567 <= 9.094947017729282e-13) & (0.0 < t568)
+    del t567
+    far_back_0_both_rear_elbow_up_alike = _runtime.select(t521, _runtime.select(t569, t568, 0.0), 0.0)
+    del t568, t569
+    t570 = _runtime.select(t563, far_back_0_both_rear_elbow_up_alike, 0.0)
+    t571 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t561, t560 * t562, 0.0), t570)
+    del t560, t561, t570
+    near_back_both_rear_elbow_up_alike = _runtime.select(t521, np.maximum(np.maximum(0.0, t546), t571), 0.0)
+    del t546, t571
+    t572 = slope_right_rear_elbow_up_alike + t554 * near_back_both_rear_elbow_up_alike
+    t573 = near_back_both_rear_elbow_up_alike * t572 - t550
+    del t572
+    t574 = _runtime.select(0.0 < t573, far_back_0_both_rear_elbow_up_alike, 0.0)
+    del far_back_0_both_rear_elbow_up_alike, t573
+    t575 = np.maximum(near_back_both_rear_elbow_up_alike, t574)
+    del t574
+    t576 = slope_left_rear_elbow_up_alike + t529 * near_back_both_rear_elbow_up_alike
+    t577 = near_back_both_rear_elbow_up_alike * t576 - t525
+    del near_back_both_rear_elbow_up_alike, t576
+    t578 = _runtime.select(0.0 < t577, far_back_1_both_rear_elbow_up_alike, 0.0)
+    del far_back_1_both_rear_elbow_up_alike, t577
+    turn_back_both_rear_elbow_up_alike = _runtime.select(t521, np.maximum(t575, t578), 0.0)
+    del t575, t578
+    t579 = slope_left_rear_elbow_up_alike + t529 * turn_back_both_rear_elbow_up_alike
+    t580 = t525 - turn_back_both_rear_elbow_up_alike * t579
+    del t579
+    t581 = slope_right_rear_elbow_up_alike + t554 * turn_back_both_rear_elbow_up_alike
+    t582 = t550 - turn_back_both_rear_elbow_up_alike * t581
+    del t581
+    left_back_both_rear_elbow_up_alike = _runtime.select(t521, np.minimum(t580, t582), 0.0)
+    del t580, t582
+    t583 = 1.0 / (t534 + t539)
+    del t534, t539
+    t584 = (-(t526 * t583) <= 4.547473508864641e-13) & (0.0 < -(t525 * t583))
+    del t526
+    t585 = t541 * (heavy_0_left_rear_elbow_up_alike * t532)
+    del heavy_0_left_rear_elbow_up_alike
+    t586 = -(t532 * t541)
+    del t532, t541
+    t587 = (-t585 <= 9.094947017729282e-13) & (0.0 < t586)
+    del t585
+    far_on_1_both_rear_elbow_up_alike = _runtime.select(t521, _runtime.select(t587, t586, 0.0), 0.0)
+    del t586, t587
+    t588 = _runtime.select(t538, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del t538
+    t589 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t584, -(t537 * t583), 0.0), t588)
+    del t537, t583, t584, t588
+    t590 = 1.0 / (t559 + t564)
+    del t559, t564
+    t591 = (-(t551 * t590) <= 4.547473508864641e-13) & (0.0 < -(t550 * t590))
+    del t551
+    t592 = t566 * (heavy_0_right_rear_elbow_up_alike * t557)
     del heavy_0_right_rear_elbow_up_alike
-    t591 = -(t555 * t564)
-    del t555, t564
-    t592 = (-t590 <= 9.094947017729282e-13) & (0.0 < t591)
-    del t590
-    far_on_0_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t592, t591, 0.0), 0.0)
-    del t591, t592
-    t593 = _runtime.select(t561, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del t561
-    t594 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t589, -(t560 * t588), 0.0), t593)
-    del t560, t588, t589, t593
-    near_on_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(np.maximum(0.0, t587), t594), 0.0)
-    del t587, t594
-    t595 = slope_right_rear_elbow_up_alike - t552 * near_on_both_rear_elbow_up_alike
-    t596 = t548 + near_on_both_rear_elbow_up_alike * t595
-    del t595
-    t597 = _runtime.select(0.0 < -t596, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del far_on_0_both_rear_elbow_up_alike, t596
-    t598 = np.maximum(near_on_both_rear_elbow_up_alike, t597)
+    t593 = -(t557 * t566)
+    del t557, t566
+    t594 = (-t592 <= 9.094947017729282e-13) & (0.0 < t593)
+    del t592
+    far_on_0_both_rear_elbow_up_alike = _runtime.select(t521, _runtime.select(t594, t593, 0.0), 0.0)
+    del t593, t594
+    t595 = _runtime.select(t563, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del t563
+    t596 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t591, -(t562 * t590), 0.0), t595)
+    del t562, t590, t591, t595
+    near_on_both_rear_elbow_up_alike = _runtime.select(t521, np.maximum(np.maximum(0.0, t589), t596), 0.0)
+    del t589, t596
+    t597 = slope_right_rear_elbow_up_alike - t554 * near_on_both_rear_elbow_up_alike
+    t598 = t550 + near_on_both_rear_elbow_up_alike * t597
     del t597
-    t599 = slope_left_rear_elbow_up_alike - t527 * near_on_both_rear_elbow_up_alike
-    t600 = t523 + near_on_both_rear_elbow_up_alike * t599
-    del near_on_both_rear_elbow_up_alike, t599
-    t601 = _runtime.select(0.0 < -t600, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del far_on_1_both_rear_elbow_up_alike, t600
-    turn_on_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(t598, t601), 0.0)
-    del t598, t601
-    t602 = slope_left_rear_elbow_up_alike - t527 * turn_on_both_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike, t527
-    t603 = t523 + turn_on_both_rear_elbow_up_alike * t602
-    del t523, t602
-    t604 = slope_right_rear_elbow_up_alike - t552 * turn_on_both_rear_elbow_up_alike
-    del slope_right_rear_elbow_up_alike, t552
-    t605 = t548 + turn_on_both_rear_elbow_up_alike * t604
-    del t548, t604
-    left_on_both_rear_elbow_up_alike = _runtime.select(t519, np.minimum(t603, t605), 0.0)
-    del t603, t605
-    t606 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
+    t599 = _runtime.select(0.0 < -t598, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del far_on_0_both_rear_elbow_up_alike, t598
+    t600 = np.maximum(near_on_both_rear_elbow_up_alike, t599)
+    del t599
+    t601 = slope_left_rear_elbow_up_alike - t529 * near_on_both_rear_elbow_up_alike
+    t602 = t525 + near_on_both_rear_elbow_up_alike * t601
+    del near_on_both_rear_elbow_up_alike, t601
+    t603 = _runtime.select(0.0 < -t602, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del far_on_1_both_rear_elbow_up_alike, t602
+    turn_on_both_rear_elbow_up_alike = _runtime.select(t521, np.maximum(t600, t603), 0.0)
+    del t600, t603
+    t604 = slope_left_rear_elbow_up_alike - t529 * turn_on_both_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike, t529
+    t605 = t525 + turn_on_both_rear_elbow_up_alike * t604
+    del t525, t604
+    t606 = slope_right_rear_elbow_up_alike - t554 * turn_on_both_rear_elbow_up_alike
+    del slope_right_rear_elbow_up_alike, t554
+    t607 = t550 + turn_on_both_rear_elbow_up_alike * t606
+    del t550, t606
+    left_on_both_rear_elbow_up_alike = _runtime.select(t521, np.minimum(t605, t607), 0.0)
+    del t605, t607
+    t608 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
     del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
-    t607 = _runtime.select(t606, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
-    del t606, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
-    turn_both_rear_elbow_up_alike = _runtime.select(t519, t607, 0.0)
-    del t607
-    t608 = room_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
-    del room_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
-    t609 = t47 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
+    t609 = _runtime.select(t608, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
+    del t608, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
+    turn_both_rear_elbow_up_alike = _runtime.select(t521, t609, 0.0)
+    del t609
+    t610 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    del margin_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
+    t611 = t47 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_up_alike
-    t610 = -(t608 * _runtime.sign(-t514) / (t515 + t609))
-    del t514, t515, t608, t609
-    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t610, 0.0)
-    del spent_left_rear_elbow_up_alike, t610
-    t611 = room_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
-    del room_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
-    t612 = t47 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
+    t612 = -(t610 * _runtime.sign(-t516) / (t517 + t611))
+    del t516, t517, t610, t611
+    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t612, 0.0)
+    del spent_left_rear_elbow_up_alike, t612
+    t613 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    del margin_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
+    t614 = t47 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_right_rear_elbow_up_alike
-    t613 = -(t611 * _runtime.sign(-t498) / (t499 + t612))
-    del t498, t499, t611, t612
-    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t613, 0.0)
-    del spent_right_rear_elbow_up_alike, t613
-    t614 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
-    t615 = _runtime.select(t614, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
-    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t614
-    t616 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
+    t615 = -(t613 * _runtime.sign(-t500) / (t501 + t614))
+    del t500, t501, t613, t614
+    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t615, 0.0)
+    del spent_right_rear_elbow_up_alike, t615
+    t616 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
+    t617 = _runtime.select(t616, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
+    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t616
+    t618 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
     del drawn_front_elbow_down_alike
-    t617 = turn_both_rear_elbow_up_alike + t615 - t83 * t616
-    del t615, t616
-    lean_rear_elbow_up_alike = _runtime.select(t519, t617, 0.0)
-    del t617
-    t618 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t619 = 1.0 + t618
-    t620 = 1.0 / np.sqrt(t619)
-    t621 = 1.0 / (t619 * (1.0 + t620))
+    t619 = turn_both_rear_elbow_up_alike + t617 - t83 * t618
+    del t617, t618
+    lean_rear_elbow_up_alike = _runtime.select(t521, t619, 0.0)
     del t619
-    t622 = elbow_11_rear_elbow_up_alike * t618 * t621 + t620 * (elbow_21 * lean_rear_elbow_up_alike)
-    t623 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
-    t624 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
-    t625 = 1.0 + t623
-    t626 = 1.0 / np.sqrt(t625)
-    t627 = 1.0 / (t625 * (1.0 + t626))
-    del t625
-    t628 = elbow_21 - h_right_0_rear_elbow_up_alike
-    t629 = t626 * (turn_both_rear_elbow_up_alike * t628)
-    t630 = t622 - t623 * t624 * t627 - t629
-    del t629
-    t631 = t630 * (t630 - 2.0 * r_right_0_rear_elbow_up_alike)
-    t632 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    swing_21_rear_elbow_up_alike = t620 * t632 - t621 * (elbow_21 * t618)
-    del t618, t620, t621, t632
-    t633 = swing_21_rear_elbow_up_alike + t627 * (t623 * t628)
-    del t628
-    t634 = t626 * (turn_both_rear_elbow_up_alike * t624)
-    del t624
-    more_right_21_rear_elbow_up_alike = t633 - t634
-    del t633, t634
-    t635 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
-    t636 = t631 + more_right_21_rear_elbow_up_alike * t635
-    del t631, t635
-    change_right_rear_elbow_up_alike = _runtime.select(t519, t636, 0.0)
-    del t636
-    t637 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
-    del nearer_right_rear_elbow_up_alike
-    t638 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
-    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
-    t639 = t46 & t502 & t518 & (t102 <= t637) & (t102 <= t638)
-    del t502, t518
-    t640 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
-    del elbow_11_rear_elbow_up_alike
-    t641 = elbow_21 - h_left_0_rear_elbow_up_alike
-    del elbow_21
-    t642 = t626 * (turn_both_rear_elbow_up_alike * t641)
-    t643 = t622 - t627 * (t623 * t640) - t642
-    del t622, t642
-    t644 = t643 * (t643 - 2.0 * r_left_0_rear_elbow_up_alike)
-    t645 = swing_21_rear_elbow_up_alike + t627 * (t623 * t641)
-    del swing_21_rear_elbow_up_alike, t623, t627, t641
-    t646 = t626 * (turn_both_rear_elbow_up_alike * t640)
-    del t626, t640
-    more_left_21_rear_elbow_up_alike = t645 - t646
-    del t645, t646
-    t647 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
-    t648 = t644 + more_left_21_rear_elbow_up_alike * t647
-    del t644, t647
-    change_left_rear_elbow_up_alike = _runtime.select(t519, t648, 0.0)
-    del t648
-    t649 = -(t506 + change_left_rear_elbow_up_alike)
-    del t506
-    t650 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
-    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t639 & (t102 <= t649) & (t102 <= t650))
-    del t639
-    t651 = _runtime.poison(invalid | unreachable_3)
-    t652 = t474 + t651
-    t653 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
-    del more_right_21_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = _runtime.select(t519, t653, h_right_0_rear_elbow_up_alike)
-    del h_right_0_rear_elbow_up_alike, t653
-    r_right_rear_elbow_up_alike = _runtime.select(t519, r_right_0_rear_elbow_up_alike - t630, r_right_0_rear_elbow_up_alike)
-    del r_right_0_rear_elbow_up_alike, t630
-    t654 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
-    folded_right_rear_elbow_up_alike = t654 <= t204
-    del t654
-    t655 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, stheta2A
-    M_right_rear_elbow_up_alike = np.maximum(t638, t208)
+    t620 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t621 = 1.0 + t620
+    t622 = 1.0 / np.sqrt(t621)
+    t623 = 1.0 / (t621 * (1.0 + t622))
+    del t621
+    t624 = elbow_11_rear_elbow_up_alike * t620 * t623 + t622 * (elbow_21 * lean_rear_elbow_up_alike)
+    t625 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
+    t626 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
+    t627 = 1.0 + t625
+    t628 = 1.0 / np.sqrt(t627)
+    t629 = 1.0 / (t627 * (1.0 + t628))
+    del t627
+    t630 = elbow_21 - h_right_0_rear_elbow_up_alike
+    t631 = t628 * (turn_both_rear_elbow_up_alike * t630)
+    t632 = t624 - t625 * t626 * t629 - t631
+    del t631
+    t633 = t632 * (t632 - 2.0 * r_right_0_rear_elbow_up_alike)
+    t634 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    swing_21_rear_elbow_up_alike = t622 * t634 - t623 * (elbow_21 * t620)
+    del t620, t622, t623, t634
+    t635 = swing_21_rear_elbow_up_alike + t629 * (t625 * t630)
+    del t630
+    t636 = t628 * (turn_both_rear_elbow_up_alike * t626)
+    del t626
+    more_right_21_rear_elbow_up_alike = t635 - t636
+    del t635, t636
+    t637 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
+    t638 = t633 + more_right_21_rear_elbow_up_alike * t637
+    del t633, t637
+    change_right_rear_elbow_up_alike = _runtime.select(t521, t638, 0.0)
     del t638
-    N_right_rear_elbow_up_alike = np.maximum(t637, t208)
-    del t637
-    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t656 = 1.0 / whole_right_rear_elbow_up_alike
-    del whole_right_rear_elbow_up_alike
-    t657 = t69 + t207 * M_right_rear_elbow_up_alike * t656
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t657)
-    del t657
-    t658 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t659 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t660 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
-    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
-    t661 = t257 * (1.0 + t659) - straight_mid_front_elbow_down_alike * t660
-    del straight_mid_front_elbow_down_alike, t659, t660
-    t662 = _runtime.select(t519, t661, t257)
-    del t257, t661
-    sigma_right_rear_elbow_up_alike = _runtime.sign(-t662)
-    t663 = 2.0 * sigma_right_rear_elbow_up_alike
-    t664 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t665 = np.sqrt(t664)
-    del t664
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t656 * (t663 * t665))
-    del t656
-    t666 = fore_arm * s_bend_right_rear_elbow_up_alike
-    del s_bend_right_rear_elbow_up_alike
-    t667 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    del ahead_1_right_rear_elbow_up_alike
-    t668 = np.arctan2(t658 - r_right_rear_elbow_up_alike * t666, t667 + h_right_rear_elbow_up_alike * t666)
-    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t658, t666, t667
-    t669 = _runtime.select(folded_right_rear_elbow_up_alike, t655, t668)
-    del t668
-    t670 = _runtime.wrap_cut(t669) + t651
-    del t669
-    t671 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    t672 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t665, t671)
-    del t665, t671
-    t673 = t219 + _runtime.select(short_right, 0.0, t672)
-    del t672
-    t674 = _runtime.wrap(t673) + t651
-    del t673
-    t675 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
-    del more_left_21_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = _runtime.select(t519, t675, h_left_0_rear_elbow_up_alike)
-    del h_left_0_rear_elbow_up_alike, t675
-    r_left_rear_elbow_up_alike = _runtime.select(t519, r_left_0_rear_elbow_up_alike - t643, r_left_0_rear_elbow_up_alike)
-    del r_left_0_rear_elbow_up_alike, t643
-    t676 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t676 <= t204
-    del t676
-    M_left_rear_elbow_up_alike = np.maximum(t650, 0.0)
+    t639 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
+    del nearer_right_rear_elbow_up_alike
+    t640 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
+    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
+    t641 = t46 & t504 & t520 & (t102 <= t639) & (t102 <= t640)
+    del t504, t520
+    t642 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
+    del elbow_11_rear_elbow_up_alike
+    t643 = elbow_21 - h_left_0_rear_elbow_up_alike
+    del elbow_21
+    t644 = t628 * (turn_both_rear_elbow_up_alike * t643)
+    t645 = t624 - t629 * (t625 * t642) - t644
+    del t624, t644
+    t646 = t645 * (t645 - 2.0 * r_left_0_rear_elbow_up_alike)
+    t647 = swing_21_rear_elbow_up_alike + t629 * (t625 * t643)
+    del swing_21_rear_elbow_up_alike, t625, t629, t643
+    t648 = t628 * (turn_both_rear_elbow_up_alike * t642)
+    del t628, t642
+    more_left_21_rear_elbow_up_alike = t647 - t648
+    del t647, t648
+    t649 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
+    t650 = t646 + more_left_21_rear_elbow_up_alike * t649
+    del t646, t649
+    change_left_rear_elbow_up_alike = _runtime.select(t521, t650, 0.0)
     del t650
-    N_left_rear_elbow_up_alike = np.maximum(t649, 0.0)
-    del t649
-    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t677 = 1.0 / whole_left_rear_elbow_up_alike
-    del whole_left_rear_elbow_up_alike
-    t678 = t69 + t207 * M_left_rear_elbow_up_alike * t677
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t678)
+    t651 = -(t508 + change_left_rear_elbow_up_alike)
+    del t508
+    t652 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
+    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t641 & (t102 <= t651) & (t102 <= t652))
+    del t641
+    t653 = _runtime.poison(invalid | unreachable_3)
+    t654 = t476 + t653
+    t655 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
+    del more_right_21_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = _runtime.select(t521, t655, h_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, t655
+    r_right_rear_elbow_up_alike = _runtime.select(t521, r_right_0_rear_elbow_up_alike - t632, r_right_0_rear_elbow_up_alike)
+    del r_right_0_rear_elbow_up_alike, t632
+    t656 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
+    folded_right_rear_elbow_up_alike = t656 <= t206
+    del t656
+    t657 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(t640, t210)
+    del t640
+    N_right_rear_elbow_up_alike = np.maximum(t639, t210)
+    del t639
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t658 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
+    t659 = t69 + t209 * M_right_rear_elbow_up_alike * t658
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t659)
+    del t659
+    t660 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t661 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t662 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
+    t663 = t259 * (1.0 + t661) - straight_mid_front_elbow_down_alike * t662
+    del straight_mid_front_elbow_down_alike, t661, t662
+    t664 = _runtime.select(t521, t663, t259)
+    del t259, t663
+    sigma_right_rear_elbow_up_alike = _runtime.sign(-t664)
+    t665 = 2.0 * sigma_right_rear_elbow_up_alike
+    t666 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t667 = np.sqrt(t666)
+    del t666
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t658 * (t665 * t667))
+    del t658
+    t668 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
+    t669 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    del ahead_1_right_rear_elbow_up_alike
+    t670 = np.arctan2(t660 - r_right_rear_elbow_up_alike * t668, t669 + h_right_rear_elbow_up_alike * t668)
+    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t660, t668, t669
+    t671 = _runtime.select(folded_right_rear_elbow_up_alike, t657, t670)
+    del t670
+    t672 = _runtime.wrap_cut(t671) + t653
+    del t671
+    t673 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t674 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t667, t673)
+    del t667, t673
+    t675 = t221 + _runtime.select(short_right, 0.0, t674)
+    del t674
+    t676 = _runtime.wrap(t675) + t653
+    del t675
+    t677 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
+    del more_left_21_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = _runtime.select(t521, t677, h_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, t677
+    r_left_rear_elbow_up_alike = _runtime.select(t521, r_left_0_rear_elbow_up_alike - t645, r_left_0_rear_elbow_up_alike)
+    del r_left_0_rear_elbow_up_alike, t645
+    t678 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t678 <= t206
     del t678
-    t679 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t680 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t681 = np.sqrt(t680)
+    M_left_rear_elbow_up_alike = np.maximum(t652, 0.0)
+    del t652
+    N_left_rear_elbow_up_alike = np.maximum(t651, 0.0)
+    del t651
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t679 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    t680 = t69 + t209 * M_left_rear_elbow_up_alike * t679
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t680)
     del t680
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t677 * (t663 * t681))
-    del t663, t677
-    t682 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t681 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t682 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t683 = np.sqrt(t682)
+    del t682
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t679 * (t665 * t683))
+    del t665, t679
+    t684 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t683 = r_left_rear_elbow_up_alike * t682
-    t684 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t685 = r_left_rear_elbow_up_alike * t684
+    t686 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t685 = h_left_rear_elbow_up_alike * t682
-    del h_left_rear_elbow_up_alike, t682
-    t686 = _runtime.select(folded_left_rear_elbow_up_alike, t655, np.arctan2(t679 - t683, t684 + t685))
-    t687 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    t688 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t681, t687)
-    del t681, t687
-    t689 = _runtime.select(short_right, 0.0, t688)
-    del t688
-    t690 = t233 + t651
-    t691 = _runtime.select(folded_left_rear_elbow_up_alike, t655, np.arctan2(t679 + t683, t684 - t685))
-    del t655, t679, t683, t684, t685
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t239)
-    del t239
+    t687 = h_left_rear_elbow_up_alike * t684
+    del h_left_rear_elbow_up_alike, t684
+    t688 = _runtime.select(folded_left_rear_elbow_up_alike, t657, np.arctan2(t681 - t685, t686 + t687))
+    t689 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t690 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t683, t689)
+    del t683, t689
+    t691 = _runtime.select(short_right, 0.0, t690)
+    del t690
+    t692 = t235 + t653
+    t693 = _runtime.select(folded_left_rear_elbow_up_alike, t657, np.arctan2(t681 + t685, t686 - t687))
+    del t657, t681, t685, t686, t687
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t241)
+    del t241
     ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike - s_relative * stheta2A_front_elbow_down_alike
-    t692 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t694 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike + s_relative * ctheta2A_rear_elbow_down_alike
     del c_relative, s_relative
-    point_21_rear_elbow_down_alike = t692 + a3 * stheta23A_rear_elbow_down_alike
-    del t692
-    t693 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
-    t694 = t693 + t_phi * stheta23A_rear_elbow_down_alike
-    del t693
-    t695 = d * t694
+    point_21_rear_elbow_down_alike = t694 + a3 * stheta23A_rear_elbow_down_alike
     del t694
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t695
-    t696 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t695 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t696 = t695 + t_phi * stheta23A_rear_elbow_down_alike
+    del t695
+    t697 = d * t696
+    del t696
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t697
+    t698 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
     elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
-    t697 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t697 + a3 * ctheta23A_rear_elbow_down_alike
-    del t697
-    t698 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
-    del stheta23A_rear_elbow_down_alike, t17, t_psi
-    t699 = t_phi * ctheta23A_rear_elbow_down_alike - t698
-    del ctheta23A_rear_elbow_down_alike, t698, t_phi
-    t700 = d * t699
+    t699 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t699 + a3 * ctheta23A_rear_elbow_down_alike
     del t699
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t700
-    t701 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t702 = t696 + t701
-    del t696, t701
-    gap_rear_elbow_down_alike = t700 * t700 + t695 * t695
-    t703 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t704 = M_mid + gap_rear_elbow_down_alike
-    t705 = 2.0 * point_11_rear_elbow_down_alike * t700 + 2.0 * point_21_rear_elbow_down_alike * t695
-    farther_right_rear_elbow_down_alike = _runtime.select(t48 * t702 < t703, t702 - t70, t704 - t705)
-    del t702
-    t706 = N_mid - gap_rear_elbow_down_alike
+    t700 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
+    del stheta23A_rear_elbow_down_alike, t17, t_psi
+    t701 = t_phi * ctheta23A_rear_elbow_down_alike - t700
+    del ctheta23A_rear_elbow_down_alike, t700, t_phi
+    t702 = d * t701
+    del t701
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t702
+    t703 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t704 = t698 + t703
+    del t698, t703
+    gap_rear_elbow_down_alike = t702 * t702 + t697 * t697
+    t705 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t706 = M_mid + gap_rear_elbow_down_alike
+    t707 = 2.0 * point_11_rear_elbow_down_alike * t702 + 2.0 * point_21_rear_elbow_down_alike * t697
+    farther_right_rear_elbow_down_alike = _runtime.select(t48 * t704 < t705, t704 - t70, t706 - t707)
+    del t704
+    t708 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t705 + t706
-    room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t707 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t708 = np.maximum(-t707, room_right_rear_elbow_down_alike)
-    del t707
-    spent_right_rear_elbow_down_alike = t708 <= t77
-    del t708
-    t709 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t710 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t711 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
-    t712 = _runtime.select(t711, 1.0, -1.0)
-    del t711
-    t713 = (t709 - t710) * t712
-    del t709, t710
-    slope_right_rear_elbow_down_alike = t80 * t713
-    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t87, 1.0)
-    t714 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
-    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t714, 0.0)
-    del t714
-    t715 = t39 * t713
+    nearer_right_rear_elbow_down_alike = t707 + t708
+    margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
+    t709 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t710 = np.maximum(-t709, margin_right_rear_elbow_down_alike)
+    del t709
+    spent_right_rear_elbow_down_alike = t710 <= t77
+    del t710
+    t711 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t712 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t713 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
+    t714 = _runtime.select(t713, 1.0, -1.0)
     del t713
-    t716 = np.abs(t715)
+    t715 = (t711 - t712) * t714
+    del t711, t712
+    slope_right_rear_elbow_down_alike = t80 * t715
+    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t87, 1.0)
+    t716 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
+    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t716, 0.0)
+    del t716
+    t717 = t39 * t715
+    del t715
+    t718 = np.abs(t717)
     heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t90, 1.0)
-    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t716 / heavy_1_right_rear_elbow_down_alike, 0.0)
-    t717 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
-    t718 = _runtime.select(spent_right_rear_elbow_down_alike, t717, 0.0)
-    del t717
-    t719 = -(_runtime.FEASIBILITY * (t47 + t718)) <= room_right_rear_elbow_down_alike
-    del t718
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t695
-    del point_21_rear_elbow_down_alike, t695
-    t720 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t700
-    del point_11_rear_elbow_down_alike, t700
-    t721 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t722 = t720 + t721
-    del t720, t721
-    farther_left_rear_elbow_down_alike = _runtime.select(t48 * t722 < t703, t722 - t70, t704 + t705)
-    del t703, t704, t722
-    t723 = t705 - t706
-    del t705, t706
-    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t723)
-    t724 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t725 = np.maximum(-t724, room_left_rear_elbow_down_alike)
-    del t724
-    spent_left_rear_elbow_down_alike = t725 <= t77
-    del t725, t77
-    t726 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t727 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t728 = _runtime.select(-t723 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
-    t729 = (t726 - t727) * t728
-    del t726, t727
-    slope_left_rear_elbow_down_alike = t80 * t729
+    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t718 / heavy_1_right_rear_elbow_down_alike, 0.0)
+    t719 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
+    t720 = _runtime.select(spent_right_rear_elbow_down_alike, t719, 0.0)
+    del t719
+    t721 = -(_runtime.FEASIBILITY * (t47 + t720)) <= margin_right_rear_elbow_down_alike
+    del t720
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t697
+    del point_21_rear_elbow_down_alike, t697
+    t722 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t702
+    del point_11_rear_elbow_down_alike, t702
+    t723 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t724 = t722 + t723
+    del t722, t723
+    farther_left_rear_elbow_down_alike = _runtime.select(t48 * t724 < t705, t724 - t70, t706 + t707)
+    del t705, t706, t724
+    t725 = t707 - t708
+    del t707, t708
+    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t725)
+    t726 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t727 = np.maximum(-t726, margin_left_rear_elbow_down_alike)
+    del t726
+    spent_left_rear_elbow_down_alike = t727 <= t77
+    del t727, t77
+    t728 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t729 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t730 = _runtime.select(-t725 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
+    t731 = (t728 - t729) * t730
+    del t728, t729
+    slope_left_rear_elbow_down_alike = t80 * t731
     del t80
     heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t87, 1.0)
     del t87
-    t730 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
-    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t730, 0.0)
-    del t730
-    t731 = t39 * t729
-    del t729
-    t732 = np.abs(t731)
+    t732 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
+    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t732, 0.0)
+    del t732
+    t733 = t39 * t731
+    del t731
+    t734 = np.abs(t733)
     heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t90, 1.0)
     del t90
-    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t732 / heavy_1_left_rear_elbow_down_alike, 0.0)
-    t733 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
-    t734 = _runtime.select(spent_left_rear_elbow_down_alike, t733, 0.0)
-    del t733
-    t735 = -(_runtime.FEASIBILITY * (t47 + t734)) <= room_left_rear_elbow_down_alike
-    del t734
-    t736 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
-    t737 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
+    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t734 / heavy_1_left_rear_elbow_down_alike, 0.0)
+    t735 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
+    t736 = _runtime.select(spent_left_rear_elbow_down_alike, t735, 0.0)
+    del t735
+    t737 = -(_runtime.FEASIBILITY * (t47 + t736)) <= margin_left_rear_elbow_down_alike
+    del t736
+    t738 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
+    t739 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
     del gain_1_left_rear_elbow_down_alike
-    t738 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
+    t740 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
     del gain_0_left_rear_elbow_down_alike
-    t739 = _runtime.select(room_left_rear_elbow_down_alike < 0.0, t737 / (t105 + t737 + t738), 0.0)
-    del t737, t738
-    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t739, 0.0)
-    del t739
-    t740 = room_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
-    t741 = heavy_0_left_rear_elbow_down_alike * t740
-    t742 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t743 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t744 = t83 * (t109 * t728 * (L1 - t742 - t743))
-    del t728, t742, t743
-    t745 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t746 = np.sqrt(np.maximum(0.0, 4.0 * t740 * t744 + t745))
-    del t745
-    root_on_1_both_rear_elbow_down_alike = _runtime.select(t736, t746, 0.0)
-    del t746
-    t747 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
-    t748 = t47 * heavy_0_left_rear_elbow_down_alike
-    t749 = t748 * 5.960464477539063e-08
-    t750 = 1.0 / (t747 - t749)
-    t751 = (t741 * t750 <= 4.547473508864641e-13) & (0.0 < t740 * t750)
-    t752 = 2.0 * t740
-    t753 = 0.0 < -t740
-    t754 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
-    del root_on_1_both_rear_elbow_down_alike
-    t755 = t748 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t744)
-    del t748
-    t756 = 1.0 / t755
-    del t755
-    t757 = heavy_0_left_rear_elbow_down_alike * t754 * t756
-    t758 = t754 * t756
-    t759 = (t757 <= 9.094947017729282e-13) & (0.0 < t758)
-    del t757
-    far_back_1_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t759, t758, 0.0), 0.0)
-    del t758, t759
-    t760 = _runtime.select(t753, far_back_1_both_rear_elbow_down_alike, 0.0)
-    t761 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t751, t750 * t752, 0.0), t760)
-    del t750, t751, t760
-    t762 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
-    del gain_1_right_rear_elbow_down_alike
-    t763 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
-    del gain_0_right_rear_elbow_down_alike
-    t764 = _runtime.select(room_right_rear_elbow_down_alike < 0.0, t762 / (t105 + t762 + t763), 0.0)
-    del t105, t762, t763
-    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t764, 0.0)
-    del t764
-    t765 = room_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
-    t766 = heavy_0_right_rear_elbow_down_alike * t765
-    t767 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t768 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t769 = t83 * (t109 * t712 * (L1 - t767 - t768))
-    del t109, t712, t767, t768
-    t770 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t771 = np.sqrt(np.maximum(0.0, 4.0 * t765 * t769 + t770))
-    del t770
-    root_on_0_both_rear_elbow_down_alike = _runtime.select(t736, t771, 0.0)
-    del t771
-    t772 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
-    t773 = t47 * heavy_0_right_rear_elbow_down_alike
-    t774 = t773 * 5.960464477539063e-08
-    t775 = 1.0 / (t772 - t774)
-    t776 = (t766 * t775 <= 4.547473508864641e-13) & (0.0 < t765 * t775)
-    t777 = 2.0 * t765
-    t778 = 0.0 < -t765
-    t779 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
-    del root_on_0_both_rear_elbow_down_alike
-    t780 = t773 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t769)
-    del t773
-    t781 = 1.0 / t780
-    del t780
-    t782 = heavy_0_right_rear_elbow_down_alike * t779 * t781
-    t783 = t779 * t781
-    t784 = (t782 <= 9.094947017729282e-13) & (0.0 < t783)
-    del t782
-    far_back_0_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t784, t783, 0.0), 0.0)
-    del t783, t784
-    t785 = _runtime.select(t778, far_back_0_both_rear_elbow_down_alike, 0.0)
-    t786 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t776, t775 * t777, 0.0), t785)
-    del t775, t776, t785
-    near_back_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(np.maximum(0.0, t761), t786), 0.0)
-    del t761, t786
-    t787 = slope_right_rear_elbow_down_alike + t769 * near_back_both_rear_elbow_down_alike
-    t788 = near_back_both_rear_elbow_down_alike * t787 - t765
-    del t787
-    t789 = _runtime.select(0.0 < t788, far_back_0_both_rear_elbow_down_alike, 0.0)
-    del far_back_0_both_rear_elbow_down_alike, t788
-    t790 = np.maximum(near_back_both_rear_elbow_down_alike, t789)
-    del t789
-    t791 = slope_left_rear_elbow_down_alike + t744 * near_back_both_rear_elbow_down_alike
-    t792 = near_back_both_rear_elbow_down_alike * t791 - t740
-    del near_back_both_rear_elbow_down_alike, t791
-    t793 = _runtime.select(0.0 < t792, far_back_1_both_rear_elbow_down_alike, 0.0)
-    del far_back_1_both_rear_elbow_down_alike, t792
-    turn_back_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(t790, t793), 0.0)
-    del t790, t793
-    t794 = slope_left_rear_elbow_down_alike + t744 * turn_back_both_rear_elbow_down_alike
-    t795 = t740 - turn_back_both_rear_elbow_down_alike * t794
-    del t794
-    t796 = slope_right_rear_elbow_down_alike + t769 * turn_back_both_rear_elbow_down_alike
-    t797 = t765 - turn_back_both_rear_elbow_down_alike * t796
-    del t796
-    left_back_both_rear_elbow_down_alike = _runtime.select(t736, np.minimum(t795, t797), 0.0)
-    del t795, t797
-    t798 = 1.0 / (t749 + t754)
-    del t749, t754
-    t799 = (-(t741 * t798) <= 4.547473508864641e-13) & (0.0 < -(t740 * t798))
+    t741 = _runtime.select(margin_left_rear_elbow_down_alike < 0.0, t739 / (t105 + t739 + t740), 0.0)
+    del t739, t740
+    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t741, 0.0)
     del t741
-    t800 = t756 * (heavy_0_left_rear_elbow_down_alike * t747)
-    del heavy_0_left_rear_elbow_down_alike
-    t801 = -(t747 * t756)
-    del t747, t756
-    t802 = (-t800 <= 9.094947017729282e-13) & (0.0 < t801)
-    del t800
-    far_on_1_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t802, t801, 0.0), 0.0)
-    del t801, t802
-    t803 = _runtime.select(t753, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del t753
-    t804 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t799, -(t752 * t798), 0.0), t803)
-    del t752, t798, t799, t803
-    t805 = 1.0 / (t774 + t779)
-    del t774, t779
-    t806 = (-(t766 * t805) <= 4.547473508864641e-13) & (0.0 < -(t765 * t805))
+    t742 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t743 = heavy_0_left_rear_elbow_down_alike * t742
+    t744 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t745 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t746 = t83 * (t110 * t730 * (L1 - t744 - t745))
+    del t730, t744, t745
+    t747 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t748 = np.sqrt(np.maximum(0.0, 4.0 * t742 * t746 + t747))
+    del t747
+    root_on_1_both_rear_elbow_down_alike = _runtime.select(t738, t748, 0.0)
+    del t748
+    t749 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
+    t750 = t47 * heavy_0_left_rear_elbow_down_alike
+    t751 = t750 * 5.960464477539063e-08
+    t752 = 1.0 / (t749 - t751)
+    t753 = (t743 * t752 <= 4.547473508864641e-13) & (0.0 < t742 * t752)
+    t754 = 2.0 * t742
+    t755 = 0.0 < -t742
+    t756 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
+    del root_on_1_both_rear_elbow_down_alike
+    t757 = t750 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t746)
+    del t750
+    t758 = 1.0 / t757
+    del t757
+    t759 = heavy_0_left_rear_elbow_down_alike * t756 * t758
+    t760 = t756 * t758
+    t761 = (t759 <= 9.094947017729282e-13) & (0.0 < t760)
+    del t759
+    far_back_1_both_rear_elbow_down_alike = _runtime.select(t738, _runtime.select(t761, t760, 0.0), 0.0)
+    del t760, t761
+    t762 = _runtime.select(t755, far_back_1_both_rear_elbow_down_alike, 0.0)
+    t763 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t753, t752 * t754, 0.0), t762)
+    del t752, t753, t762
+    t764 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
+    del gain_1_right_rear_elbow_down_alike
+    t765 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
+    del gain_0_right_rear_elbow_down_alike
+    t766 = _runtime.select(margin_right_rear_elbow_down_alike < 0.0, t764 / (t105 + t764 + t765), 0.0)
+    del t105, t764, t765
+    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t766, 0.0)
     del t766
-    t807 = t781 * (heavy_0_right_rear_elbow_down_alike * t772)
+    t767 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t768 = heavy_0_right_rear_elbow_down_alike * t767
+    t769 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t770 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t771 = t83 * (t110 * t714 * (L1 - t769 - t770))
+    del t110, t714, t769, t770
+    t772 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t773 = np.sqrt(np.maximum(0.0, 4.0 * t767 * t771 + t772))
+    del t772
+    root_on_0_both_rear_elbow_down_alike = _runtime.select(t738, t773, 0.0)
+    del t773
+    t774 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
+    t775 = t47 * heavy_0_right_rear_elbow_down_alike
+    t776 = t775 * 5.960464477539063e-08
+    t777 = 1.0 / (t774 - t776)
+    t778 = (t768 * t777 <= 4.547473508864641e-13) & (0.0 < t767 * t777)
+    t779 = 2.0 * t767
+    t780 = 0.0 < -t767
+    t781 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
+    del root_on_0_both_rear_elbow_down_alike
+    t782 = t775 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t771)
+    del t775
+    t783 = 1.0 / t782
+    del t782
+    t784 = heavy_0_right_rear_elbow_down_alike * t781 * t783
+    t785 = t781 * t783
+    t786 = (t784 <= 9.094947017729282e-13) & (0.0 < t785)
+    del t784
+    far_back_0_both_rear_elbow_down_alike = _runtime.select(t738, _runtime.select(t786, t785, 0.0), 0.0)
+    del t785, t786
+    t787 = _runtime.select(t780, far_back_0_both_rear_elbow_down_alike, 0.0)
+    t788 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t778, t777 * t779, 0.0), t787)
+    del t777, t778, t787
+    near_back_both_rear_elbow_down_alike = _runtime.select(t738, np.maximum(np.maximum(0.0, t763), t788), 0.0)
+    del t763, t788
+    t789 = slope_right_rear_elbow_down_alike + t771 * near_back_both_rear_elbow_down_alike
+    t790 = near_back_both_rear_elbow_down_alike * t789 - t767
+    del t789
+    t791 = _runtime.select(0.0 < t790, far_back_0_both_rear_elbow_down_alike, 0.0)
+    del far_back_0_both_rear_elbow_down_alike, t790
+    t792 = np.maximum(near_back_both_rear_elbow_down_alike, t791)
+    del t791
+    t793 = slope_left_rear_elbow_down_alike + t746 * near_back_both_rear_elbow_down_alike
+    t794 = near_back_both_rear_elbow_down_alike * t793 - t742
+    del near_back_both_rear_elbow_down_alike, t793
+    t795 = _runtime.select(0.0 < t794, far_back_1_both_rear_elbow_down_alike, 0.0)
+    del far_back_1_both_rear_elbow_down_alike, t794
+    turn_back_both_rear_elbow_down_alike = _runtime.select(t738, np.maximum(t792, t795), 0.0)
+    del t792, t795
+    t796 = slope_left_rear_elbow_down_alike + t746 * turn_back_both_rear_elbow_down_alike
+    t797 = t742 - turn_back_both_rear_elbow_down_alike * t796
+    del t796
+    t798 = slope_right_rear_elbow_down_alike + t771 * turn_back_both_rear_elbow_down_alike
+    t799 = t767 - turn_back_both_rear_elbow_down_alike * t798
+    del t798
+    left_back_both_rear_elbow_down_alike = _runtime.select(t738, np.minimum(t797, t799), 0.0)
+    del t797, t799
+    t800 = 1.0 / (t751 + t756)
+    del t751, t756
+    t801 = (-(t743 * t800) <= 4.547473508864641e-13) & (0.0 < -(t742 * t800))
+    del t743
+    t802 = t758 * (heavy_0_left_rear_elbow_down_alike * t749)
+    del heavy_0_left_rear_elbow_down_alike
+    t803 = -(t749 * t758)
+    del t749, t758
+    t804 = (-t802 <= 9.094947017729282e-13) & (0.0 < t803)
+    del t802
+    far_on_1_both_rear_elbow_down_alike = _runtime.select(t738, _runtime.select(t804, t803, 0.0), 0.0)
+    del t803, t804
+    t805 = _runtime.select(t755, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del t755
+    t806 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t801, -(t754 * t800), 0.0), t805)
+    del t754, t800, t801, t805
+    t807 = 1.0 / (t776 + t781)
+    del t776, t781
+    t808 = (-(t768 * t807) <= 4.547473508864641e-13) & (0.0 < -(t767 * t807))
+    del t768
+    t809 = t783 * (heavy_0_right_rear_elbow_down_alike * t774)
     del heavy_0_right_rear_elbow_down_alike
-    t808 = -(t772 * t781)
-    del t772, t781
-    t809 = (-t807 <= 9.094947017729282e-13) & (0.0 < t808)
-    del t807
-    far_on_0_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t809, t808, 0.0), 0.0)
-    del t808, t809
-    t810 = _runtime.select(t778, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del t778
-    t811 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t806, -(t777 * t805), 0.0), t810)
-    del t777, t805, t806, t810
-    near_on_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(np.maximum(0.0, t804), t811), 0.0)
-    del t804, t811
-    t812 = slope_right_rear_elbow_down_alike - t769 * near_on_both_rear_elbow_down_alike
-    t813 = t765 + near_on_both_rear_elbow_down_alike * t812
-    del t812
-    t814 = _runtime.select(0.0 < -t813, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del far_on_0_both_rear_elbow_down_alike, t813
-    t815 = np.maximum(near_on_both_rear_elbow_down_alike, t814)
+    t810 = -(t774 * t783)
+    del t774, t783
+    t811 = (-t809 <= 9.094947017729282e-13) & (0.0 < t810)
+    del t809
+    far_on_0_both_rear_elbow_down_alike = _runtime.select(t738, _runtime.select(t811, t810, 0.0), 0.0)
+    del t810, t811
+    t812 = _runtime.select(t780, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del t780
+    t813 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t808, -(t779 * t807), 0.0), t812)
+    del t779, t807, t808, t812
+    near_on_both_rear_elbow_down_alike = _runtime.select(t738, np.maximum(np.maximum(0.0, t806), t813), 0.0)
+    del t806, t813
+    t814 = slope_right_rear_elbow_down_alike - t771 * near_on_both_rear_elbow_down_alike
+    t815 = t767 + near_on_both_rear_elbow_down_alike * t814
     del t814
-    t816 = slope_left_rear_elbow_down_alike - t744 * near_on_both_rear_elbow_down_alike
-    t817 = t740 + near_on_both_rear_elbow_down_alike * t816
-    del near_on_both_rear_elbow_down_alike, t816
-    t818 = _runtime.select(0.0 < -t817, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del far_on_1_both_rear_elbow_down_alike, t817
-    turn_on_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(t815, t818), 0.0)
-    del t815, t818
-    t819 = slope_left_rear_elbow_down_alike - t744 * turn_on_both_rear_elbow_down_alike
-    del slope_left_rear_elbow_down_alike, t744
-    t820 = t740 + turn_on_both_rear_elbow_down_alike * t819
-    del t740, t819
-    t821 = slope_right_rear_elbow_down_alike - t769 * turn_on_both_rear_elbow_down_alike
-    del slope_right_rear_elbow_down_alike, t769
-    t822 = t765 + turn_on_both_rear_elbow_down_alike * t821
-    del t765, t821
-    left_on_both_rear_elbow_down_alike = _runtime.select(t736, np.minimum(t820, t822), 0.0)
-    del t820, t822
-    t823 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
+    t816 = _runtime.select(0.0 < -t815, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del far_on_0_both_rear_elbow_down_alike, t815
+    t817 = np.maximum(near_on_both_rear_elbow_down_alike, t816)
+    del t816
+    t818 = slope_left_rear_elbow_down_alike - t746 * near_on_both_rear_elbow_down_alike
+    t819 = t742 + near_on_both_rear_elbow_down_alike * t818
+    del near_on_both_rear_elbow_down_alike, t818
+    t820 = _runtime.select(0.0 < -t819, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del far_on_1_both_rear_elbow_down_alike, t819
+    turn_on_both_rear_elbow_down_alike = _runtime.select(t738, np.maximum(t817, t820), 0.0)
+    del t817, t820
+    t821 = slope_left_rear_elbow_down_alike - t746 * turn_on_both_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike, t746
+    t822 = t742 + turn_on_both_rear_elbow_down_alike * t821
+    del t742, t821
+    t823 = slope_right_rear_elbow_down_alike - t771 * turn_on_both_rear_elbow_down_alike
+    del slope_right_rear_elbow_down_alike, t771
+    t824 = t767 + turn_on_both_rear_elbow_down_alike * t823
+    del t767, t823
+    left_on_both_rear_elbow_down_alike = _runtime.select(t738, np.minimum(t822, t824), 0.0)
+    del t822, t824
+    t825 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
     del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
-    t824 = _runtime.select(t823, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
-    del t823, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
-    turn_both_rear_elbow_down_alike = _runtime.select(t736, t824, 0.0)
-    del t824
-    t825 = room_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
-    del room_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
-    t826 = t47 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
+    t826 = _runtime.select(t825, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
+    del t825, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
+    turn_both_rear_elbow_down_alike = _runtime.select(t738, t826, 0.0)
+    del t826
+    t827 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    del margin_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
+    t828 = t47 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_down_alike
-    t827 = -(t825 * _runtime.sign(-t731) / (t732 + t826))
-    del t731, t732, t825, t826
-    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t827, 0.0)
-    del spent_left_rear_elbow_down_alike, t827
-    t828 = room_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
-    del room_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
-    t829 = t47 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
+    t829 = -(t827 * _runtime.sign(-t733) / (t734 + t828))
+    del t733, t734, t827, t828
+    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t829, 0.0)
+    del spent_left_rear_elbow_down_alike, t829
+    t830 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    del margin_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
+    t831 = t47 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_right_rear_elbow_down_alike, t47
-    t830 = -(t828 * _runtime.sign(-t715) / (t716 + t829))
-    del t715, t716, t828, t829
-    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t830, 0.0)
-    del spent_right_rear_elbow_down_alike, t830
-    t831 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
-    t832 = _runtime.select(t831, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
-    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t831
-    t833 = t83 * (drawn * turn_both_rear_elbow_down_alike)
+    t832 = -(t830 * _runtime.sign(-t717) / (t718 + t831))
+    del t717, t718, t830, t831
+    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t832, 0.0)
+    del spent_right_rear_elbow_down_alike, t832
+    t833 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
+    t834 = _runtime.select(t833, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
+    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t833
+    t835 = t83 * (drawn * turn_both_rear_elbow_down_alike)
     del drawn, t83
-    t834 = turn_both_rear_elbow_down_alike + t832 - t833
-    del t832, t833
-    lean_rear_elbow_down_alike = _runtime.select(t736, t834, 0.0)
-    del t834
-    t835 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t836 = 1.0 + t835
-    t837 = 1.0 / np.sqrt(t836)
-    t838 = 1.0 / (t836 * (1.0 + t837))
+    t836 = turn_both_rear_elbow_down_alike + t834 - t835
+    del t834, t835
+    lean_rear_elbow_down_alike = _runtime.select(t738, t836, 0.0)
     del t836
-    t839 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
-    t840 = elbow_11_rear_elbow_down_alike * t835 * t838 + t837 * t839
-    del t839
-    t841 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
-    t842 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
-    t843 = 1.0 + t841
-    t844 = 1.0 / np.sqrt(t843)
-    t845 = 1.0 / (t843 * (1.0 + t844))
-    del t843
-    t846 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
-    t847 = t844 * (turn_both_rear_elbow_down_alike * t846)
-    t848 = t840 - t841 * t842 * t845 - t847
-    del t847
-    t849 = t848 * (t848 - 2.0 * r_right_0_rear_elbow_down_alike)
-    t850 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t851 = t838 * (elbow_21_front_elbow_down_alike * t835)
-    del t835, t838
-    swing_21_rear_elbow_down_alike = t837 * t850 - t851
-    del t837, t850, t851
-    t852 = swing_21_rear_elbow_down_alike + t845 * (t841 * t846)
-    del t846
-    t853 = t844 * (turn_both_rear_elbow_down_alike * t842)
-    del t842
-    more_right_21_rear_elbow_down_alike = t852 - t853
-    del t852, t853
-    t854 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
-    t855 = t849 + more_right_21_rear_elbow_down_alike * t854
-    del t849, t854
-    change_right_rear_elbow_down_alike = _runtime.select(t736, t855, 0.0)
-    del t855
-    t856 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
-    del nearer_right_rear_elbow_down_alike
-    t857 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
-    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
-    t858 = t46 & t719 & t735 & (t102 <= t856) & (t102 <= t857)
-    del t46, t719, t735
-    t859 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
-    del elbow_11_rear_elbow_down_alike
-    t860 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
-    del elbow_21_front_elbow_down_alike
-    t861 = t844 * (turn_both_rear_elbow_down_alike * t860)
-    t862 = t840 - t845 * (t841 * t859) - t861
-    del t840, t861
-    t863 = t862 * (t862 - 2.0 * r_left_0_rear_elbow_down_alike)
-    t864 = swing_21_rear_elbow_down_alike + t845 * (t841 * t860)
-    del swing_21_rear_elbow_down_alike, t841, t845, t860
-    t865 = t844 * (turn_both_rear_elbow_down_alike * t859)
-    del t844, t859
-    more_left_21_rear_elbow_down_alike = t864 - t865
-    del t864, t865
-    t866 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
-    t867 = t863 + more_left_21_rear_elbow_down_alike * t866
-    del t863, t866
-    change_left_rear_elbow_down_alike = _runtime.select(t736, t867, 0.0)
-    del t867
-    t868 = -(t723 + change_left_rear_elbow_down_alike)
-    del t723
-    t869 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
-    del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t858 & (t102 <= t868) & (t102 <= t869))
-    del t102, t858
-    t870 = _runtime.poison(invalid | unreachable_4)
-    t871 = t474 + t870
-    del t474
-    t872 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
-    del more_right_21_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = _runtime.select(t736, t872, h_right_0_rear_elbow_down_alike)
-    del h_right_0_rear_elbow_down_alike, t872
-    r_right_rear_elbow_down_alike = _runtime.select(t736, r_right_0_rear_elbow_down_alike - t848, r_right_0_rear_elbow_down_alike)
-    del r_right_0_rear_elbow_down_alike, t848
-    t873 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
-    folded_right_rear_elbow_down_alike = t873 <= t204
-    del t873
-    t874 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(t857, t208)
+    t837 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t838 = 1.0 + t837
+    t839 = 1.0 / np.sqrt(t838)
+    t840 = 1.0 / (t838 * (1.0 + t839))
+    del t838
+    t841 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
+    t842 = elbow_11_rear_elbow_down_alike * t837 * t840 + t839 * t841
+    del t841
+    t843 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
+    t844 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
+    t845 = 1.0 + t843
+    t846 = 1.0 / np.sqrt(t845)
+    t847 = 1.0 / (t845 * (1.0 + t846))
+    del t845
+    t848 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
+    t849 = t846 * (turn_both_rear_elbow_down_alike * t848)
+    t850 = t842 - t843 * t844 * t847 - t849
+    del t849
+    t851 = t850 * (t850 - 2.0 * r_right_0_rear_elbow_down_alike)
+    t852 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t853 = t840 * (elbow_21_front_elbow_down_alike * t837)
+    del t837, t840
+    swing_21_rear_elbow_down_alike = t839 * t852 - t853
+    del t839, t852, t853
+    t854 = swing_21_rear_elbow_down_alike + t847 * (t843 * t848)
+    del t848
+    t855 = t846 * (turn_both_rear_elbow_down_alike * t844)
+    del t844
+    more_right_21_rear_elbow_down_alike = t854 - t855
+    del t854, t855
+    t856 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
+    t857 = t851 + more_right_21_rear_elbow_down_alike * t856
+    del t851, t856
+    change_right_rear_elbow_down_alike = _runtime.select(t738, t857, 0.0)
     del t857
-    N_right_rear_elbow_down_alike = np.maximum(t856, t208)
-    del t208, t856
-    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t875 = 1.0 / whole_right_rear_elbow_down_alike
-    del whole_right_rear_elbow_down_alike
-    t876 = t69 + t207 * M_right_rear_elbow_down_alike * t875
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t876)
-    del t876
-    t877 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t878 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t879 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
-    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
-    t880 = _runtime.select(t736, t72 * (1.0 + t878) - straight_mid * t879, t72)
-    del straight_mid, t72, t878, t879
-    sigma_right_rear_elbow_down_alike = _runtime.sign(-t880)
-    t881 = 2.0 * sigma_right_rear_elbow_down_alike
-    t882 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t883 = np.sqrt(t882)
-    del t882
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t875 * (t881 * t883))
-    del t875
-    t884 = fore_arm * s_bend_right_rear_elbow_down_alike
-    del s_bend_right_rear_elbow_down_alike
-    t885 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    del ahead_1_right_rear_elbow_down_alike
-    t886 = np.arctan2(t877 - r_right_rear_elbow_down_alike * t884, t885 + h_right_rear_elbow_down_alike * t884)
-    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t877, t884, t885
-    t887 = _runtime.select(folded_right_rear_elbow_down_alike, t874, t886)
-    del t886
-    t888 = _runtime.wrap_cut(t887) + t870
-    del t887
-    t889 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
-    t890 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t883, t889)
-    del t883, t889
-    t891 = t219 + _runtime.select(short_right, 0.0, t890)
-    del t890
-    t892 = _runtime.wrap(t891) + t870
-    del t891
-    t893 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
-    del more_left_21_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = _runtime.select(t736, t893, h_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, t893
-    r_left_rear_elbow_down_alike = _runtime.select(t736, r_left_0_rear_elbow_down_alike - t862, r_left_0_rear_elbow_down_alike)
-    del r_left_0_rear_elbow_down_alike, t862
-    t894 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t894 <= t204
-    del t204, t894
-    M_left_rear_elbow_down_alike = np.maximum(t869, 0.0)
+    t858 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
+    del nearer_right_rear_elbow_down_alike
+    t859 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
+    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
+    t860 = t46 & t721 & t737 & (t102 <= t858) & (t102 <= t859)
+    del t46, t721, t737
+    t861 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
+    del elbow_11_rear_elbow_down_alike
+    t862 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
+    del elbow_21_front_elbow_down_alike
+    t863 = t846 * (turn_both_rear_elbow_down_alike * t862)
+    t864 = t842 - t847 * (t843 * t861) - t863
+    del t842, t863
+    t865 = t864 * (t864 - 2.0 * r_left_0_rear_elbow_down_alike)
+    t866 = swing_21_rear_elbow_down_alike + t847 * (t843 * t862)
+    del swing_21_rear_elbow_down_alike, t843, t847, t862
+    t867 = t846 * (turn_both_rear_elbow_down_alike * t861)
+    del t846, t861
+    more_left_21_rear_elbow_down_alike = t866 - t867
+    del t866, t867
+    t868 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
+    t869 = t865 + more_left_21_rear_elbow_down_alike * t868
+    del t865, t868
+    change_left_rear_elbow_down_alike = _runtime.select(t738, t869, 0.0)
     del t869
-    N_left_rear_elbow_down_alike = np.maximum(t868, 0.0)
-    del t868
+    t870 = -(t725 + change_left_rear_elbow_down_alike)
+    del t725
+    t871 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
+    del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t860 & (t102 <= t870) & (t102 <= t871))
+    del t102, t860
+    t872 = _runtime.poison(invalid | unreachable_4)
+    t873 = t476 + t872
+    del t476
+    t874 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
+    del more_right_21_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = _runtime.select(t738, t874, h_right_0_rear_elbow_down_alike)
+    del h_right_0_rear_elbow_down_alike, t874
+    r_right_rear_elbow_down_alike = _runtime.select(t738, r_right_0_rear_elbow_down_alike - t850, r_right_0_rear_elbow_down_alike)
+    del r_right_0_rear_elbow_down_alike, t850
+    t875 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
+    folded_right_rear_elbow_down_alike = t875 <= t206
+    del t875
+    t876 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
+    M_right_rear_elbow_down_alike = np.maximum(t859, t210)
+    del t859
+    N_right_rear_elbow_down_alike = np.maximum(t858, t210)
+    del t210, t858
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t877 = 1.0 / whole_right_rear_elbow_down_alike
+    del whole_right_rear_elbow_down_alike
+    t878 = t69 + t209 * M_right_rear_elbow_down_alike * t877
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t878)
+    del t878
+    t879 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t880 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t881 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
+    t882 = _runtime.select(t738, t72 * (1.0 + t880) - straight_mid * t881, t72)
+    del straight_mid, t72, t880, t881
+    sigma_right_rear_elbow_down_alike = _runtime.sign(-t882)
+    t883 = 2.0 * sigma_right_rear_elbow_down_alike
+    t884 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t885 = np.sqrt(t884)
+    del t884
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t877 * (t883 * t885))
+    del t877
+    t886 = fore_arm * s_bend_right_rear_elbow_down_alike
+    del s_bend_right_rear_elbow_down_alike
+    t887 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    del ahead_1_right_rear_elbow_down_alike
+    t888 = np.arctan2(t879 - r_right_rear_elbow_down_alike * t886, t887 + h_right_rear_elbow_down_alike * t886)
+    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t879, t886, t887
+    t889 = _runtime.select(folded_right_rear_elbow_down_alike, t876, t888)
+    del t888
+    t890 = _runtime.wrap_cut(t889) + t872
+    del t889
+    t891 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t892 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t885, t891)
+    del t885, t891
+    t893 = t221 + _runtime.select(short_right, 0.0, t892)
+    del t892
+    t894 = _runtime.wrap(t893) + t872
+    del t893
+    t895 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
+    del more_left_21_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = _runtime.select(t738, t895, h_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, t895
+    r_left_rear_elbow_down_alike = _runtime.select(t738, r_left_0_rear_elbow_down_alike - t864, r_left_0_rear_elbow_down_alike)
+    del r_left_0_rear_elbow_down_alike, t864
+    t896 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t896 <= t206
+    del t206, t896
+    M_left_rear_elbow_down_alike = np.maximum(t871, 0.0)
+    del t871
+    N_left_rear_elbow_down_alike = np.maximum(t870, 0.0)
+    del t870
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t895 = 1.0 / whole_left_rear_elbow_down_alike
+    t897 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t896 = t69 + t207 * M_left_rear_elbow_down_alike * t895
-    del t207, t69
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t896)
-    del size, t896
-    t897 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t898 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t899 = np.sqrt(t898)
-    del t898
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t895 * (t881 * t899))
-    del t881, t895
-    t900 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t898 = t69 + t209 * M_left_rear_elbow_down_alike * t897
+    del t209, t69
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t898)
+    del size, t898
+    t899 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t900 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t901 = np.sqrt(t900)
+    del t900
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t897 * (t883 * t901))
+    del t883, t897
+    t902 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t901 = r_left_rear_elbow_down_alike * t900
-    t902 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t903 = r_left_rear_elbow_down_alike * t902
+    t904 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t903 = h_left_rear_elbow_down_alike * t900
-    del h_left_rear_elbow_down_alike, t900
-    t904 = _runtime.select(folded_left_rear_elbow_down_alike, t874, np.arctan2(t897 - t901, t902 + t903))
-    t905 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
-    t906 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t899, t905)
-    del t899, t905
-    t907 = _runtime.select(short_right, 0.0, t906)
-    del t906
-    t908 = t233 + t870
-    del t233
-    t909 = _runtime.select(folded_left_rear_elbow_down_alike, t874, np.arctan2(t897 + t901, t902 - t903))
-    del t874, t897, t901, t902, t903
-    t910 = nowhere | folded | short
+    t905 = h_left_rear_elbow_down_alike * t902
+    del h_left_rear_elbow_down_alike, t902
+    t906 = _runtime.select(folded_left_rear_elbow_down_alike, t876, np.arctan2(t899 - t903, t904 + t905))
+    t907 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t908 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t901, t907)
+    del t901, t907
+    t909 = _runtime.select(short_right, 0.0, t908)
+    del t908
+    t910 = t235 + t872
+    del t235
+    t911 = _runtime.select(folded_left_rear_elbow_down_alike, t876, np.arctan2(t899 + t903, t904 - t905))
+    del t876, t899, t903, t904, t905
+    t912 = nowhere | folded | short
     del folded, nowhere, short
     square_mid = t70 + M_mid
-    t911 = M_mid * square_mid
+    t913 = M_mid * square_mid
     del M_mid
-    t912 = _runtime.DETERMINED * _runtime.DETERMINED
-    t913 = t48 * t912
-    t914 = square_mid <= t913
+    t914 = _runtime.DETERMINED * _runtime.DETERMINED
+    t915 = t48 * t914
+    t916 = square_mid <= t915
     del square_mid
-    t915 = wrist <= al * _runtime.DETERMINED
+    t917 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t916 = t910 | (t911 <= t912 * (t48 * gap)) | t914 | t915
-    t917 = t916 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t916
-    t918 = t206 * lengths
-    del lengths, t206
-    t919 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
+    t918 = t912 | (t913 <= t914 * (t48 * gap)) | t916 | t917
+    t919 = t918 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t918
+    t920 = t208 * lengths
+    del lengths, t208
+    t921 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
     del L_2W, a_3W
-    t920 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
+    t922 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
     del M_left, M_right
-    t921 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
+    t923 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
     del N_left, N_right, gap
-    t922 = t39 * t211 + sigma_right * np.sqrt(t920 * t921)
-    del sigma_right, t211, t920, t921
-    astray = _runtime.select(t103, t919 * np.abs(t922), 0.0)
-    del t922
-    t923 = _runtime.select(t103, t918, 1.0) <= _runtime.DETERMINED * astray
+    t924 = t39 * t213 + sigma_right * np.sqrt(t922 * t923)
+    del sigma_right, t213, t922, t923
+    astray = _runtime.select(t103, t921 * np.abs(t924), 0.0)
+    del t924
+    t925 = _runtime.select(t103, t920, 1.0) <= _runtime.DETERMINED * astray
     del astray, t103
-    t924 = _runtime.status(invalid, unreachable, t917 | t923)
-    del t917, t923, unreachable
+    t926 = _runtime.status(invalid, unreachable, t919 | t925)
+    del t919, t925, unreachable
     square_mid_front_elbow_down_alike = t70 + M_mid_front_elbow_down_alike
     del t70
-    t925 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t927 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t926 = t925 <= t912 * (t48 * gap_front_elbow_down_alike)
-    t927 = square_mid_front_elbow_down_alike <= t913
-    del square_mid_front_elbow_down_alike, t913
-    t928 = t910 | t926 | t927 | t915 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t926
-    t929 = t928 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t928
-    t930 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
+    t928 = t927 <= t914 * (t48 * gap_front_elbow_down_alike)
+    t929 = square_mid_front_elbow_down_alike <= t915
+    del square_mid_front_elbow_down_alike, t915
+    t930 = t912 | t928 | t929 | t917 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t928
+    t931 = t930 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t930
+    t932 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
     del M_left_front_elbow_down_alike
-    t931 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t930)
-    del M_right_front_elbow_down_alike, t930
-    t932 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
+    t933 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t932)
+    del M_right_front_elbow_down_alike, t932
+    t934 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
     del N_left_front_elbow_down_alike, gap_front_elbow_down_alike
-    t933 = np.maximum(0.0, t932 + N_right_front_elbow_down_alike * 0.5)
-    del N_right_front_elbow_down_alike, t932
-    t934 = sigma_right_front_elbow_down_alike * np.sqrt(t931 * t933)
-    del sigma_right_front_elbow_down_alike, t931, t933
-    astray_front_elbow_down_alike = _runtime.select(t297, t919 * np.abs(t39 * t444 + t934), 0.0)
-    del t444, t934
-    t935 = _runtime.DETERMINED * astray_front_elbow_down_alike
+    t935 = np.maximum(0.0, t934 + N_right_front_elbow_down_alike * 0.5)
+    del N_right_front_elbow_down_alike, t934
+    t936 = sigma_right_front_elbow_down_alike * np.sqrt(t933 * t935)
+    del sigma_right_front_elbow_down_alike, t933, t935
+    astray_front_elbow_down_alike = _runtime.select(t299, t921 * np.abs(t39 * t446 + t936), 0.0)
+    del t446, t936
+    t937 = _runtime.DETERMINED * astray_front_elbow_down_alike
     del astray_front_elbow_down_alike
-    t936 = t929 | (_runtime.select(t297, t918, 1.0) <= t935)
-    del t297, t929, t935
-    t937 = _runtime.status(invalid, unreachable_2, t936)
-    del t936, unreachable_2
-    t938 = t925 <= t912 * (t48 * gap_rear_elbow_up_alike)
-    del t925
-    t939 = t910 | t938 | t927 | t915 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t927, t938
-    t940 = t939 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t939
-    t941 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
+    t938 = t931 | (_runtime.select(t299, t920, 1.0) <= t937)
+    del t299, t931, t937
+    t939 = _runtime.status(invalid, unreachable_2, t938)
+    del t938, unreachable_2
+    t940 = t927 <= t914 * (t48 * gap_rear_elbow_up_alike)
+    del t927
+    t941 = t912 | t940 | t929 | t917 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t929, t940
+    t942 = t941 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t941
+    t943 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
     del M_left_rear_elbow_up_alike
-    t942 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t941)
-    del M_right_rear_elbow_up_alike, t941
-    t943 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
+    t944 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t943)
+    del M_right_rear_elbow_up_alike, t943
+    t945 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
     del N_left_rear_elbow_up_alike, gap_rear_elbow_up_alike
-    t944 = np.maximum(0.0, t943 + N_right_rear_elbow_up_alike * 0.5)
-    del N_right_rear_elbow_up_alike, t943
-    t945 = sigma_right_rear_elbow_up_alike * np.sqrt(t942 * t944)
-    del sigma_right_rear_elbow_up_alike, t942, t944
-    astray_rear_elbow_up_alike = _runtime.select(t519, t919 * np.abs(t39 * t662 + t945), 0.0)
-    del t662, t945
-    t946 = _runtime.DETERMINED * astray_rear_elbow_up_alike
+    t946 = np.maximum(0.0, t945 + N_right_rear_elbow_up_alike * 0.5)
+    del N_right_rear_elbow_up_alike, t945
+    t947 = sigma_right_rear_elbow_up_alike * np.sqrt(t944 * t946)
+    del sigma_right_rear_elbow_up_alike, t944, t946
+    astray_rear_elbow_up_alike = _runtime.select(t521, t921 * np.abs(t39 * t664 + t947), 0.0)
+    del t664, t947
+    t948 = _runtime.DETERMINED * astray_rear_elbow_up_alike
     del astray_rear_elbow_up_alike
-    t947 = t940 | (_runtime.select(t519, t918, 1.0) <= t946)
-    del t519, t940, t946
-    t948 = _runtime.status(invalid, unreachable_3, t947)
-    del t947, unreachable_3
-    t949 = t911 <= t912 * (t48 * gap_rear_elbow_down_alike)
-    del t48, t911, t912
-    t950 = t910 | t949 | t914 | t915 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t910, t914, t915, t949
-    t951 = t950 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t950
-    t952 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
+    t949 = t942 | (_runtime.select(t521, t920, 1.0) <= t948)
+    del t521, t942, t948
+    t950 = _runtime.status(invalid, unreachable_3, t949)
+    del t949, unreachable_3
+    t951 = t913 <= t914 * (t48 * gap_rear_elbow_down_alike)
+    del t48, t913, t914
+    t952 = t912 | t951 | t916 | t917 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t912, t916, t917, t951
+    t953 = t952 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t952
+    t954 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
     del M_left_rear_elbow_down_alike
-    t953 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t952)
-    del M_right_rear_elbow_down_alike, t952
-    t954 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
+    t955 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t954)
+    del M_right_rear_elbow_down_alike, t954
+    t956 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
     del N_left_rear_elbow_down_alike, gap_rear_elbow_down_alike
-    t955 = np.maximum(0.0, t954 + N_right_rear_elbow_down_alike * 0.5)
-    del N_right_rear_elbow_down_alike, t954
-    t956 = sigma_right_rear_elbow_down_alike * np.sqrt(t953 * t955)
-    del sigma_right_rear_elbow_down_alike, t953, t955
-    astray_rear_elbow_down_alike = _runtime.select(t736, t919 * np.abs(t39 * t880 + t956), 0.0)
-    del t39, t880, t919, t956
-    t957 = _runtime.DETERMINED * astray_rear_elbow_down_alike
+    t957 = np.maximum(0.0, t956 + N_right_rear_elbow_down_alike * 0.5)
+    del N_right_rear_elbow_down_alike, t956
+    t958 = sigma_right_rear_elbow_down_alike * np.sqrt(t955 * t957)
+    del sigma_right_rear_elbow_down_alike, t955, t957
+    astray_rear_elbow_down_alike = _runtime.select(t738, t921 * np.abs(t39 * t882 + t958), 0.0)
+    del t39, t882, t921, t958
+    t959 = _runtime.DETERMINED * astray_rear_elbow_down_alike
     del astray_rear_elbow_down_alike
-    t958 = t951 | (_runtime.select(t736, t918, 1.0) <= t957)
-    del t736, t918, t951, t957
-    t959 = _runtime.status(invalid, unreachable_4, t958)
-    del invalid, t958, unreachable_4
+    t960 = t953 | (_runtime.select(t738, t920, 1.0) <= t959)
+    del t738, t920, t953, t959
+    t961 = _runtime.status(invalid, unreachable_4, t960)
+    del invalid, t960, unreachable_4
     return (
-        t203,
-        t217,
-        t222,
-        _runtime.wrap_cut(t230) + t202,
-        _runtime.wrap(t219 + t232) + t202,
-        t234,
-        t203,
-        t217,
-        t222,
-        _runtime.wrap_cut(t235) + t202,
-        _runtime.wrap(t219 - t232) + t202,
-        t234,
-        t434,
-        t452,
-        t456,
-        _runtime.wrap_cut(t468) + t433,
-        _runtime.wrap(t219 + t471) + t433,
-        t472,
-        t434,
-        t452,
-        t456,
-        _runtime.wrap_cut(t473) + t433,
-        _runtime.wrap(t219 - t471) + t433,
-        t472,
-        t652,
-        t670,
-        t674,
-        _runtime.wrap_cut(t686) + t651,
-        _runtime.wrap(t219 + t689) + t651,
-        t690,
-        t652,
-        t670,
-        t674,
-        _runtime.wrap_cut(t691) + t651,
-        _runtime.wrap(t219 - t689) + t651,
-        t690,
-        t871,
-        t888,
-        t892,
-        _runtime.wrap_cut(t904) + t870,
-        _runtime.wrap(t219 + t907) + t870,
-        t908,
-        t871,
-        t888,
-        t892,
-        _runtime.wrap_cut(t909) + t870,
-        _runtime.wrap(t219 - t907) + t870,
-        t908,
-        t924,
-        t924,
-        t937,
-        t937,
-        t948,
-        t948,
-        t959,
-        t959,
+        t205,
+        t219,
+        t224,
+        _runtime.wrap_cut(t232) + t204,
+        _runtime.wrap(t221 + t234) + t204,
+        t236,
+        t205,
+        t219,
+        t224,
+        _runtime.wrap_cut(t237) + t204,
+        _runtime.wrap(t221 - t234) + t204,
+        t236,
+        t436,
+        t454,
+        t458,
+        _runtime.wrap_cut(t470) + t435,
+        _runtime.wrap(t221 + t473) + t435,
+        t474,
+        t436,
+        t454,
+        t458,
+        _runtime.wrap_cut(t475) + t435,
+        _runtime.wrap(t221 - t473) + t435,
+        t474,
+        t654,
+        t672,
+        t676,
+        _runtime.wrap_cut(t688) + t653,
+        _runtime.wrap(t221 + t691) + t653,
+        t692,
+        t654,
+        t672,
+        t676,
+        _runtime.wrap_cut(t693) + t653,
+        _runtime.wrap(t221 - t691) + t653,
+        t692,
+        t873,
+        t890,
+        t894,
+        _runtime.wrap_cut(t906) + t872,
+        _runtime.wrap(t221 + t909) + t872,
+        t910,
+        t873,
+        t890,
+        t894,
+        _runtime.wrap_cut(t911) + t872,
+        _runtime.wrap(t221 - t909) + t872,
+        t910,
+        t926,
+        t926,
+        t939,
+        t939,
+        t950,
+        t950,
+        t961,
+        t961,
     )
 
 
@@ -4316,7 +4320,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del large_mid, small_mid, t65
     t69 = N_mid - gap
     nearer_right = t68 + t69
-    room_right = np.minimum(farther_right, nearer_right)
+    margin_right = np.minimum(farther_right, nearer_right)
     h_left_0 = point_21 - shift_21
     del point_21, shift_21
     t70 = t59 + shift_11
@@ -4326,8 +4330,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t62, t67, t71
     nearer_left = t69 - t68
     del t68, t69
-    room_left = np.minimum(farther_left, nearer_left)
-    t72 = t40 & (t41 <= room_right) & (t41 <= room_left)
+    margin_left = np.minimum(farther_left, nearer_left)
+    t72 = t40 & (t41 <= margin_right) & (t41 <= margin_left)
     t73 = t72 & (t41 <= nearer_right) & (t41 <= farther_right)
     del t72
     t74 = t73 & (t41 <= nearer_left) & (t41 <= farther_left)
@@ -4441,8 +4445,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t123, t29
     t124 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
     nearer_right_front_elbow_down_alike = t122 + t124
-    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t125 = t40 & (t41 <= room_right_front_elbow_down_alike)
+    margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t125 = t40 & (t41 <= margin_right_front_elbow_down_alike)
     t126 = t109 - t111
     del t109, t111
     r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t114
@@ -4454,8 +4458,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t117, t121, t128
     nearer_left_front_elbow_down_alike = t124 - t122
     del t122, t124
-    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
-    t129 = t125 & (t41 <= room_left_front_elbow_down_alike)
+    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
+    t129 = t125 & (t41 <= margin_left_front_elbow_down_alike)
     del t125
     t130 = t129 & (t41 <= nearer_right_front_elbow_down_alike)
     del t129
@@ -4557,8 +4561,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t174 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
     nearer_right_rear_elbow_up_alike = t173 + t174
-    room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t175 = t40 & (t41 <= room_right_rear_elbow_up_alike)
+    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t175 = t40 & (t41 <= margin_right_rear_elbow_up_alike)
     h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t164
     del point_21_rear_elbow_up_alike, t164
     t176 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
@@ -4571,8 +4575,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t171, t172, t178
     nearer_left_rear_elbow_up_alike = t174 - t173
     del t173, t174
-    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
-    t179 = t175 & (t41 <= room_left_rear_elbow_up_alike)
+    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
+    t179 = t175 & (t41 <= margin_left_rear_elbow_up_alike)
     del t175
     t180 = t179 & (t41 <= nearer_right_rear_elbow_up_alike)
     del t179
@@ -4664,8 +4668,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t222 = N_mid - gap_rear_elbow_down_alike
     del N_mid
     nearer_right_rear_elbow_down_alike = t221 + t222
-    room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t223 = t40 & (t41 <= room_right_rear_elbow_down_alike)
+    margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
+    t223 = t40 & (t41 <= margin_right_rear_elbow_down_alike)
     del t40
     t224 = t212 + shift_21_rear_elbow_down_alike
     del shift_21_rear_elbow_down_alike, t212
@@ -4676,8 +4680,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t219, t220, t226
     nearer_left_rear_elbow_down_alike = t222 - t221
     del t221, t222
-    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
-    t227 = t223 & (t41 <= room_left_rear_elbow_down_alike)
+    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
+    t227 = t223 & (t41 <= margin_left_rear_elbow_down_alike)
     del t223
     t228 = t227 & (t41 <= nearer_right_rear_elbow_down_alike)
     del t227
@@ -4791,12 +4795,12 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t32
     t277 = t275 | (np.abs(t34) + np.abs(root) <= t276) | (fore <= t276)
     del fore, root, t275, t276, t34
-    t278 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
-    del room_right
+    t278 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    del margin_right
     t279 = _runtime.VANISHING * play_right
     del play_right
-    t280 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
-    del room_left
+    t280 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    del margin_left
     t281 = t277 | (t278 <= t279) | (t280 <= t279) | (t78 <= _runtime.VANISHING * t42)
     del t277, t278, t280, t42, t78
     t282 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
@@ -4806,38 +4810,38 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del fore_arm, size, t283
     t285 = t284 | (np.abs(h_left_0) + np.abs(-t70) <= t282)
     del h_left_0, t284, t70
-    t286 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t287 = np.maximum(-t286, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t286
-    t288 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t289 = np.maximum(-t288, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t288
+    t286 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t287 = np.maximum(-t286, margin_right_front_elbow_down_alike)
+    del margin_right_front_elbow_down_alike, t286
+    t288 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, margin_left_front_elbow_down_alike)
+    del margin_left_front_elbow_down_alike, t288
     t290 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
     del r_right_0_front_elbow_down_alike, t112
     t291 = t285 | (t287 <= t279) | (t289 <= t279) | (t290 <= t282)
     del t285, t287, t289, t290
     t292 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
     del r_left_0_front_elbow_down_alike, t126
-    t293 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t294 = np.maximum(-t293, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t293
-    t295 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t296 = np.maximum(-t295, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t295
+    t293 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t294 = np.maximum(-t293, margin_right_rear_elbow_up_alike)
+    del margin_right_rear_elbow_up_alike, t293
+    t295 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t296 = np.maximum(-t295, margin_left_rear_elbow_up_alike)
+    del margin_left_rear_elbow_up_alike, t295
     t297 = t291 | (t292 <= t282) | (t294 <= t279) | (t296 <= t279)
     del t291, t292, t294, t296
     t298 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
     t299 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t300 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t301 = np.maximum(-t300, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t300
+    t300 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t301 = np.maximum(-t300, margin_right_rear_elbow_down_alike)
+    del margin_right_rear_elbow_down_alike, t300
     t302 = t297 | (t298 <= t282) | (t299 <= t282) | (t301 <= t279)
     del t297, t298, t299, t301
-    t303 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t304 = np.maximum(-t303, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t303
+    t303 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t304 = np.maximum(-t303, margin_left_rear_elbow_down_alike)
+    del margin_left_rear_elbow_down_alike, t303
     t305 = t302 | (t304 <= t279) | (np.abs(-t213) + np.abs(-t215) <= t282)
     del t213, t215, t279, t302, t304
     t306 = t305 | (np.abs(-t224) + np.abs(-t225) <= t282)

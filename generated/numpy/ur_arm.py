@@ -1305,11 +1305,11 @@ def _ik(
     t168 = T13 * s_1_1_8 - T23 * c_1_1_8
     most_1_1_8 = np.sqrt(t167 + t168 * t168)
     t169 = most_1_1_8 <= 8.881784197001252e-16
-    room_1_1_8 = most_1_1_8 * most_1_1_8
+    margin_1_1_8 = most_1_1_8 * most_1_1_8
     del most_1_1_8
-    rest_1_1_8 = np.sqrt(room_1_1_8) * _runtime.sign(-t168)
-    t170 = 1.0 / room_1_1_8
-    del room_1_1_8
+    rest_1_1_8 = np.sqrt(margin_1_1_8) * _runtime.sign(-t168)
+    t170 = 1.0 / margin_1_1_8
+    del margin_1_1_8
     by_c_1_1_8 = _runtime.select(t169, 1.0, -(t168 * rest_1_1_8 * t170))
     del t168
     t171 = _runtime.select(t169, 0.0, t170 * (axisx_1_1_8 * rest_1_1_8))
@@ -2624,11 +2624,11 @@ def _ik(
     t633 = T13 * s_1_1_8_left_flip_up - T23 * c_1_1_8_left_flip_up
     most_1_1_8_left_flip_up = np.sqrt(t632 + t633 * t633)
     t634 = most_1_1_8_left_flip_up <= 8.881784197001252e-16
-    room_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up
+    margin_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up
     del most_1_1_8_left_flip_up
-    rest_1_1_8_left_flip_up = np.sqrt(room_1_1_8_left_flip_up) * _runtime.sign(-t633)
-    t635 = 1.0 / room_1_1_8_left_flip_up
-    del room_1_1_8_left_flip_up
+    rest_1_1_8_left_flip_up = np.sqrt(margin_1_1_8_left_flip_up) * _runtime.sign(-t633)
+    t635 = 1.0 / margin_1_1_8_left_flip_up
+    del margin_1_1_8_left_flip_up
     by_c_1_1_8_left_flip_up = _runtime.select(t634, 1.0, -(t633 * rest_1_1_8_left_flip_up * t635))
     del t633
     t636 = axisx_1_1_8_left_flip_up * rest_1_1_8_left_flip_up
@@ -4267,11 +4267,11 @@ def _ik(
     t1264 = T13 * s_1_1_8_right_noflip_up - T23 * c_1_1_8_right_noflip_up
     most_1_1_8_right_noflip_up = np.sqrt(t1263 + t1264 * t1264)
     t1265 = most_1_1_8_right_noflip_up <= 8.881784197001252e-16
-    room_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up
+    margin_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up
     del most_1_1_8_right_noflip_up
-    rest_1_1_8_right_noflip_up = np.sqrt(room_1_1_8_right_noflip_up) * _runtime.sign(-t1264)
-    t1266 = 1.0 / room_1_1_8_right_noflip_up
-    del room_1_1_8_right_noflip_up
+    rest_1_1_8_right_noflip_up = np.sqrt(margin_1_1_8_right_noflip_up) * _runtime.sign(-t1264)
+    t1266 = 1.0 / margin_1_1_8_right_noflip_up
+    del margin_1_1_8_right_noflip_up
     t1267 = -(t1264 * rest_1_1_8_right_noflip_up * t1266)
     del t1264
     by_c_1_1_8_right_noflip_up = _runtime.select(t1265, 1.0, t1267)
@@ -5904,11 +5904,11 @@ def _ik(
     t1892 = T13 * s_1_1_8_right_flip_up - T23 * c_1_1_8_right_flip_up
     most_1_1_8_right_flip_up = np.sqrt(t1891 + t1892 * t1892)
     t1893 = most_1_1_8_right_flip_up <= 8.881784197001252e-16
-    room_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up
+    margin_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up
     del most_1_1_8_right_flip_up
-    rest_1_1_8_right_flip_up = np.sqrt(room_1_1_8_right_flip_up) * _runtime.sign(-t1892)
-    t1894 = 1.0 / room_1_1_8_right_flip_up
-    del room_1_1_8_right_flip_up
+    rest_1_1_8_right_flip_up = np.sqrt(margin_1_1_8_right_flip_up) * _runtime.sign(-t1892)
+    t1894 = 1.0 / margin_1_1_8_right_flip_up
+    del margin_1_1_8_right_flip_up
     by_c_1_1_8_right_flip_up = _runtime.select(t1893, 1.0, -(t1892 * rest_1_1_8_right_flip_up * t1894))
     del t1892
     t1895 = axisx_1_1_8_right_flip_up * rest_1_1_8_right_flip_up

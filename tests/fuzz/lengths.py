@@ -45,7 +45,7 @@ def draw_postures(rng: np.random.Generator, robot: Robot, lengths: Array) -> tup
     some = (kind == 1)[:, None] & (rng.random((n, m)) < 0.5)
     q = np.where(some | (kind == 2)[:, None], corners, q)
     q = _slides(rng, robot, q, lengths)
-    for own, other in enumerate(robot.beside):
+    for own, other in enumerate(robot.twin_of):
         if other >= 0:
             fraction = rng.choice((8.0, 32.0, 512.0), n)
             apart = np.where(rng.random(n) < 0.3, near[:, own] / 8, q[:, own] / fraction)

@@ -32,7 +32,7 @@ class Robot:
     joints: tuple[str, ...]
     slides: tuple[bool, ...]
     positive: tuple[bool, ...]
-    beside: tuple[int, ...]
+    twin_of: tuple[int, ...]
     angles: tuple[bool, ...]
     modes: bool
     needed: tuple[bool, ...]
@@ -83,7 +83,7 @@ def _robot(source: pipeline.Source) -> Robot:
         tuple(s.name for s in actuated),
         tuple(joints[s].kind == "prismatic" for s in actuated),
         tuple(s in inverse.nonnegative for s in actuated),
-        tuple(actuated.index(b) if (b := joints[s].beside) is not None else -1 for s in actuated),
+        tuple(actuated.index(b) if (b := joints[s].twin_of) is not None else -1 for s in actuated),
         tuple(s in inverse.angles for s in d["ik"].symbols),
         bool(d.assembly_modes),
         tuple(p.name in NEEDED.get(source.name, ()) for p in d.parameters),

@@ -137,6 +137,22 @@ def test_a_seed_that_reaches_a_singular_target_is_the_answer(library: ctypes.CDL
         assert names[0].endswith("up") == names[1].endswith("up")
 
 
+@pytest.mark.parametrize(("name", "aligned"), [("puma560", 4), ("ur_arm", 4)])
+def test_a_seed_close_by_does_not_hide_a_nearer_posture(
+    library: ctypes.CDLL, name: str, aligned: int
+) -> None:
+    """Rounding of the target hides that the wrist is aligned, and the seed is near all the same."""
+    arm, random = robot(name), np.random.default_rng(4)
+    hidden = 0
+    for q in random.uniform(-1.5, 1.5, (60, 6)):
+        q[aligned] = 10 ** random.uniform(-15, -13)
+        x, seed = arm.fk(q), q + random.uniform(-2e-3, 2e-3, 6)
+        _, found, status, _ = nearest(library, arm, x, seed, np.ones(6))
+        hidden += status == 0
+        assert np.linalg.norm(found - seed) < arm.nearest(x, seed).distance + 1e-6
+    assert hidden > 5
+
+
 def test_what_is_not_a_target(library: ctypes.CDLL) -> None:
     arm = robot("puma560")
     good, nan = arm.fk(np.full(6, 0.4)), np.full(6, np.nan)

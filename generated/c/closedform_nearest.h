@@ -34,16 +34,17 @@
 #define CF_LONGEST CLOSEDFORM_C(0.5) /* rad; a step along a self-motion */
 #define CF_STEPS 24
 #define CF_BOWED CLOSEDFORM_C(1e-3) /* a line whose direction rounding spoils; what is left is corrected */
-#define CF_CLOSE CLOSEDFORM_C(1e-2) /* rad; an answer so near to the seed is no jump */
 
 /* The functions and the sizes of one robot. task: 16 for a pose, 9 for a rotation, or the number of
- * coordinates; angles and revolute have a bit for each coordinate and each joint. */
+ * coordinates; angles and revolute have a bit for each coordinate and each joint. lengths: the power
+ * of a length in the determinant, which is NULL if there is none. */
 typedef struct {
-    size_t joints, branches, task, modes, rows, jacobian_rows, fields;
+    size_t joints, branches, task, modes, rows, jacobian_rows, fields, lengths;
     unsigned revolute, angles;
     void (*ik)(const void *params, const real_t *x, real_t *q, uint8_t *status);
     void (*fk)(const void *params, const real_t *q, real_t *x);
     void (*jacobian)(const void *params, const real_t *q, real_t *J);
+    void (*determinant)(const void *params, const real_t *q, real_t *det);
 } cf_robot;
 
 typedef struct {
@@ -261,29 +262,16 @@ static inline size_t cf_free_joint(
     return found;
 }
 
-/* Whether the Jacobian has no rank but by rounding. */
+/* Whether the determinant of an assembly mode is zero but for rounding. */
 static inline int cf_nearly_singular(const cf_task *t, const real_t *q)
 {
-    const size_t n = t->robot->joints;
-    real_t J[CF_MOST_ROWS * CF_MOST_JOINTS], product = 1;
-    if (t->robot->rows != n || !cf_task_jacobian(t, q, J)) return 0;
-    for (size_t k = 0; k < n; ++k) {
-        size_t pivot = k;
-        for (size_t i = k + 1; i < n; ++i)
-            if (CF_LIBM(fabs)(J[i * n + k]) > CF_LIBM(fabs)(J[pivot * n + k])) pivot = i;
-        product *= CF_LIBM(fabs)(J[pivot * n + k]);
-        if (!(product > 0)) return 1;
-        for (size_t j = 0; j < n; ++j) {
-            const real_t kept = J[pivot * n + j];
-            J[pivot * n + j] = J[k * n + j];
-            J[k * n + j] = kept;
-        }
-        for (size_t i = k + 1; i < n; ++i) {
-            const real_t share = J[i * n + k] / J[k * n + k];
-            for (size_t j = k; j < n; ++j) J[i * n + j] -= share * J[k * n + j];
-        }
-    }
-    return product <= CF_NEARLY;
+    real_t found[CF_MOST_ROWS], least = CF_NEARLY;
+    if (t->robot->determinant == NULL) return 0;
+    for (size_t k = 0; k < t->robot->lengths; ++k) least *= t->size;
+    t->robot->determinant(t->params, q, found);
+    for (size_t mode = 0; mode < t->robot->modes; ++mode)
+        if (CF_LIBM(fabs)(found[mode]) <= least) return 1;
+    return 0;
 }
 
 /* Move a singular posture along its self-motion until the free joint has the value of the seed, or
@@ -452,17 +440,10 @@ static inline int cf_nearest_posture(const cf_robot *robot, const void *params, 
             cf_squares(robot, near, wanted) < cf_squares(robot, every + (size_t)b * n, wanted))
             memcpy(every + (size_t)b * n, near, n * sizeof *q);
     }
-    best = cf_best(robot, q_seed, limits, weights, statuses, every, outside);
-    if (best < 0 || cf_squares(robot, every + (size_t)best * n, wanted) > CF_CLOSE) {
-        /* Rounding of the target may hide that it is singular. */
-        int moved = 0;
-        for (size_t b = 0; b < robot->branches; ++b) {
-            if (statuses[b] != CLOSEDFORM_OK || !cf_nearly_singular(&task, every + b * n)) continue;
+    for (size_t b = 0; b < robot->branches; ++b) /* Rounding of the target may hide that it is singular. */
+        if (statuses[b] == CLOSEDFORM_OK && cf_nearly_singular(&task, every + b * n))
             cf_release(&task, wanted, 1, every + b * n);
-            moved = 1;
-        }
-        if (moved) best = cf_best(robot, q_seed, limits, weights, statuses, every, outside);
-    }
+    best = cf_best(robot, q_seed, limits, weights, statuses, every, outside);
     for (size_t j = 0; j < n; ++j) q[j] = best < 0 ? CLOSEDFORM_NAN : every[(size_t)best * n + j];
     *status = best >= 0 ? statuses[best]
               : invalid || !finite ? (uint8_t)CLOSEDFORM_INVALID

@@ -27,6 +27,11 @@ static inline void delta_nearest_jacobian(const void *params, const real_t *q, r
     delta_jacobian((const delta_params *)params, q, J);
 }
 
+static inline void delta_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    delta_determinant((const delta_params *)params, q, det);
+}
+
 /*
  * Of all branches of delta_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int delta_nearest(const delta_params *params, const real_t x[3],
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 7, 0x7u,
-        0x0u, delta_nearest_ik, delta_nearest_fk, delta_nearest_jacobian };
+    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 7, 3, 0x7u,
+        0x0u, delta_nearest_ik, delta_nearest_fk, delta_nearest_jacobian, delta_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

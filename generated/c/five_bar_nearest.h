@@ -27,6 +27,11 @@ static inline void five_bar_nearest_jacobian(const void *params, const real_t *q
     five_bar_jacobian((const five_bar_params *)params, q, J);
 }
 
+static inline void five_bar_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    five_bar_determinant((const five_bar_params *)params, q, det);
+}
+
 /*
  * Of all branches of five_bar_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int five_bar_nearest(const five_bar_params *params, const real_t x
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 4, 2, 2, 2, 2, 5, 0x3u,
-        0x0u, five_bar_nearest_ik, five_bar_nearest_fk, five_bar_nearest_jacobian };
+    static const cf_robot robot = { 2, 4, 2, 2, 2, 2, 5, 2, 0x3u,
+        0x0u, five_bar_nearest_ik, five_bar_nearest_fk, five_bar_nearest_jacobian, five_bar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

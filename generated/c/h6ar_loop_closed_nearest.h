@@ -26,6 +26,11 @@ static inline void h6ar_loop_closed_nearest_jacobian(const void *params, const r
     h6ar_loop_closed_jacobian((const h6ar_loop_closed_params *)params, q, J);
 }
 
+static inline void h6ar_loop_closed_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    h6ar_loop_closed_determinant((const h6ar_loop_closed_params *)params, q, det);
+}
+
 /*
  * Of all branches of h6ar_loop_closed_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int h6ar_loop_closed_nearest(const h6ar_loop_closed_params *params
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 6, 1, 6, 6, 9, 0x3fu,
-        0x38u, h6ar_loop_closed_nearest_ik, h6ar_loop_closed_nearest_fk, h6ar_loop_closed_nearest_jacobian };
+    static const cf_robot robot = { 6, 8, 6, 1, 6, 6, 9, 3, 0x3fu,
+        0x38u, h6ar_loop_closed_nearest_ik, h6ar_loop_closed_nearest_fk, h6ar_loop_closed_nearest_jacobian, h6ar_loop_closed_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -26,6 +26,11 @@ static inline void irb260_nearest_jacobian(const void *params, const real_t *q, 
     irb260_jacobian((const irb260_params *)params, q, J);
 }
 
+static inline void irb260_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    irb260_determinant((const irb260_params *)params, q, det);
+}
+
 /*
  * Of all branches of irb260_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int irb260_nearest(const irb260_params *params, const real_t x[4],
     const real_t q_seed[4], const real_t *limits, const real_t *weights, real_t q[4], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 4, 4, 4, 1, 4, 4, 6, 0xfu,
-        0x8u, irb260_nearest_ik, irb260_nearest_fk, irb260_nearest_jacobian };
+    static const cf_robot robot = { 4, 4, 4, 1, 4, 4, 6, 3, 0xfu,
+        0x8u, irb260_nearest_ik, irb260_nearest_fk, irb260_nearest_jacobian, irb260_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -27,6 +27,11 @@ static inline void linear_delta_nearest_jacobian(const void *params, const real_
     linear_delta_jacobian((const linear_delta_params *)params, q, J);
 }
 
+static inline void linear_delta_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    linear_delta_determinant((const linear_delta_params *)params, q, det);
+}
+
 /*
  * Of all branches of linear_delta_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int linear_delta_nearest(const linear_delta_params *params, const 
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 3, 0x0u,
-        0x0u, linear_delta_nearest_ik, linear_delta_nearest_fk, linear_delta_nearest_jacobian };
+    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 3, 0, 0x0u,
+        0x0u, linear_delta_nearest_ik, linear_delta_nearest_fk, linear_delta_nearest_jacobian, linear_delta_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -26,6 +26,11 @@ static inline void opw_arm_nearest_jacobian(const void *params, const real_t *q,
     opw_arm_jacobian_space((const opw_arm_params *)params, q, J);
 }
 
+static inline void opw_arm_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    opw_arm_determinant((const opw_arm_params *)params, q, det);
+}
+
 /*
  * Of all branches of opw_arm_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int opw_arm_nearest(const opw_arm_params *params, const real_t T[1
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 7, 0x3fu,
-        0x0u, opw_arm_nearest_ik, opw_arm_nearest_fk, opw_arm_nearest_jacobian };
+    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 7, 3, 0x3fu,
+        0x0u, opw_arm_nearest_ik, opw_arm_nearest_fk, opw_arm_nearest_jacobian, opw_arm_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);
 }

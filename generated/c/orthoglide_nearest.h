@@ -27,6 +27,11 @@ static inline void orthoglide_nearest_jacobian(const void *params, const real_t 
     orthoglide_jacobian((const orthoglide_params *)params, q, J);
 }
 
+static inline void orthoglide_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    orthoglide_determinant((const orthoglide_params *)params, q, det);
+}
+
 /*
  * Of all branches of orthoglide_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int orthoglide_nearest(const orthoglide_params *params, const real
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 1, 0x0u,
-        0x0u, orthoglide_nearest_ik, orthoglide_nearest_fk, orthoglide_nearest_jacobian };
+    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 1, 0, 0x0u,
+        0x0u, orthoglide_nearest_ik, orthoglide_nearest_fk, orthoglide_nearest_jacobian, orthoglide_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -26,6 +26,11 @@ static inline void planar_2r_nearest_jacobian(const void *params, const real_t *
     planar_2r_jacobian((const planar_2r_params *)params, q, J);
 }
 
+static inline void planar_2r_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    planar_2r_determinant((const planar_2r_params *)params, q, det);
+}
+
 /*
  * Of all branches of planar_2r_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int planar_2r_nearest(const planar_2r_params *params, const real_t
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 2, 2, 1, 2, 3, 2, 0x3u,
-        0x0u, planar_2r_nearest_ik, planar_2r_nearest_fk, planar_2r_nearest_jacobian };
+    static const cf_robot robot = { 2, 2, 2, 1, 2, 3, 2, 2, 0x3u,
+        0x0u, planar_2r_nearest_ik, planar_2r_nearest_fk, planar_2r_nearest_jacobian, planar_2r_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -26,6 +26,11 @@ static inline void puma560_nearest_jacobian(const void *params, const real_t *q,
     puma560_jacobian_space((const puma560_params *)params, q, J);
 }
 
+static inline void puma560_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    puma560_determinant((const puma560_params *)params, q, det);
+}
+
 /*
  * Of all branches of puma560_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int puma560_nearest(const puma560_params *params, const real_t T[1
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 4, 0x3fu,
-        0x0u, puma560_nearest_ik, puma560_nearest_fk, puma560_nearest_jacobian };
+    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 4, 3, 0x3fu,
+        0x0u, puma560_nearest_ik, puma560_nearest_fk, puma560_nearest_jacobian, puma560_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);
 }

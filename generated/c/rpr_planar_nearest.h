@@ -27,6 +27,11 @@ static inline void rpr_planar_nearest_jacobian(const void *params, const real_t 
     rpr_planar_jacobian((const rpr_planar_params *)params, q, J);
 }
 
+static inline void rpr_planar_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    rpr_planar_determinant((const rpr_planar_params *)params, q, det);
+}
+
 /*
  * Of all branches of rpr_planar_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int rpr_planar_nearest(const rpr_planar_params *params, const real
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 1, 2, 2, 2, 2, 1, 0x0u,
-        0x0u, rpr_planar_nearest_ik, rpr_planar_nearest_fk, rpr_planar_nearest_jacobian };
+    static const cf_robot robot = { 2, 1, 2, 2, 2, 2, 1, 0, 0x0u,
+        0x0u, rpr_planar_nearest_ik, rpr_planar_nearest_fk, rpr_planar_nearest_jacobian, rpr_planar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

@@ -26,6 +26,11 @@ static inline void scara_nearest_jacobian(const void *params, const real_t *q, r
     scara_jacobian((const scara_params *)params, q, J);
 }
 
+static inline void scara_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    scara_determinant((const scara_params *)params, q, det);
+}
+
 /*
  * Of all branches of scara_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int scara_nearest(const scara_params *params, const real_t x[4],
     const real_t q_seed[4], const real_t *limits, const real_t *weights, real_t q[4], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 4, 2, 4, 1, 4, 4, 3, 0xbu,
-        0x8u, scara_nearest_ik, scara_nearest_fk, scara_nearest_jacobian };
+    static const cf_robot robot = { 4, 2, 4, 1, 4, 4, 3, 2, 0xbu,
+        0x8u, scara_nearest_ik, scara_nearest_fk, scara_nearest_jacobian, scara_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

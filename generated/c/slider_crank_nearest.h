@@ -27,6 +27,11 @@ static inline void slider_crank_nearest_jacobian(const void *params, const real_
     slider_crank_jacobian((const slider_crank_params *)params, q, J);
 }
 
+static inline void slider_crank_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    slider_crank_determinant((const slider_crank_params *)params, q, det);
+}
+
 /*
  * Of all branches of slider_crank_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -42,8 +47,8 @@ static inline int slider_crank_nearest(const slider_crank_params *params, const 
     const real_t q_seed[1], const real_t *limits, const real_t *weights, real_t q[1], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 1, 2, 1, 2, 1, 1, 3, 0x1u,
-        0x0u, slider_crank_nearest_ik, slider_crank_nearest_fk, slider_crank_nearest_jacobian };
+    static const cf_robot robot = { 1, 2, 1, 2, 1, 1, 3, 1, 0x1u,
+        0x0u, slider_crank_nearest_ik, slider_crank_nearest_fk, slider_crank_nearest_jacobian, slider_crank_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);
 }

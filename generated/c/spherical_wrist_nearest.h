@@ -26,6 +26,11 @@ static inline void spherical_wrist_nearest_jacobian(const void *params, const re
     spherical_wrist_jacobian_space((const spherical_wrist_params *)params, q, J);
 }
 
+static inline void spherical_wrist_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    spherical_wrist_determinant((const spherical_wrist_params *)params, q, det);
+}
+
 /*
  * Of all branches of spherical_wrist_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int spherical_wrist_nearest(const spherical_wrist_params *params, 
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 2, 9, 1, 3, 3, 1, 0x7u,
-        0x0u, spherical_wrist_nearest_ik, spherical_wrist_nearest_fk, spherical_wrist_nearest_jacobian };
+    static const cf_robot robot = { 3, 2, 9, 1, 3, 3, 1, 0, 0x7u,
+        0x0u, spherical_wrist_nearest_ik, spherical_wrist_nearest_fk, spherical_wrist_nearest_jacobian, spherical_wrist_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, R, q_seed, limits, weights, q, status, outside);
 }

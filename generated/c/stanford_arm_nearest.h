@@ -26,6 +26,11 @@ static inline void stanford_arm_nearest_jacobian(const void *params, const real_
     stanford_arm_jacobian_space((const stanford_arm_params *)params, q, J);
 }
 
+static inline void stanford_arm_nearest_determinant(const void *params, const real_t *q, real_t *det)
+{
+    stanford_arm_determinant((const stanford_arm_params *)params, q, det);
+}
+
 /*
  * Of all branches of stanford_arm_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
@@ -41,8 +46,8 @@ static inline int stanford_arm_nearest(const stanford_arm_params *params, const 
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 1, 0x3bu,
-        0x0u, stanford_arm_nearest_ik, stanford_arm_nearest_fk, stanford_arm_nearest_jacobian };
+    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 1, 2, 0x3bu,
+        0x0u, stanford_arm_nearest_ik, stanford_arm_nearest_fk, stanford_arm_nearest_jacobian, stanford_arm_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);
 }

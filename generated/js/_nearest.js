@@ -14,7 +14,6 @@ const SHARE = 1e-3;
 const DAMPING = 1e-13;
 const SLACK = 1e-9; // how far a joint may pass a limit, in rad
 const NEARLY = 1e-12; // a determinant that only rounding keeps from zero
-const CLOSE = 1e-2; // rad; an answer so near to the seed is no jump
 const LONGEST = 0.5; // rad; a step along a self-motion
 const STEPS = 24;
 const ANGLES = ["yaw", "pitch", "roll", "psi", "phi", "theta"];
@@ -66,16 +65,11 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
     if (finite && solutions.status.includes(SINGULAR)) release(task, wanted, every, solutions.status);
     const bounds = { lower, upper, weight };
     const statuses = solutions.status.map((/** @type {number} */ status) => (finite ? status : INVALID));
-    let found = best(task, every, statuses, q0, bounds);
-    if (found.branch < 0 || apart(task, found.q, wanted) > CLOSE) { // rounding may hide that the target is singular
-        let moved = false;
-        statuses.forEach((/** @type {number} */ status, /** @type {number} */ b) => {
-            if (status !== OK || !nearlySingular(task, every[b])) return;
-            every[b] = moveTo(task, wanted, every[b], true).q;
-            moved = true;
-        });
-        if (moved) found = best(task, every, statuses, q0, bounds);
-    }
+    statuses.forEach((/** @type {number} */ status, /** @type {number} */ b) => {
+        // rounding may hide that the target is singular
+        if (status === OK && nearlySingular(task, every[b])) every[b] = moveTo(task, wanted, every[b], true).q;
+    });
+    const found = best(task, every, statuses, q0, bounds);
     const invalid = !finite || solutions.status.every((/** @type {number} */ s) => s === INVALID);
     if (found.branch < 0 && invalid) found.status = INVALID;
     return found;
@@ -114,28 +108,20 @@ function best(task, every, statuses, seed, { lower, upper, weight }) {
 }
 
 /**
- * Whether the Jacobian has no rank but by rounding.
+ * Whether the determinant of an assembly mode is zero but for rounding.
  *
  * @param {Task} task
  * @param {readonly number[]} q
  */
 function nearlySingular(task, q) {
-    const J = task.jacobian(q);
-    const n = task.n;
-    if (J === undefined || J.length !== n) return false;
-    let product = 1;
-    for (let k = 0; k < n; ++k) {
-        const column = J.map((row, i) => (i < k ? -1 : Math.abs(row[k])));
-        const pivot = column.indexOf(Math.max(...column));
-        product *= column[pivot];
-        if (!(product > 0)) return true;
-        [J[k], J[pivot]] = [J[pivot], J[k]];
-        for (let i = k + 1; i < n; ++i) {
-            const share = J[i][k] / J[k][k];
-            J[i] = J[i].map((v, j) => v - share * J[k][j]);
-        }
-    }
-    return product <= NEARLY;
+    const { robot } = task;
+    if (robot.determinant === undefined) return false;
+    const named = task.angles.filter((angle) => !angle).length;
+    const lengths = { 16: 3, 9: 0 }[task.x.length] ?? named;
+    const slides = task.revolute.filter((revolute) => !revolute).length;
+    /** @type {number[]} */
+    const found = [robot.determinant(Array.from(q), task.parameters)].flat();
+    return found.some((value) => Math.abs(value) <= NEARLY * task.size ** (lengths - slides));
 }
 
 /**

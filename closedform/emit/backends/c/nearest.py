@@ -26,6 +26,10 @@ class CNearest:
     rows: int
     jacobian: str
     jacobian_rows: int
+    determinant: str
+    """The name of a function for it, or NULL."""
+    lengths: int
+    """The power of a length in the determinant."""
     fields: int
     revolute: str
     angles: str
@@ -54,6 +58,8 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
     kinds = {j.symbol: j.kind for j in derivation.joints}
     revolute = sum(1 << k for k, j in enumerate(joints) if kinds[j] == "revolute")
     named = sum(1 << k for k, name in enumerate(derivation.task) if name in ANGLES)
+    lengths = {16: 3, 9: 0}.get(task, task - named.bit_count())
+    slides = len(joints) - revolute.bit_count()
     return CNearest(
         target=ik.inputs[0].name,
         joints=len(joints),
@@ -63,6 +69,8 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
         rows=rows,
         jacobian=jacobian.full,
         jacobian_rows=jacobian.outputs[0].size // (modes * len(joints)),
+        determinant=f"{derivation.name}_nearest_determinant" if "determinant" in known else "NULL",
+        lengths=lengths - slides,
         fields=len(derivation.parameters),
         revolute=f"0x{revolute:x}u",
         angles=f"0x{named if task not in (9, 16) else 0:x}u",

@@ -513,3 +513,19 @@ def test_the_name_of_a_file_stays_a_text(tmp_path: Path) -> None:
     path.write_text(FIVE_BAR, "utf-8")
     script = new("arm", "loop", path).text
     assert not [n for n in ast.walk(ast.parse(script)) if isinstance(n, ast.Raise)]
+
+
+@pytest.mark.parametrize("power", [-700, 0, 700])
+@pytest.mark.parametrize("name", ["delta", "linear_delta", "orthoglide", "spherical_five_bar"])
+def test_where_spheres_meet_scales_with_the_lengths(name: str, power: int) -> None:
+    module = importlib.import_module(f"closedform.generated.numpy.{name}")
+    lengths, scale = np.array(module.Parameters()), 2.0**power
+    turned = [f.startswith(("alpha", "beta", "gamma")) for f in module.Parameters._fields]
+    slides = name in ("linear_delta", "orthoglide")
+    q = np.array([0.1, 0.15, 0.2])[: len(module.JOINTS)]
+    p, status = module.fk(q * scale if slides else q, np.where(turned, lengths, lengths * scale))
+    assert (status == OK).all()
+    np.testing.assert_array_equal(p / scale, module.fk(q, lengths).p)
+    p, status = module.fk(0 * q, 0 * lengths)
+    assert (status == SINGULAR).all()
+    assert (p == 0).all()

@@ -187,7 +187,7 @@ def test_the_crosscheck_of_a_file(tmp_path: Path) -> None:
         (', axis = [0, 1]}', "}", "s1 slides; say in which direction"),
         ('["carriage", "post"]', '["carriage", "slider"]', "s1 does not lead to the hand P"),
         ("axis = [0, 1]}", "axis = [0, 1], driven = true}", "passive slide"),
-        ('"carriage"], at = "O", kind = "prismatic"', '"carriage"], at = "O"', "on a driven crank"),
+        ('"carriage"], at = "O", kind = "prismatic"', '"carriage"], at = "O"', "not on a driven"),
     ],
 )  # fmt: skip
 def test_a_file_that_does_not_fit_says_why(

@@ -105,9 +105,11 @@ def three_spheres(
     n = _vector(p, "n", first.cross(a) * over)
     nu = p.let("nu", n.dot(n), nonnegative=True)
     line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
-    beside, length = _beside(p, a)
+    equal = r1 == r2 == r3
+    # of a mechanism without size, only equal spheres are seen to touch
+    beside, length = _beside(p, a, scale if equal else choose(point, 1, scale))
     w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
-    if r1 == r2 == r3:
+    if equal:
         # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
         left = other.dot(other - apart)
         part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
@@ -260,15 +262,17 @@ def _vector(p: Program, name: str, entries: Iterable[sp.Expr]) -> sp.Matrix:
     return sp.Matrix([p.let(f"{name}_{i}", e) for i, e in zip("xyz", entries, strict=True)])
 
 
-def _beside(p: Program, e: sp.Matrix) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
-    """A vector at right angles to a vector and not shorter, and the square of its length.
+def _beside(p: Program, e: sp.Matrix, scale: sp.Expr) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
+    """A vector at right angles to a vector, and the square of its length.
 
-    It is the product of the vector and (1, s, 0), where the sign s differs from that of x y.
+    It is the product of the vector and ``scale * (1, s, 0)``, where the sign s differs from that of
+    x y.  So it is not short, and its degree in lengths is that of a product.
     """
     x, y, z = e
     side = p.let("side", sign_of(x * y))
-    last = p.let("last", y + side * x)
-    return (side * z, z, -last), last**2 + 2 * z**2
+    up = p.let("up", scale * z)
+    last = p.let("last", scale * (y + side * x))
+    return (side * up, up, -last), last**2 + 2 * up**2
 
 
 def _cases(

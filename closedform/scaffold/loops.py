@@ -350,9 +350,8 @@ class Legs:
             return self.rail(joint, body, slides[0])
         if joint.kind == "revolute" and slides and not rods:
             raise loop.error(
-                f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide on "
-                f"a driven crank is not known (its line meets that of a like leg once, and a "
-                f"circle twice)"
+                f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
+                f"known on a driven slider, not on a driven crank"
             )
         if len(rods) != 1:
             raise loop.error(

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 68 compare and select, 62 add, 12 divide, 95 multiply, 6 sincos, 1 sqrt
-#   skeleton: 131 compare and select, 113 add, 18 divide, 94 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 79 compare and select, 71 add, 12 divide, 95 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 67 compare and select, 83 add, 12 divide, 119 multiply, 6 sincos, 1 sqrt
-#   jacobian: 80 compare and select, 101 add, 30 divide, 174 multiply, 6 sincos, 1 sqrt
-#   determinant: 64 compare and select, 83 add, 14 divide, 124 multiply, 6 sincos, 1 sqrt
-#   singularities: 69 compare and select, 83 add, 12 divide, 120 multiply, 6 sincos, 1 sqrt
-#   condition_number: 66 compare and select, 121 add, 14 divide, 171 multiply, 6 sincos, 3 sqrt
-#   constraint: 63 compare and select, 93 add, 12 divide, 157 multiply, 6 sincos, 1 sqrt
+#   fk: 68 compare and select, 62 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
+#   skeleton: 131 compare and select, 113 add, 18 divide, 96 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 79 compare and select, 71 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 67 compare and select, 83 add, 12 divide, 121 multiply, 6 sincos, 1 sqrt
+#   jacobian: 80 compare and select, 101 add, 30 divide, 176 multiply, 6 sincos, 1 sqrt
+#   determinant: 64 compare and select, 83 add, 14 divide, 126 multiply, 6 sincos, 1 sqrt
+#   singularities: 69 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
+#   condition_number: 66 compare and select, 121 add, 14 divide, 173 multiply, 6 sincos, 3 sqrt
+#   constraint: 63 compare and select, 93 add, 12 divide, 159 multiply, 6 sincos, 1 sqrt
 #   ik: 169 compare and select, 151 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -208,8 +208,9 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t29 = l * size * 2.0
     t30 = l * l
     side = ops.sign(t15 * a_x)
-    t31 = t15 + a_x * side
-    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    t31 = size * (t15 + a_x * side)
+    up = size * d_z
+    t32 = t31 * t31 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -232,13 +233,13 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
     t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
     t46 = d_x * 0.5 - (t5 - t43 * t45)
-    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t44)
+    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t44)
     t47 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
     t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t48))
     t49 = w_x * h
     t50 = t15 * 0.5 - (t8 + t44 * t45)
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t43))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t43))
     t51 = h * w_y
     t52 = d_z * 0.5 - (t3 + n_z_2 * t45)
     w_z = ops.select(in_line, -t31, a_x * t44 + t15 * t43)
@@ -263,6 +264,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -388,8 +390,9 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t50 = l * l
     t51 = mu * t47
     side = ops.sign(t35 * a_x)
-    t52 = t35 + a_x * side
-    t53 = 2.0 * (d_z * d_z) + t52 * t52
+    t52 = size * (t35 + a_x * side)
+    up = size * d_z
+    t53 = t52 * t52 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
     t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
     t55 = mu * 0.25
@@ -418,7 +421,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     part_2 = ops.select(in_line, 1.0 / ops.select(t68 & in_line, t53, 1.0), 1.0 / ops.select(t69, mu * nu_2, 1.0))
     t72 = ops.select(in_line, 0.0, t51 * part_2 * 0.5)
     t73 = t70 * t72 + d_x * 0.5
-    w_x = ops.select(in_line, d_z * side, t35 * n_z_2 - d_z * t71)
+    w_x = ops.select(in_line, side * up, t35 * n_z_2 - d_z * t71)
     t74 = ops.select(all_same, 0.0, nu_2 * (t72 * t72) + t55)
     t75 = ops.select(t65, part_2 * ops.max(t50 - t74, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t75))
@@ -426,7 +429,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t77 = t9 - (t73 - t76)
     t78 = t5 - t77
     t79 = t71 * t72 - t35 * 0.5
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t70))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t70))
     t80 = h * w_y
     t81 = t18 + (t79 + t80)
     t82 = t15 - t81
@@ -618,6 +621,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 4),
 )
 
 
@@ -713,8 +717,9 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t29 = l * size * 2.0
     t30 = l * l
     side = ops.sign(t15 * a_x)
-    t31 = t15 + a_x * side
-    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    t31 = size * (t15 + a_x * side)
+    up = size * d_z
+    t32 = t31 * t31 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -732,7 +737,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
     n_z_2 = over_2 * t26
     t43 = over_2 * t24
-    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t43)
+    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t43)
     t44 = over_2 * t21
     nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
@@ -743,7 +748,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t48 = w_x * h
     t49 = t44 * t45 + d_x * 0.5
     t50 = t48 - t49
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
     t51 = h * w_y
     t52 = t43 * t45 - t15 * 0.5
     t53 = t51 + t52
@@ -787,6 +792,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -883,8 +889,9 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t31 = l * size * 2.0
     t32 = l * l
     side = ops.sign(t17 * a_x)
-    t33 = t17 + a_x * side
-    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    t33 = size * (t17 + a_x * side)
+    up = size * d_z
+    t34 = t33 * t33 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -903,7 +910,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, mu * nu_2, 1.0))
@@ -915,7 +922,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t52 = t47 * t48 + d_x * 0.5
     t53 = t51 - t52
     t54 = s_alpha1 * t3
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
     t55 = h * w_y
     t56 = t46 * t48 - t17 * 0.5
     t57 = t55 + t56
@@ -955,6 +962,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 4),
 )
 
 
@@ -1051,8 +1059,9 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t31 = l * size * 2.0
     t32 = l * l
     side = ops.sign(t17 * a_x)
-    t33 = t17 + a_x * side
-    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    t33 = size * (t17 + a_x * side)
+    up = size * d_z
+    t34 = t33 * t33 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1071,7 +1080,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1084,7 +1093,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1165,6 +1174,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -1262,8 +1272,9 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t31 = l * size * 2.0
     t32 = l * l
     side = ops.sign(t17 * a_x)
-    t33 = t17 + a_x * side
-    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    t33 = size * (t17 + a_x * side)
+    up = size * d_z
+    t34 = t33 * t33 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1282,7 +1293,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1295,7 +1306,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1331,6 +1342,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 6),
 )
 
 
@@ -1427,8 +1439,9 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t31 = l * size * 2.0
     t32 = l * l
     side = ops.sign(t17 * a_x)
-    t33 = t17 + a_x * side
-    t34 = 2.0 * (d_z * d_z) + t33 * t33
+    t33 = size * (t17 + a_x * side)
+    up = size * d_z
+    t34 = t33 * t33 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1447,7 +1460,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, d_z * side, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1460,7 +1473,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1503,6 +1516,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 4),
 )
 
 
@@ -1597,8 +1611,9 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t29 = l * size * 2.0
     t30 = l * l
     side = ops.sign(t15 * a_x)
-    t31 = t15 + a_x * side
-    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    t31 = size * (t15 + a_x * side)
+    up = size * d_z
+    t32 = t31 * t31 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -1616,7 +1631,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
     n_z_2 = over_2 * t26
     t43 = over_2 * t24
-    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t43)
+    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t43)
     t44 = over_2 * t21
     nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
     t45 = mu * nu_2
@@ -1628,7 +1643,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t49 = w_x * h
     t50 = t44 * t46 + d_x * 0.5
     t51 = t49 - t50
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
     t52 = h * w_y
     t53 = t43 * t46 - t15 * 0.5
     t54 = t52 + t53
@@ -1694,6 +1709,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), (), 6),
 )
 
 
@@ -1789,8 +1805,9 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t29 = l * size * 2.0
     t30 = l * l
     side = ops.sign(t15 * a_x)
-    t31 = t15 + a_x * side
-    t32 = 2.0 * (d_z * d_z) + t31 * t31
+    t31 = size * (t15 + a_x * side)
+    up = size * d_z
+    t32 = t31 * t31 + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -1823,13 +1840,13 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t52 = s_alpha3 * t51
     t53 = t37 * t52
     t54 = u_z + t51
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
     t55 = h * w_y
     t56 = t45 * t46 - t15 * 0.5
     t57 = t55 + t56
     t58 = t54 * (t12 + t57)
     t59 = c_alpha3 * t37
-    w_x = ops.select(in_line, d_z * side, t15 * n_z_2 - d_z * t45)
+    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t45)
     t60 = w_x * h
     t61 = t44 * t46 + d_x * 0.5
     t62 = t60 - t61
@@ -1885,6 +1902,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 4),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 67 compare and select, 48 add, 16 divide, 70 multiply, 1 sqrt
-#   skeleton: 106 compare and select, 82 add, 18 divide, 69 multiply, 1 sqrt
-#   jacobian_parallel: 76 compare and select, 56 add, 16 divide, 70 multiply, 1 sqrt
-#   jacobian_serial: 64 compare and select, 42 add, 14 divide, 61 multiply, 1 sqrt
-#   jacobian: 79 compare and select, 74 add, 34 divide, 121 multiply, 1 sqrt
-#   determinant: 61 compare and select, 42 add, 16 divide, 66 multiply, 1 sqrt
-#   singularities: 66 compare and select, 42 add, 14 divide, 62 multiply, 1 sqrt
-#   condition_number: 65 compare and select, 106 add, 18 divide, 140 multiply, 3 sqrt
-#   constraint: 62 compare and select, 64 add, 22 divide, 94 multiply, 1 sqrt
+#   fk: 67 compare and select, 48 add, 16 divide, 72 multiply, 1 sqrt
+#   skeleton: 106 compare and select, 82 add, 18 divide, 71 multiply, 1 sqrt
+#   jacobian_parallel: 76 compare and select, 56 add, 16 divide, 72 multiply, 1 sqrt
+#   jacobian_serial: 64 compare and select, 42 add, 14 divide, 63 multiply, 1 sqrt
+#   jacobian: 79 compare and select, 74 add, 34 divide, 123 multiply, 1 sqrt
+#   determinant: 61 compare and select, 42 add, 16 divide, 68 multiply, 1 sqrt
+#   singularities: 66 compare and select, 42 add, 14 divide, 64 multiply, 1 sqrt
+#   condition_number: 65 compare and select, 106 add, 18 divide, 142 multiply, 3 sqrt
+#   constraint: 62 compare and select, 64 add, 22 divide, 96 multiply, 1 sqrt
 #   ik: 75 compare and select, 66 add, 5 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -176,51 +176,52 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t20 = l * size * 2.0
     t21 = l * l
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * side)
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = invalid | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t16
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t16
     n_y_2 = over_2 * t15
-    t34 = ops.select(in_line, t10 * side, d_y * t33 - t10 * n_y_2)
-    t35 = over_2 * t12
-    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t33 * t33
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
-    t38 = ops.select(t28, part_2 * ops.max(t21 - t37, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t38))
-    t39 = t34 * h
-    t40 = t4 * 0.5 - (c1_x + t35 * t36)
-    t41 = n_y_2 * t36 - d_y * 0.5
-    w_y = ops.select(in_line, -t10, a_x * t33 + t10 * t35)
-    t42 = h * w_y
-    t43 = t10 * 0.5 - (rho1 + t33 * t36)
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
-    t44 = h * w_z
-    t45 = ops.status(invalid, unreachable, in_line)
+    t35 = ops.select(in_line, side * t22, d_y * t34 - t10 * n_y_2)
+    t36 = over_2 * t12
+    nu_2 = t36 * t36 + n_y_2 * n_y_2 + t34 * t34
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
+    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
+    t39 = ops.select(t29, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t39))
+    t40 = t35 * h
+    t41 = t4 * 0.5 - (c1_x + t36 * t37)
+    t42 = n_y_2 * t37 - d_y * 0.5
+    w_y = ops.select(in_line, -t22, a_x * t34 + t10 * t36)
+    t43 = h * w_y
+    t44 = t10 * 0.5 - (rho1 + t34 * t37)
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t36)
+    t45 = h * w_z
+    t46 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t39 - t40),
-        ops.select(failed, ops.nan, -(t41 + t42)),
-        ops.select(failed, ops.nan, -(t43 + t44)),
-        ops.select(failed, ops.nan, -(t40 + t39)),
-        ops.select(failed, ops.nan, t42 - t41),
-        ops.select(failed, ops.nan, t44 - t43),
-        t45,
-        t45,
+        ops.select(failed, ops.nan, t40 - t41),
+        ops.select(failed, ops.nan, -(t42 + t43)),
+        ops.select(failed, ops.nan, -(t44 + t45)),
+        ops.select(failed, ops.nan, -(t41 + t40)),
+        ops.select(failed, ops.nan, t43 - t42),
+        ops.select(failed, ops.nan, t45 - t44),
+        t46,
+        t46,
     )
 
 
@@ -231,6 +232,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -320,216 +322,217 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t26 = l * l
     t27 = mu * t23
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t28 = 2.0 * (t15 * t15) + last * last
-    part = ops.select(in_line, 1.0 / t28, 1.0 / (mu * nu))
-    t29 = ops.select(in_line, 0.0, t27 * part * 0.5)
-    t30 = mu * 0.25
-    t31 = ops.select(all_same, 0.0, nu * (t29 * t29) + t30)
-    t32 = t26 - t31
-    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t32))
+    last = size * (d_y + a_x * side)
+    t28 = size * t15
+    t29 = last * last + 2.0 * (t28 * t28)
+    part = ops.select(in_line, 1.0 / t29, 1.0 / (mu * nu))
+    t30 = ops.select(in_line, 0.0, t27 * part * 0.5)
+    t31 = mu * 0.25
+    t32 = ops.select(all_same, 0.0, nu * (t30 * t30) + t31)
+    t33 = t26 - t32
+    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t33))
     failed = ops.opposite(t2) | unreachable
-    t33 = ops.select(failed, ops.nan, f)
-    t34 = ops.select(failed, ops.nan, 0.0)
-    t35 = ops.select(failed, ops.nan, rho1)
-    t36 = e + c1_x
-    t37 = ops.opposite(failed)
-    touching = ops.max(t32, 0.0) <= ops.vanishing * t25
-    t38 = t37 & ops.opposite(touching)
-    t39 = t37 | (t38 & ops.opposite(all_same))
-    t40 = ops.opposite(in_line)
-    t41 = t38 | (t39 & t40)
-    t42 = t41 & t40
-    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
-    t43 = over_2 * t17
+    t34 = ops.select(failed, ops.nan, f)
+    t35 = ops.select(failed, ops.nan, 0.0)
+    t36 = ops.select(failed, ops.nan, rho1)
+    t37 = e + c1_x
+    t38 = ops.opposite(failed)
+    touching = ops.max(t33, 0.0) <= ops.vanishing * t25
+    t39 = t38 & ops.opposite(touching)
+    t40 = t38 | (t39 & ops.opposite(all_same))
+    t41 = ops.opposite(in_line)
+    t42 = t39 | (t40 & t41)
+    t43 = t42 & t41
+    over_2 = 1.0 / ops.select(t40 | t43, mu, 1.0)
+    t44 = over_2 * t17
     n_y_2 = over_2 * t20
-    t44 = over_2 * t21
-    nu_2 = t43 * t43 + n_y_2 * n_y_2 + t44 * t44
-    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t28, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
-    t45 = ops.select(in_line, 0.0, t27 * part_2 * 0.5)
-    t46 = t6 * 0.5 - t43 * t45
-    t47 = ops.select(in_line, t15 * side, d_y * t44 - t15 * n_y_2)
-    t48 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t30)
-    t49 = ops.select(t38, part_2 * ops.max(t26 - t48, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t49))
-    t50 = t47 * h
-    t51 = t46 - t50
-    t52 = ops.select(failed, ops.nan, t36 - t51)
-    t53 = n_y_2 * t45 - d_y * 0.5
-    w_y = ops.select(in_line, -t15, a_x * t44 + t15 * t43)
-    t54 = h * w_y
-    t55 = t53 + t54
-    t56 = ops.select(failed, ops.nan, -t55)
-    t57 = t44 * t45 - t15 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t43)
-    t58 = h * w_z
-    t59 = ops.select(failed, ops.nan, rho1 + (t57 - t58))
-    t60 = ops.select(failed, ops.nan, t4)
-    t61 = ops.select(failed, ops.nan, -t4)
-    t62 = ops.select(failed, ops.nan, -t5)
-    t63 = ops.select(failed, ops.nan, t9)
-    t64 = ops.select(failed, ops.nan, rho2)
-    t65 = c1_x - t4
-    t66 = t65 - t51
-    t67 = ops.select(failed, ops.nan, t66)
-    t68 = t7 * 0.25
-    t69 = ops.select(failed, ops.nan, -(t5 + t68))
-    t70 = e * 0.25
-    t71 = t9 - t70
-    t72 = ops.select(failed, ops.nan, t71)
-    t73 = ops.select(failed, ops.nan, t68 - t5)
-    t74 = t9 + t70
-    t75 = ops.select(failed, ops.nan, t74)
-    t76 = ops.select(failed, ops.nan, t66 - t68)
-    t77 = t8 - t70
-    t78 = ops.select(failed, ops.nan, t68 + t66)
-    t79 = t8 + t70
-    t80 = ops.select(failed, ops.nan, -t9)
-    t81 = ops.select(failed, ops.nan, rho3)
-    t82 = ops.select(failed, ops.nan, -t74)
-    t83 = ops.select(failed, ops.nan, -t71)
-    t84 = t46 + t50
-    t85 = ops.select(failed, ops.nan, t36 - t84)
-    t86 = t53 - t54
-    t87 = ops.select(failed, ops.nan, -t86)
-    t88 = ops.select(failed, ops.nan, rho1 + (t57 + t58))
-    t89 = t65 - t84
-    t90 = ops.select(failed, ops.nan, t89)
-    t91 = ops.select(failed, ops.nan, t89 - t68)
-    t92 = ops.select(failed, ops.nan, t68 + t89)
+    t45 = over_2 * t21
+    nu_2 = t44 * t44 + n_y_2 * n_y_2 + t45 * t45
+    part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t29, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
+    t46 = ops.select(in_line, 0.0, t27 * part_2 * 0.5)
+    t47 = t6 * 0.5 - t44 * t46
+    t48 = ops.select(in_line, side * t28, d_y * t45 - t15 * n_y_2)
+    t49 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t31)
+    t50 = ops.select(t39, part_2 * ops.max(t26 - t49, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t50))
+    t51 = t48 * h
+    t52 = t47 - t51
+    t53 = ops.select(failed, ops.nan, t37 - t52)
+    t54 = n_y_2 * t46 - d_y * 0.5
+    w_y = ops.select(in_line, -t28, a_x * t45 + t15 * t44)
+    t55 = h * w_y
+    t56 = t54 + t55
+    t57 = ops.select(failed, ops.nan, -t56)
+    t58 = t45 * t46 - t15 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t44)
+    t59 = h * w_z
+    t60 = ops.select(failed, ops.nan, rho1 + (t58 - t59))
+    t61 = ops.select(failed, ops.nan, t4)
+    t62 = ops.select(failed, ops.nan, -t4)
+    t63 = ops.select(failed, ops.nan, -t5)
+    t64 = ops.select(failed, ops.nan, t9)
+    t65 = ops.select(failed, ops.nan, rho2)
+    t66 = c1_x - t4
+    t67 = t66 - t52
+    t68 = ops.select(failed, ops.nan, t67)
+    t69 = t7 * 0.25
+    t70 = ops.select(failed, ops.nan, -(t5 + t69))
+    t71 = e * 0.25
+    t72 = t9 - t71
+    t73 = ops.select(failed, ops.nan, t72)
+    t74 = ops.select(failed, ops.nan, t69 - t5)
+    t75 = t9 + t71
+    t76 = ops.select(failed, ops.nan, t75)
+    t77 = ops.select(failed, ops.nan, t67 - t69)
+    t78 = t8 - t71
+    t79 = ops.select(failed, ops.nan, t69 + t67)
+    t80 = t8 + t71
+    t81 = ops.select(failed, ops.nan, -t9)
+    t82 = ops.select(failed, ops.nan, rho3)
+    t83 = ops.select(failed, ops.nan, -t75)
+    t84 = ops.select(failed, ops.nan, -t72)
+    t85 = t47 + t51
+    t86 = ops.select(failed, ops.nan, t37 - t85)
+    t87 = t54 - t55
+    t88 = ops.select(failed, ops.nan, -t87)
+    t89 = ops.select(failed, ops.nan, rho1 + (t58 + t59))
+    t90 = t66 - t85
+    t91 = ops.select(failed, ops.nan, t90)
+    t92 = ops.select(failed, ops.nan, t90 - t69)
+    t93 = ops.select(failed, ops.nan, t69 + t90)
     return (
-        t33,
-        t34,
-        t34,
-        t33,
         t34,
         t35,
-        t52,
-        t56,
-        t59,
-        t33,
+        t35,
+        t34,
+        t35,
+        t36,
+        t53,
+        t57,
         t60,
-        t35,
-        t33,
+        t34,
         t61,
-        t35,
-        t52,
-        ops.select(failed, ops.nan, t4 - t55),
-        t59,
-        t52,
-        ops.select(failed, ops.nan, -(t4 + t55)),
-        t59,
-        t62,
-        t63,
+        t36,
         t34,
         t62,
-        t63,
-        t64,
-        t67,
-        ops.select(failed, ops.nan, t8 - t55),
-        t59,
-        t69,
-        t72,
-        t64,
-        t73,
-        t75,
-        t64,
-        t76,
-        ops.select(failed, ops.nan, t77 - t55),
-        t59,
-        t78,
-        ops.select(failed, ops.nan, t79 - t55),
-        t59,
-        t62,
-        t80,
-        t34,
-        t62,
-        t80,
-        t81,
-        t67,
-        ops.select(failed, ops.nan, -(t8 + t55)),
-        t59,
-        t73,
-        t82,
-        t81,
-        t69,
-        t83,
-        t81,
-        t78,
-        ops.select(failed, ops.nan, -(t79 + t55)),
-        t59,
-        t76,
-        ops.select(failed, ops.nan, -(t77 + t55)),
-        t59,
-        ops.select(failed, ops.nan, c1_x - t51),
-        t56,
-        t59,
-        t33,
-        t34,
-        t34,
-        t33,
-        t34,
-        t35,
-        t85,
-        t87,
-        t88,
-        t33,
+        t36,
+        t53,
+        ops.select(failed, ops.nan, t4 - t56),
         t60,
-        t35,
-        t33,
-        t61,
-        t35,
-        t85,
-        ops.select(failed, ops.nan, t4 - t86),
-        t88,
-        t85,
-        ops.select(failed, ops.nan, -(t4 + t86)),
-        t88,
-        t62,
-        t63,
-        t34,
-        t62,
+        t53,
+        ops.select(failed, ops.nan, -(t4 + t56)),
+        t60,
         t63,
         t64,
-        t90,
-        ops.select(failed, ops.nan, t8 - t86),
-        t88,
-        t69,
-        t72,
+        t35,
+        t63,
         t64,
+        t65,
+        t68,
+        ops.select(failed, ops.nan, t8 - t56),
+        t60,
+        t70,
         t73,
-        t75,
-        t64,
-        t91,
-        ops.select(failed, ops.nan, t77 - t86),
-        t88,
-        t92,
-        ops.select(failed, ops.nan, t79 - t86),
-        t88,
-        t62,
-        t80,
-        t34,
-        t62,
-        t80,
+        t65,
+        t74,
+        t76,
+        t65,
+        t77,
+        ops.select(failed, ops.nan, t78 - t56),
+        t60,
+        t79,
+        ops.select(failed, ops.nan, t80 - t56),
+        t60,
+        t63,
         t81,
-        t90,
-        ops.select(failed, ops.nan, -(t8 + t86)),
-        t88,
-        t73,
+        t35,
+        t63,
+        t81,
         t82,
-        t81,
-        t69,
+        t68,
+        ops.select(failed, ops.nan, -(t8 + t56)),
+        t60,
+        t74,
         t83,
-        t81,
-        t92,
-        ops.select(failed, ops.nan, -(t79 + t86)),
+        t82,
+        t70,
+        t84,
+        t82,
+        t79,
+        ops.select(failed, ops.nan, -(t80 + t56)),
+        t60,
+        t77,
+        ops.select(failed, ops.nan, -(t78 + t56)),
+        t60,
+        ops.select(failed, ops.nan, c1_x - t52),
+        t57,
+        t60,
+        t34,
+        t35,
+        t35,
+        t34,
+        t35,
+        t36,
+        t86,
         t88,
+        t89,
+        t34,
+        t61,
+        t36,
+        t34,
+        t62,
+        t36,
+        t86,
+        ops.select(failed, ops.nan, t4 - t87),
+        t89,
+        t86,
+        ops.select(failed, ops.nan, -(t4 + t87)),
+        t89,
+        t63,
+        t64,
+        t35,
+        t63,
+        t64,
+        t65,
         t91,
-        ops.select(failed, ops.nan, -(t77 + t86)),
+        ops.select(failed, ops.nan, t8 - t87),
+        t89,
+        t70,
+        t73,
+        t65,
+        t74,
+        t76,
+        t65,
+        t92,
+        ops.select(failed, ops.nan, t78 - t87),
+        t89,
+        t93,
+        ops.select(failed, ops.nan, t80 - t87),
+        t89,
+        t63,
+        t81,
+        t35,
+        t63,
+        t81,
+        t82,
+        t91,
+        ops.select(failed, ops.nan, -(t8 + t87)),
+        t89,
+        t74,
+        t83,
+        t82,
+        t70,
+        t84,
+        t82,
+        t93,
+        ops.select(failed, ops.nan, -(t80 + t87)),
+        t89,
+        t92,
+        ops.select(failed, ops.nan, -(t78 + t87)),
+        t89,
+        ops.select(failed, ops.nan, c1_x - t85),
         t88,
-        ops.select(failed, ops.nan, c1_x - t84),
-        t87,
-        t88,
+        t89,
     )
 
 
@@ -540,6 +543,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 4),
 )
 
 
@@ -613,67 +617,68 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t20 = l * size * 2.0
     t21 = l * l
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * side)
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t12
     n_y_2 = over_2 * t15
-    t34 = over_2 * t16
-    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
-    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t36 = t4 * 0.5 - t33 * t35
-    t37 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
-    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = t37 * h
-    t41 = t36 - t40
-    t42 = n_y_2 * t35 - d_y * 0.5
-    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
-    t43 = h * w_y
-    t44 = t42 + t43
-    t45 = t34 * t35 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
-    t46 = h * w_z
-    A_13 = t45 - t46
-    t47 = ops.select(failed, ops.nan, t4 - t41)
-    t48 = t36 + t40
-    t49 = t42 - t43
-    A_13_above = t45 + t46
-    t50 = ops.select(failed, ops.nan, t4 - t48)
+    t35 = over_2 * t16
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t4 * 0.5 - t34 * t36
+    t38 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
+    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = t38 * h
+    t42 = t37 - t41
+    t43 = n_y_2 * t36 - d_y * 0.5
+    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
+    t44 = h * w_y
+    t45 = t43 + t44
+    t46 = t35 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t47 = h * w_z
+    A_13 = t46 - t47
+    t48 = ops.select(failed, ops.nan, t4 - t42)
+    t49 = t37 + t41
+    t50 = t43 - t44
+    A_13_above = t46 + t47
+    t51 = ops.select(failed, ops.nan, t4 - t49)
     return (
-        ops.select(failed, ops.nan, -t41),
-        ops.select(failed, ops.nan, -t44),
+        ops.select(failed, ops.nan, -t42),
+        ops.select(failed, ops.nan, -t45),
         ops.select(failed, ops.nan, A_13),
-        t47,
-        ops.select(failed, ops.nan, c3_y - t44),
+        t48,
+        ops.select(failed, ops.nan, c3_y - t45),
         ops.select(failed, ops.nan, t3 + A_13),
-        t47,
-        ops.select(failed, ops.nan, -(c3_y + t44)),
+        t48,
+        ops.select(failed, ops.nan, -(c3_y + t45)),
         ops.select(failed, ops.nan, t6 + A_13),
-        ops.select(failed, ops.nan, -t48),
         ops.select(failed, ops.nan, -t49),
+        ops.select(failed, ops.nan, -t50),
         ops.select(failed, ops.nan, A_13_above),
-        t50,
-        ops.select(failed, ops.nan, c3_y - t49),
+        t51,
+        ops.select(failed, ops.nan, c3_y - t50),
         ops.select(failed, ops.nan, t3 + A_13_above),
-        t50,
-        ops.select(failed, ops.nan, -(c3_y + t49)),
+        t51,
+        ops.select(failed, ops.nan, -(c3_y + t50)),
         ops.select(failed, ops.nan, t6 + A_13_above),
     )
 
@@ -685,6 +690,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -756,36 +762,37 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = d_y + a_x * ops.sign(a_x * d_y)
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t16
-    t34 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t16
+    t35 = over_2 * t12
     n_y_2 = over_2 * t15
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
-    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t36 = t33 * t35 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
-    t37 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
-    t38 = ops.select(t28, part_2 * ops.max(t21 - t37, 0.0), 1.0)
-    t39 = w_z * ops.select(touching, 0.0, ops.sqrt(t38))
-    A_13 = t36 - t39
-    A_13_above = t36 + t39
+    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t34 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
+    t39 = ops.select(t29, part_2 * ops.max(t21 - t38, 0.0), 1.0)
+    t40 = w_z * ops.select(touching, 0.0, ops.sqrt(t39))
+    A_13 = t37 - t40
+    A_13_above = t37 + t40
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
@@ -803,6 +810,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -875,101 +883,102 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t20 = l * size * 2.0
     t21 = l * l
     side = ops.sign(a_x * d_y)
-    last = d_y + a_x * side
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * side)
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t16
-    t34 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t16
+    t35 = over_2 * t12
     n_y_2 = over_2 * t15
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
-    t35 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t33 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
-    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = w_z * h
-    A_13 = t37 - t40
-    t41 = n_y_2 * t36 - d_y * 0.5
-    w_y = ops.select(in_line, -t10, a_x * t33 + t10 * t34)
-    t42 = h * w_y
-    t43 = t41 + t42
-    A_22 = c3_y - t43
+    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
+    t36 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
+    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t38 = t34 * t37 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
+    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = w_z * h
+    A_13 = t38 - t41
+    t42 = n_y_2 * t37 - d_y * 0.5
+    w_y = ops.select(in_line, -t22, a_x * t34 + t10 * t35)
+    t43 = h * w_y
+    t44 = t42 + t43
+    A_22 = c3_y - t44
     A_33 = t6 + A_13
     A_23 = t3 + A_13
-    t44 = c3_y + t43
-    t45 = ops.select(t27, t35 * h, 1.0)
-    t46 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t44) / t45))
-    t47 = ops.select(failed, ops.nan, -(A_23 * (t43 * A_33 - A_13 * t44) / t45))
-    t48 = ops.select(failed, ops.nan, A_33 * (t43 * A_23 + A_13 * A_22) / t45)
-    t49 = t4 * 0.5 - t34 * t36
-    t50 = ops.select(in_line, t10 * side, d_y * t33 - t10 * n_y_2)
-    t51 = h * t50
-    t52 = t49 - t51
-    A_21 = t4 - t52
-    t53 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t45)
-    t54 = A_13 * A_21
-    t55 = ops.select(failed, ops.nan, A_23 * (A_33 * t52 + t54) / t45)
-    t56 = ops.select(failed, ops.nan, -(A_33 * (t54 + A_23 * t52) / t45))
-    t57 = ops.select(failed, ops.nan, A_13 * (t44 * A_21 + A_22 * A_21) / t45)
-    t58 = t43 * A_21
-    t59 = ops.select(failed, ops.nan, A_23 * (t44 * t52 + t58) / t45)
-    t60 = ops.select(failed, ops.nan, -(A_33 * (t58 - A_22 * t52) / t45))
-    A_13_above = t37 + t40
-    t61 = t41 - t42
-    A_22_above = c3_y - t61
+    t45 = c3_y + t44
+    t46 = ops.select(t28, t36 * h, 1.0)
+    t47 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t45) / t46))
+    t48 = ops.select(failed, ops.nan, -(A_23 * (t44 * A_33 - A_13 * t45) / t46))
+    t49 = ops.select(failed, ops.nan, A_33 * (t44 * A_23 + A_13 * A_22) / t46)
+    t50 = t4 * 0.5 - t35 * t37
+    t51 = ops.select(in_line, side * t22, d_y * t34 - t10 * n_y_2)
+    t52 = h * t51
+    t53 = t50 - t52
+    A_21 = t4 - t53
+    t54 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t46)
+    t55 = A_13 * A_21
+    t56 = ops.select(failed, ops.nan, A_23 * (A_33 * t53 + t55) / t46)
+    t57 = ops.select(failed, ops.nan, -(A_33 * (t55 + A_23 * t53) / t46))
+    t58 = ops.select(failed, ops.nan, A_13 * (t45 * A_21 + A_22 * A_21) / t46)
+    t59 = t44 * A_21
+    t60 = ops.select(failed, ops.nan, A_23 * (t45 * t53 + t59) / t46)
+    t61 = ops.select(failed, ops.nan, -(A_33 * (t59 - A_22 * t53) / t46))
+    A_13_above = t38 + t41
+    t62 = t42 - t43
+    A_22_above = c3_y - t62
     A_33_above = t6 + A_13_above
     A_23_above = t3 + A_13_above
-    t62 = c3_y + t61
-    t63 = A_13_above * (A_22_above * A_33_above + A_23_above * t62)
-    t64 = A_23_above * (t61 * A_33_above - A_13_above * t62)
-    t65 = A_33_above * (t61 * A_23_above + A_13_above * A_22_above)
-    t66 = t49 + t51
-    A_21_above = t4 - t66
-    t67 = A_33_above * A_21_above - A_23_above * A_21_above
-    t68 = ops.select(failed, ops.nan, -(A_13_above * t67 / t45))
-    t69 = A_13_above * A_21_above
-    t70 = -(A_23_above * (A_33_above * t66 + t69) / t45)
-    t71 = ops.select(failed, ops.nan, A_33_above * (t69 + A_23_above * t66) / t45)
-    t72 = A_13_above * (t62 * A_21_above + A_22_above * A_21_above)
-    t73 = t61 * A_21_above
-    t74 = ops.select(failed, ops.nan, -(A_23_above * (t62 * t66 + t73) / t45))
-    t75 = ops.select(failed, ops.nan, A_33_above * (t73 - A_22_above * t66) / t45)
+    t63 = c3_y + t62
+    t64 = A_13_above * (A_22_above * A_33_above + A_23_above * t63)
+    t65 = A_23_above * (t62 * A_33_above - A_13_above * t63)
+    t66 = A_33_above * (t62 * A_23_above + A_13_above * A_22_above)
+    t67 = t50 + t52
+    A_21_above = t4 - t67
+    t68 = A_33_above * A_21_above - A_23_above * A_21_above
+    t69 = ops.select(failed, ops.nan, -(A_13_above * t68 / t46))
+    t70 = A_13_above * A_21_above
+    t71 = -(A_23_above * (A_33_above * t67 + t70) / t46)
+    t72 = ops.select(failed, ops.nan, A_33_above * (t70 + A_23_above * t67) / t46)
+    t73 = A_13_above * (t63 * A_21_above + A_22_above * A_21_above)
+    t74 = t62 * A_21_above
+    t75 = ops.select(failed, ops.nan, -(A_23_above * (t63 * t67 + t74) / t46))
+    t76 = ops.select(failed, ops.nan, A_33_above * (t74 - A_22_above * t67) / t46)
     return (
-        t46,
         t47,
         t48,
-        t53,
-        t55,
+        t49,
+        t54,
         t56,
         t57,
-        t59,
+        t58,
         t60,
-        ops.select(failed, ops.nan, t63 / t45),
-        ops.select(failed, ops.nan, t64 / t45),
-        ops.select(failed, ops.nan, -(t65 / t45)),
-        t68,
-        ops.select(failed, ops.nan, t70),
-        t71,
-        ops.select(failed, ops.nan, -(t72 / t45)),
-        t74,
+        t61,
+        ops.select(failed, ops.nan, t64 / t46),
+        ops.select(failed, ops.nan, t65 / t46),
+        ops.select(failed, ops.nan, -(t66 / t46)),
+        t69,
+        ops.select(failed, ops.nan, t71),
+        t72,
+        ops.select(failed, ops.nan, -(t73 / t46)),
         t75,
+        t76,
     )
 
 
@@ -980,6 +989,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 4),
 )
 
 
@@ -1052,44 +1062,45 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = d_y + a_x * ops.sign(a_x * d_y)
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t16
-    t34 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t16
+    t35 = over_2 * t12
     n_y_2 = over_2 * t15
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
-    t35 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t33 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
-    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = w_z * h
-    A_13 = t37 - t40
-    t41 = ops.select(t27, t35 * h, 1.0)
-    t42 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t6 + A_13) / t41))
-    A_13_above = t37 + t40
-    t43 = A_13_above * (t3 + A_13_above) * (t6 + A_13_above)
+    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
+    t36 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
+    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t38 = t34 * t37 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
+    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = w_z * h
+    A_13 = t38 - t41
+    t42 = ops.select(t28, t36 * h, 1.0)
+    t43 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t6 + A_13) / t42))
+    A_13_above = t38 + t41
+    t44 = A_13_above * (t3 + A_13_above) * (t6 + A_13_above)
     return (
-        t42,
-        ops.select(failed, ops.nan, t43 / t41),
+        t43,
+        ops.select(failed, ops.nan, t44 / t42),
     )
 
 
@@ -1100,6 +1111,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 4),
 )
 
 
@@ -1171,39 +1183,40 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = d_y + a_x * ops.sign(a_x * d_y)
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t16
-    t34 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t16
+    t35 = over_2 * t12
     n_y_2 = over_2 * t15
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t33 * t33
-    t35 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t33 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
-    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = w_z * h
-    A_13 = t37 - t40
-    Delta = t35 * h
-    A_13_above = t37 + t40
+    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
+    t36 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
+    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t38 = t34 * t37 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
+    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = w_z * h
+    A_13 = t38 - t41
+    Delta = t36 * h
+    A_13_above = t38 + t41
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
@@ -1223,6 +1236,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 4),
 )
 
 
@@ -1295,98 +1309,99 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t20 = l * size * 2.0
     t21 = l * l
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * side)
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t12
     n_y_2 = over_2 * t15
-    t34 = over_2 * t16
-    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
-    t35 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, t35, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t4 * 0.5 - t33 * t36
-    t38 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t24)
-    t40 = ops.select(t28, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = t38 * h
-    t42 = t37 - t41
-    t43 = n_y_2 * t36 - d_y * 0.5
-    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
-    t44 = h * w_y
-    t45 = t43 + t44
-    t46 = t34 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
-    t47 = h * w_z
-    A_13 = t46 - t47
-    A_21 = t4 - t42
-    t48 = A_21 * A_21
-    A_22 = c3_y - t45
+    t35 = over_2 * t16
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
+    t36 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
+    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t38 = t4 * 0.5 - t34 * t37
+    t39 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t40 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
+    t41 = ops.select(t29, part_2 * ops.max(t21 - t40, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t41))
+    t42 = t39 * h
+    t43 = t38 - t42
+    t44 = n_y_2 * t37 - d_y * 0.5
+    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
+    t45 = h * w_y
+    t46 = t44 + t45
+    t47 = t35 * t37 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t48 = h * w_z
+    A_13 = t47 - t48
+    A_21 = t4 - t43
+    t49 = A_21 * A_21
+    A_22 = c3_y - t46
     A_23 = t3 + A_13
-    t49 = t42 * t42 + t45 * t45 + A_13 * A_13 + (t48 + A_22 * A_22 + A_23 * A_23)
-    t50 = c3_y + t45
+    t50 = t43 * t43 + t46 * t46 + A_13 * A_13 + (t49 + A_22 * A_22 + A_23 * A_23)
+    t51 = c3_y + t46
     A_33 = t6 + A_13
-    t51 = t45 * A_21
-    t52 = t42 * A_22 - t51
-    t53 = A_13 * A_21
-    t54 = t42 * A_23 + t53
-    t55 = t51 + t42 * t50
-    t56 = t53 + t42 * A_33
-    t57 = t52 * t52 + t54 * t54 + t55 * t55 + t56 * t56
-    t58 = t45 * A_23 + A_13 * A_22
-    t59 = t45 * A_33 - A_13 * t50
-    t60 = A_21 * t50 + A_21 * A_22
-    t61 = A_21 * A_33 - A_21 * A_23
-    t62 = t57 + t58 * t58 + t59 * t59 + t60 * t60 + t61 * t61
-    t63 = A_22 * A_33 + A_23 * t50
-    t64 = (t49 + (t48 + t50 * t50 + A_33 * A_33)) * (t62 + t63 * t63)
-    t65 = ops.select(t27, 3.0 * (t35 * h), 1.0)
-    t66 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t27, t64, 1.0)) / t65)
-    t67 = t37 + t41
-    t68 = t43 - t44
-    A_13_above = t46 + t47
-    square1_above = t67 * t67 + t68 * t68 + A_13_above * A_13_above
-    A_21_above = t4 - t67
-    t69 = A_21_above * A_21_above
-    A_22_above = c3_y - t68
+    t52 = t46 * A_21
+    t53 = t43 * A_22 - t52
+    t54 = A_13 * A_21
+    t55 = t43 * A_23 + t54
+    t56 = t52 + t43 * t51
+    t57 = t54 + t43 * A_33
+    t58 = t53 * t53 + t55 * t55 + t56 * t56 + t57 * t57
+    t59 = t46 * A_23 + A_13 * A_22
+    t60 = t46 * A_33 - A_13 * t51
+    t61 = A_21 * t51 + A_21 * A_22
+    t62 = A_21 * A_33 - A_21 * A_23
+    t63 = t58 + t59 * t59 + t60 * t60 + t61 * t61 + t62 * t62
+    t64 = A_22 * A_33 + A_23 * t51
+    t65 = (t50 + (t49 + t51 * t51 + A_33 * A_33)) * (t63 + t64 * t64)
+    t66 = ops.select(t28, 3.0 * (t36 * h), 1.0)
+    t67 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t28, t65, 1.0)) / t66)
+    t68 = t38 + t42
+    t69 = t44 - t45
+    A_13_above = t47 + t48
+    square1_above = t68 * t68 + t69 * t69 + A_13_above * A_13_above
+    A_21_above = t4 - t68
+    t70 = A_21_above * A_21_above
+    A_22_above = c3_y - t69
     A_23_above = t3 + A_13_above
-    square2_above = t69 + A_22_above * A_22_above + A_23_above * A_23_above
-    t70 = c3_y + t68
+    square2_above = t70 + A_22_above * A_22_above + A_23_above * A_23_above
+    t71 = c3_y + t69
     A_33_above = t6 + A_13_above
-    t71 = square1_above + square2_above + (t69 + t70 * t70 + A_33_above * A_33_above)
-    t72 = t68 * A_21_above
-    t73 = t67 * A_22_above - t72
-    t74 = A_13_above * A_21_above
-    t75 = t67 * A_23_above + t74
-    t76 = t72 + t67 * t70
-    t77 = t74 + t67 * A_33_above
-    t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
-    t79 = t68 * A_23_above + A_13_above * A_22_above
-    t80 = t68 * A_33_above - A_13_above * t70
-    t81 = A_21_above * t70 + A_21_above * A_22_above
-    t82 = A_21_above * A_33_above - A_21_above * A_23_above
-    t83 = t78 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
-    t84 = A_22_above * A_33_above + A_23_above * t70
-    t85 = ops.select(t27, t71 * (t83 + t84 * t84), 1.0)
-    t86 = ops.select(failed, ops.nan, ops.sqrt(t85) / t65)
+    t72 = square1_above + square2_above + (t70 + t71 * t71 + A_33_above * A_33_above)
+    t73 = t69 * A_21_above
+    t74 = t68 * A_22_above - t73
+    t75 = A_13_above * A_21_above
+    t76 = t68 * A_23_above + t75
+    t77 = t73 + t68 * t71
+    t78 = t75 + t68 * A_33_above
+    t79 = t74 * t74 + t76 * t76 + t77 * t77 + t78 * t78
+    t80 = t69 * A_23_above + A_13_above * A_22_above
+    t81 = t69 * A_33_above - A_13_above * t71
+    t82 = A_21_above * t71 + A_21_above * A_22_above
+    t83 = A_21_above * A_33_above - A_21_above * A_23_above
+    t84 = t79 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
+    t85 = A_22_above * A_33_above + A_23_above * t71
+    t86 = ops.select(t28, t72 * (t84 + t85 * t85), 1.0)
+    t87 = ops.select(failed, ops.nan, ops.sqrt(t86) / t66)
     return (
-        t66,
-        t86,
+        t67,
+        t87,
     )
 
 
@@ -1397,6 +1412,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 6),
 )
 
 
@@ -1470,64 +1486,65 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t20 = l * size * 2.0
     t21 = l * l
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t22 = 2.0 * (t10 * t10) + last * last
-    part = ops.select(in_line, 1.0 / t22, 1.0 / (mu * nu))
-    t23 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t24 = mu * 0.25
-    t25 = ops.select(all_same, 0.0, nu * (t23 * t23) + t24)
-    t26 = t21 - t25
-    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
+    last = size * (d_y + a_x * side)
+    t22 = size * t10
+    t23 = last * last + 2.0 * (t22 * t22)
+    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
+    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
+    t25 = mu * 0.25
+    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t27 = t21 - t26
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
-    t27 = ops.opposite(failed)
-    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
-    t28 = t27 & ops.opposite(touching)
-    t29 = t27 | (t28 & ops.opposite(all_same))
-    t30 = ops.opposite(in_line)
-    t31 = t28 | (t29 & t30)
-    t32 = t31 & t30
-    over_2 = 1.0 / ops.select(t29 | t32, mu, 1.0)
-    t33 = over_2 * t12
+    t28 = ops.opposite(failed)
+    touching = ops.max(t27, 0.0) <= ops.vanishing * t20
+    t29 = t28 & ops.opposite(touching)
+    t30 = t28 | (t29 & ops.opposite(all_same))
+    t31 = ops.opposite(in_line)
+    t32 = t29 | (t30 & t31)
+    t33 = t32 & t31
+    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
+    t34 = over_2 * t12
     n_y_2 = over_2 * t15
-    t34 = over_2 * t16
-    nu_2 = t33 * t33 + n_y_2 * n_y_2 + t34 * t34
-    part_2 = ops.select(in_line, 1.0 / ops.select(t31 & in_line, t22, 1.0), 1.0 / ops.select(t32, mu * nu_2, 1.0))
-    t35 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t36 = t4 * 0.5 - t33 * t35
-    t37 = ops.select(in_line, t10 * side, d_y * t34 - t10 * n_y_2)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t35 * t35) + t24)
-    t39 = ops.select(t28, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = t37 * h
-    t41 = t36 - t40
-    t42 = t34 * t35 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t33)
-    t43 = h * w_z
-    A_13 = t42 - t43
+    t35 = over_2 * t16
+    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
+    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
+    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
+    t37 = t4 * 0.5 - t34 * t36
+    t38 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
+    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t40))
+    t41 = t38 * h
+    t42 = t37 - t41
+    t43 = t35 * t36 - t10 * 0.5
+    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    t44 = h * w_z
+    A_13 = t43 - t44
     A_23 = t3 + A_13
     A_33 = t6 + A_13
-    t44 = (t4 - t41) * (1.7320508075688772 * A_13)
-    t45 = 1.7320508075688772 * t41 * A_23 * A_33 * 0.5 + A_33 * t44 * 0.25
-    t46 = n_y_2 * t35 - d_y * 0.5
-    w_y = ops.select(in_line, -t10, a_x * t34 + t10 * t33)
-    t47 = h * w_y
-    t48 = t46 + t47
-    t49 = 0.75 * A_13
-    t50 = t45 - A_33 * (c3_y - t48) * t49 + A_23 * t44 * 0.25
-    t51 = ops.select(failed, ops.nan, t50 - A_23 * t49 * (c3_y + t48))
-    t52 = t36 + t40
-    A_13_above = t42 + t43
+    t45 = (t4 - t42) * (1.7320508075688772 * A_13)
+    t46 = 1.7320508075688772 * t42 * A_23 * A_33 * 0.5 + A_33 * t45 * 0.25
+    t47 = n_y_2 * t36 - d_y * 0.5
+    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
+    t48 = h * w_y
+    t49 = t47 + t48
+    t50 = 0.75 * A_13
+    t51 = t46 - A_33 * (c3_y - t49) * t50 + A_23 * t45 * 0.25
+    t52 = ops.select(failed, ops.nan, t51 - A_23 * t50 * (c3_y + t49))
+    t53 = t37 + t41
+    A_13_above = t43 + t44
     A_23_above = t3 + A_13_above
     A_33_above = t6 + A_13_above
-    t53 = 1.7320508075688772 * t52 * A_23_above * A_33_above
-    t54 = (t4 - t52) * (1.7320508075688772 * A_13_above)
-    t55 = t46 - t47
-    t56 = 0.75 * A_13_above
-    t57 = t53 * 0.5 + A_33_above * t54 * 0.25 - A_33_above * (c3_y - t55) * t56
-    t58 = t57 + A_23_above * t54 * 0.25 - A_23_above * t56 * (c3_y + t55)
+    t54 = 1.7320508075688772 * t53 * A_23_above * A_33_above
+    t55 = (t4 - t53) * (1.7320508075688772 * A_13_above)
+    t56 = t47 - t48
+    t57 = 0.75 * A_13_above
+    t58 = t54 * 0.5 + A_33_above * t55 * 0.25 - A_33_above * (c3_y - t56) * t57
+    t59 = t58 + A_23_above * t55 * 0.25 - A_23_above * t57 * (c3_y + t56)
     return (
-        t51,
-        ops.select(failed, ops.nan, t58),
+        t52,
+        ops.select(failed, ops.nan, t59),
     )
 
 
@@ -1538,6 +1555,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 4),
 )
 
 

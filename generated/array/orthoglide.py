@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 63 compare and select, 38 add, 12 divide, 67 multiply, 1 sqrt
-#   skeleton: 80 compare and select, 51 add, 13 divide, 67 multiply, 1 sqrt
-#   jacobian_parallel: 68 compare and select, 43 add, 12 divide, 67 multiply, 1 sqrt
-#   jacobian_serial: 62 compare and select, 41 add, 12 divide, 67 multiply, 1 sqrt
-#   jacobian: 75 compare and select, 61 add, 30 divide, 110 multiply, 1 sqrt
-#   determinant: 59 compare and select, 41 add, 14 divide, 72 multiply, 1 sqrt
-#   singularities: 64 compare and select, 41 add, 12 divide, 68 multiply, 1 sqrt
-#   condition_number: 61 compare and select, 93 add, 14 divide, 125 multiply, 3 sqrt
-#   constraint: 58 compare and select, 45 add, 12 divide, 75 multiply, 1 sqrt
+#   fk: 63 compare and select, 38 add, 12 divide, 69 multiply, 1 sqrt
+#   skeleton: 80 compare and select, 51 add, 13 divide, 69 multiply, 1 sqrt
+#   jacobian_parallel: 68 compare and select, 43 add, 12 divide, 69 multiply, 1 sqrt
+#   jacobian_serial: 62 compare and select, 41 add, 12 divide, 69 multiply, 1 sqrt
+#   jacobian: 75 compare and select, 61 add, 30 divide, 112 multiply, 1 sqrt
+#   determinant: 59 compare and select, 41 add, 14 divide, 74 multiply, 1 sqrt
+#   singularities: 64 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
+#   condition_number: 61 compare and select, 93 add, 14 divide, 127 multiply, 3 sqrt
+#   constraint: 58 compare and select, 45 add, 12 divide, 77 multiply, 1 sqrt
 #   ik: 71 compare and select, 48 add, 1 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -160,8 +160,9 @@ def _fk(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -179,7 +180,7 @@ def _fk(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -189,7 +190,7 @@ def _fk(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t30))
     t31 = w_x * h
     t32 = rho1 * 0.5 - (rho1 + t27 * t28)
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
     w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
@@ -215,6 +216,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -292,8 +294,9 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -316,7 +319,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t28 | t31, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t32 = over_2 * t8
     nu_2 = t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t30 & in_line, t16, 1.0), 1.0 / ops.select(t31, mu * nu_2, 1.0))
@@ -328,7 +331,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t37 = t32 * t33 - rho1 * 0.5
     t38 = rho1 + (t36 + t37)
     t39 = ops.select(failed, ops.nan, t38)
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t32))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t32))
     t40 = w_y * h
     t41 = n_y_2 * t33 - d_y * 0.5
     A_12 = t40 - t41
@@ -471,6 +474,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 4),
 )
 
 
@@ -539,8 +543,9 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -558,7 +563,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -569,7 +574,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t31 = w_x * h
     t32 = t27 * t28 - rho1 * 0.5
     A_11 = t31 + t32
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
     A_12 = t33 - t34
@@ -615,6 +620,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -682,8 +688,9 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -701,7 +708,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -711,7 +718,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t30))
     t31 = w_x * h
     t32 = t27 * t28 - rho1 * 0.5
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
     t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
@@ -738,6 +745,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -805,8 +813,9 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -824,7 +833,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -836,7 +845,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
     A_11 = t32 + t33
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = t34 - t35
@@ -907,6 +916,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), (), 4),
 )
 
 
@@ -975,8 +985,9 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -994,7 +1005,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1005,7 +1016,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t31))
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
@@ -1027,6 +1038,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), (), 4),
 )
 
 
@@ -1094,8 +1106,9 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1113,7 +1126,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1124,7 +1137,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t31))
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = ops.select(failed, ops.nan, t34 - t35 - rho2)
@@ -1154,6 +1167,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 4),
 )
 
 
@@ -1221,8 +1235,9 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1240,7 +1255,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1252,7 +1267,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
     A_11 = t32 + t33
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = t34 - t35
@@ -1323,6 +1338,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), (), 6),
 )
 
 
@@ -1391,8 +1407,9 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t14 = L * size * 2.0
     t15 = L * L
     side = ops.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t16 = 2.0 * (d_z * d_z) + last * last
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    t16 = last * last + 2.0 * (up * up)
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1410,7 +1427,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     t27 = over_2 * t8
-    w_y = ops.select(in_line, d_z, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
     n_y_2 = over_2 * t10
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -1425,7 +1442,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t34 = w_z * h
     t35 = n_z_2 * t28 - d_z * 0.5
     t36 = t34 - t35
-    w_x = ops.select(in_line, d_z * side, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
     t37 = w_x * h
     t38 = t27 * t28 - rho1 * 0.5
     A_11 = t37 + t38
@@ -1447,6 +1464,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 4),
 )
 
 

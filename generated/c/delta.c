@@ -3,15 +3,15 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 43 compare and select, 64 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
- *   skeleton: 42 compare and select, 179 add, 14 divide, 84 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 42 compare and select, 85 add, 8 divide, 108 multiply, 6 sincos, 1 sqrt
- *   jacobian: 42 compare and select, 115 add, 26 divide, 163 multiply, 6 sincos, 1 sqrt
- *   determinant: 42 compare and select, 81 add, 10 divide, 113 multiply, 6 sincos, 1 sqrt
- *   singularities: 42 compare and select, 87 add, 8 divide, 109 multiply, 6 sincos, 1 sqrt
- *   condition_number: 42 compare and select, 119 add, 10 divide, 160 multiply, 6 sincos, 3 sqrt
- *   constraint: 42 compare and select, 91 add, 8 divide, 146 multiply, 6 sincos, 1 sqrt
+ *   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+ *   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+ *   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+ *   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+ *   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+ *   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
  *   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
  */
@@ -95,15 +95,16 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
     const real_t nu = t34 + cf_rounded(single, one, n_z * n_z);
     const int in_line = nu <= t14;
     const real_t side = cf_sign(t23 * a_x);
-    const real_t t36 = t23 + a_x * side;
-    const real_t t37 = CLOSEDFORM_C(2.0) * (d_z * d_z) + cf_rounded(single, one, t36 * t36);
+    const real_t t36 = size * (t23 + a_x * side);
+    const real_t up = size * d_z;
+    const real_t t37 = cf_rounded(single, one, t36 * t36) + CLOSEDFORM_C(2.0) * (up * up);
     const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t37), t38);
     const real_t t39 = cf_rounded(single, one, t25 * (d_x - t25)) + cf_rounded(single, one, t24 * (t23 - t24));
     const real_t t40 = t39 + cf_rounded(single, one, t27 * (d_z - t27));
     const real_t t41 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t40 * CLOSEDFORM_C(0.5));
     const real_t t42 = d_x * CLOSEDFORM_C(0.5) - (t4 - t30 * t41);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t23 * n_z - d_z * t33);
+    const real_t w_x = cf_rarely(single, in_line, side * up, t23 * n_z - d_z * t33);
     const real_t t43 = cf_rounded(single, one, nu * (t41 * t41)) + mu * CLOSEDFORM_C(0.25);
     const real_t t44 = cf_rounded(single, one, l * l) - cf_select(all_same, CLOSEDFORM_C(0.0), t43);
     const real_t slack = cf_max(t44, CLOSEDFORM_C(0.0));
@@ -121,7 +122,7 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
     const int unreachable = !t53;
     const real_t t54 = cf_poison(single, invalid | unreachable);
     const real_t t55 = t23 * CLOSEDFORM_C(0.5) - (t10 + t33 * t41);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t30));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t30));
     const real_t t56 = h * w_y;
     const real_t t57 = d_z * CLOSEDFORM_C(0.5) - (t1 + n_z * t41);
     const real_t w_z = cf_rarely(single, in_line, -t36, a_x * t33 + t23 * t30);
@@ -141,6 +142,19 @@ CLOSEDFORM_DISPATCHED
 void delta_fk(const delta_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2] };
@@ -149,6 +163,26 @@ void delta_fk(const delta_params *params, const real_t q[3],
     delta_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+CF_RARE void delta_fk_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        delta_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -159,6 +193,11 @@ void delta_fk_batch(size_t n, const delta_params *params,
 {
     const delta_params local = *params;
     const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -295,8 +334,9 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const int t48 = cf_abs(t47) <= t35 * CLOSEDFORM_FEASIBILITY;
     const real_t t49 = l * size * CLOSEDFORM_C(2.0);
     const real_t side = cf_sign(t37 * a_x);
-    const real_t t50 = t37 + a_x * side;
-    const real_t t51 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t50 * t50);
+    const real_t t50 = size * (t37 + a_x * side);
+    const real_t up = size * d_z;
+    const real_t t51 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t50 * t50 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t51, t52);
     const real_t t53 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * t46 * part * CLOSEDFORM_C(0.5));
@@ -311,14 +351,14 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t62 = t19 + t57;
     const real_t t63 = -t6 + t57;
     const real_t t64 = t43 * t53 + d_x * CLOSEDFORM_C(0.5);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t37 * n_z - d_z * t45);
+    const real_t w_x = cf_rarely(single, in_line, side * up, t37 * n_z - d_z * t45);
     const real_t slack = cf_max(t55, CLOSEDFORM_C(0.0));
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t49, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t65 = w_x * h;
     const real_t t66 = t11 - (t64 - t65);
     const real_t t67 = t8 - t66;
     const real_t t68 = t45 * t53 - t37 * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t43));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t43));
     const real_t t69 = h * w_y;
     const real_t t70 = t20 + (t68 + t69);
     const real_t t71 = t17 - t70;
@@ -608,8 +648,9 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t t51 = cf_rarely(1, in_line, -t50, CLOSEDFORM_C(0.0));
     const int t52 = cf_abs(t51) <= t5 * CLOSEDFORM_FEASIBILITY;
     const real_t side = cf_sign(t41 * a_x);
-    const real_t t53 = t41 + a_x * side;
-    const real_t t54 = CLOSEDFORM_C(1.0) / cf_nonzero(1, CLOSEDFORM_C(2.0) * (d_z * d_z) + t53 * t53);
+    const real_t t53 = size * (t41 + a_x * side);
+    const real_t up = size * d_z;
+    const real_t t54 = CLOSEDFORM_C(1.0) / cf_nonzero(1, t53 * t53 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(1, in_line, mu * nu);
     const real_t part = cf_rarely(1, in_line, t54, t55);
     const real_t t56 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * t50 * part * CLOSEDFORM_C(0.5));
@@ -619,13 +660,13 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t t60 = cf_poison(1, (!(t3 & t4)) | (!t59));
     const real_t t61 = CLOSEDFORM_C(0.0) + t60;
     const real_t t62 = t47 * t56 + d_x * CLOSEDFORM_C(0.5);
-    const real_t w_x = cf_rarely(1, in_line, d_z * side, t41 * n_z - d_z * t49);
+    const real_t w_x = cf_rarely(1, in_line, side * up, t41 * n_z - d_z * t49);
     const real_t slack = cf_max(t58, CLOSEDFORM_C(0.0));
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t7, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t63 = w_x * h;
     const real_t t64 = t12_lanes[0] - (t62 - t63);
     const real_t t65 = t49 * t56 - t41 * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(1, in_line, d_z, -(a_x * n_z + d_z * t47));
+    const real_t w_y = cf_rarely(1, in_line, up, -(a_x * n_z + d_z * t47));
     const real_t t66 = h * w_y;
     const real_t t67 = t16_lanes[0] + (t65 + t66);
     const real_t t68 = n_z * t56 - d_z * CLOSEDFORM_C(0.5);
@@ -801,10 +842,40 @@ CLOSEDFORM_DISPATCHED
 void delta_skeleton(const delta_params *params, const real_t q[3],
     real_t points[132])
 {
+    static const signed char points_degrees[132] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_skeleton_lanes(params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(132, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void delta_skeleton_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[132];
+        delta_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -813,6 +884,11 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
     real_t *points, size_t points_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1037,9 +1113,10 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const int in_line = nu <= t12;
     const real_t side = cf_sign(t13 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t13 * n_z - d_z * t21);
-    const real_t t22 = t13 + a_x * side;
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t22 * t22);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t13 * n_z - d_z * t21);
+    const real_t t22 = size * (t13 + a_x * side);
+    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t22 * t22 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t24 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t23, t24);
     const real_t t25 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
@@ -1060,7 +1137,7 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const int t38 = cf_abs(t37) <= t11 * CLOSEDFORM_FEASIBILITY;
     const int t39 = t38 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t28);
     const real_t t40 = cf_poison(single, (!(t35 & t36)) | (!t39));
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t19));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t19));
     const real_t t41 = h * w_y;
     const real_t t42 = t21 * t26 - t13 * CLOSEDFORM_C(0.5);
     const real_t t43 = t41 + t42;
@@ -1095,10 +1172,40 @@ CLOSEDFORM_DISPATCHED
 void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
     real_t A[18])
 {
+    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+CF_RARE void delta_jacobian_parallel_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        delta_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1107,6 +1214,11 @@ void delta_jacobian_parallel_batch(size_t n, const delta_params *params,
     real_t *A, size_t A_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1220,9 +1332,10 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
     const real_t side = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t16 * n_z - d_z * t24);
-    const real_t t25 = t16 + a_x * side;
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t25 * t25);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t16 * n_z - d_z * t24);
+    const real_t t25 = size * (t16 + a_x * side);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t25 * t25 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t26, t27);
     const real_t t28 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
@@ -1236,7 +1349,7 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t t34 = t22 * t29 + d_x * CLOSEDFORM_C(0.5);
     const real_t t35 = t33 - t34;
     const real_t t36 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t22));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t22));
     const real_t t37 = h * w_y;
     const real_t t38 = t24 * t29 - t16 * CLOSEDFORM_C(0.5);
     const real_t t39 = t37 + t38;
@@ -1276,10 +1389,40 @@ CLOSEDFORM_DISPATCHED
 void delta_jacobian_serial(const delta_params *params, const real_t q[3],
     real_t B[6])
 {
+    static const signed char B_degrees[6] = { 2, 2, 2, 2, 2, 2 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, B_degrees, exponent, B, B);
+    }
+}
+
+CF_RARE void delta_jacobian_serial_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[6];
+        delta_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1288,6 +1431,11 @@ void delta_jacobian_serial_batch(size_t n, const delta_params *params,
     real_t *B, size_t B_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1389,9 +1537,10 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
     const real_t side = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t16 * n_z - d_z * t24);
-    const real_t t25 = t16 + a_x * side;
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t25 * t25);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t16 * n_z - d_z * t24);
+    const real_t t25 = size * (t16 + a_x * side);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t25 * t25 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
     const real_t part = cf_rarely(single, in_line, t26, t28);
@@ -1406,7 +1555,7 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 - t35;
     const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t22));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t22));
     const real_t t38 = h * w_y;
     const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
     const real_t t40 = t38 + t39;
@@ -1479,10 +1628,40 @@ CLOSEDFORM_DISPATCHED
 void delta_jacobian(const delta_params *params, const real_t q[3],
     real_t J[18])
 {
+    static const signed char J_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void delta_jacobian_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[18];
+        delta_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1491,6 +1670,11 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
     real_t *J, size_t J_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1604,9 +1788,10 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
     const real_t side = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t16 * n_z - d_z * t24);
-    const real_t t25 = t16 + a_x * side;
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t25 * t25);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t16 * n_z - d_z * t24);
+    const real_t t25 = size * (t16 + a_x * side);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t25 * t25 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
     const real_t part = cf_rarely(single, in_line, t26, t28);
@@ -1621,7 +1806,7 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 - t35;
     const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t22));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t22));
     const real_t t38 = h * w_y;
     const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
     const real_t t40 = t38 + t39;
@@ -1660,10 +1845,40 @@ CLOSEDFORM_DISPATCHED
 void delta_determinant(const delta_params *params, const real_t q[3],
     real_t det[2])
 {
+    static const signed char det_degrees[2] = { 3, 3 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_determinant_kernel(1, params, q, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void delta_determinant_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        delta_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1672,6 +1887,11 @@ void delta_determinant_batch(size_t n, const delta_params *params,
     real_t *det, size_t det_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+        delta_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1769,9 +1989,10 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
     const real_t side = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t16 * n_z - d_z * t24);
-    const real_t t25 = t16 + a_x * side;
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t25 * t25);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t16 * n_z - d_z * t24);
+    const real_t t25 = size * (t16 + a_x * side);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t25 * t25 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
     const real_t part = cf_rarely(single, in_line, t26, t28);
@@ -1786,7 +2007,7 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 - t35;
     const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t22));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t22));
     const real_t t38 = h * w_y;
     const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
     const real_t t40 = t38 + t39;
@@ -1829,10 +2050,40 @@ CLOSEDFORM_DISPATCHED
 void delta_singularities(const delta_params *params, const real_t q[3],
     real_t factors[8])
 {
+    static const signed char factors_degrees[8] = { 2, 2, 2, 3, 2, 2, 2, 3 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void delta_singularities_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[8];
+        delta_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1841,6 +2092,11 @@ void delta_singularities_batch(size_t n, const delta_params *params,
     real_t *factors, size_t factors_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -1941,9 +2197,10 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const int in_line = nu <= t12;
     const real_t side = cf_sign(t13 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t13 * n_z - d_z * t21);
-    const real_t t22 = t13 + a_x * side;
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t22 * t22);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, t13 * n_z - d_z * t21);
+    const real_t t22 = size * (t13 + a_x * side);
+    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t22 * t22 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t24 = mu * nu;
     const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t24);
     const real_t part = cf_rarely(single, in_line, t23, t25);
@@ -1957,7 +2214,7 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t t31 = w_x * h;
     const real_t t32 = t19 * t27 + d_x * CLOSEDFORM_C(0.5);
     const real_t t33 = t31 - t32;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t19));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t19));
     const real_t t34 = h * w_y;
     const real_t t35 = t21 * t27 - t13 * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 + t35;
@@ -2024,10 +2281,36 @@ CLOSEDFORM_DISPATCHED
 void delta_condition_number(const delta_params *params, const real_t q[3],
     real_t kappa[2])
 {
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_condition_number_kernel(1, params, q, sines, cosines, kappa);
+}
+
+CF_RARE void delta_condition_number_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        delta_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2036,6 +2319,11 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     real_t *kappa, size_t kappa_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+        delta_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -2131,8 +2419,9 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t nu = t20 * t20 + t22 * t22 + n_z * n_z;
     const int in_line = nu <= t13;
     const real_t side = cf_sign(t14 * a_x);
-    const real_t t23 = t14 + a_x * side;
-    const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (d_z * d_z) + t23 * t23);
+    const real_t t23 = size * (t14 + a_x * side);
+    const real_t up = size * d_z;
+    const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t23 * t23 + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t24, t25);
     const real_t t26 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
@@ -2149,13 +2438,13 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t t34 = s_alpha3 * t33;
     const real_t t35 = t1 * t34;
     const real_t t36 = u_z + t33;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t20));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t20));
     const real_t t37 = h * w_y;
     const real_t t38 = t22 * t27 - t14 * CLOSEDFORM_C(0.5);
     const real_t t39 = t37 + t38;
     const real_t t40 = t36 * (t11 + t39);
     const real_t t41 = c_alpha3 * t1;
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, t14 * n_z - d_z * t22);
+    const real_t w_x = cf_rarely(single, in_line, side * up, t14 * n_z - d_z * t22);
     const real_t t42 = w_x * h;
     const real_t t43 = t20 * t27 + d_x * CLOSEDFORM_C(0.5);
     const real_t t44 = t42 - t43;
@@ -2212,10 +2501,40 @@ CLOSEDFORM_DISPATCHED
 void delta_constraint(const delta_params *params, const real_t q[3],
     real_t factors[2])
 {
+    static const signed char factors_degrees[2] = { 3, 3 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_constraint_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void delta_constraint_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        delta_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2224,6 +2543,11 @@ void delta_constraint_batch(size_t n, const delta_params *params,
     real_t *factors, size_t factors_stride)
 {
     const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        delta_constraint_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];

@@ -3,21 +3,25 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 42 compare and select, 50 add, 12 divide, 59 multiply, 1 sqrt
- *   skeleton: 41 compare and select, 124 add, 14 divide, 59 multiply, 1 sqrt
- *   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 59 multiply, 1 sqrt
- *   jacobian_serial: 39 compare and select, 44 add, 10 divide, 50 multiply, 1 sqrt
- *   jacobian: 41 compare and select, 88 add, 30 divide, 110 multiply, 1 sqrt
- *   determinant: 39 compare and select, 40 add, 12 divide, 55 multiply, 1 sqrt
- *   singularities: 39 compare and select, 46 add, 10 divide, 51 multiply, 1 sqrt
- *   condition_number: 41 compare and select, 104 add, 14 divide, 129 multiply, 3 sqrt
- *   constraint: 41 compare and select, 62 add, 18 divide, 83 multiply, 1 sqrt
+ *   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+ *   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
+ *   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
+ *   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
+ *   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
+ *     1 sqrt
+ *   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
+ *   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
+ *   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
+ *   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
+ *   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
  *   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
 #include "linear_delta.h"
 
-CF_INLINE void linear_delta_fk_kernel(const int single, const real_t one,
+/* Every case. */
+CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const linear_delta_params *params,
     const real_t q[3], real_t p[6], real_t status[2])
 {
@@ -63,74 +67,153 @@ CF_INLINE void linear_delta_fk_kernel(const int single, const real_t one,
     const real_t nu = t16 + cf_rounded(single, one, t18 * t18);
     const int in_line = nu <= t8;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t t19 = cf_rarely(single, in_line, t10 * side, d_y * t18 - t10 * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t20 = CLOSEDFORM_C(2.0) * (t10 * t10) + cf_rounded(single, one, last * last);
-    const real_t t21 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t20), t21);
-    const real_t t22 = cf_rounded(single, one, t9 * (d_y - t9)) + cf_rounded(single, one, t11 * (t10 - t11));
-    const real_t t23 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t22 * CLOSEDFORM_C(0.5));
-    const real_t t24 = cf_rounded(single, one, nu * (t23 * t23)) + mu * CLOSEDFORM_C(0.25);
-    const real_t t25 = cf_rounded(single, one, l * l) - cf_select(all_same, CLOSEDFORM_C(0.0), t24);
-    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t26, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t27 = t19 * h;
-    const real_t t28 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t23);
-    const int t29 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t30 = t29 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t31 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t30 & (CLOSEDFORM_C(0.0) <= l) & t31);
-    const real_t t32 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
-    const int t33 = cf_abs(t32) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t34 = t33 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t25);
-    const int unreachable = !t34;
-    const real_t t35 = cf_poison(single, invalid | unreachable);
-    const real_t t36 = n_y * t23 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t10, a_x * t18 + t10 * t13);
-    const real_t t37 = h * w_y;
-    const real_t t38 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t23);
+    const real_t t19 = size * t10;
+    const real_t t20 = cf_rarely(single, in_line, side * t19, d_y * t18 - t10 * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t21 = cf_rounded(single, one, last * last) + CLOSEDFORM_C(2.0) * (t19 * t19);
+    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t21), t22);
+    const real_t t23 = cf_rounded(single, one, t9 * (d_y - t9)) + cf_rounded(single, one, t11 * (t10 - t11));
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t23 * CLOSEDFORM_C(0.5));
+    const real_t t25 = cf_rounded(single, one, nu * (t24 * t24)) + mu * CLOSEDFORM_C(0.25);
+    const real_t t26 = cf_rounded(single, one, l * l) - cf_select(all_same, CLOSEDFORM_C(0.0), t25);
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t t27 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t28 = t20 * h;
+    const real_t t29 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
+    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t31 & (CLOSEDFORM_C(0.0) <= l) & t32);
+    const real_t t33 = cf_rarely(single, in_line, -t23, CLOSEDFORM_C(0.0));
+    const int t34 = cf_abs(t33) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t35 = t34 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t26);
+    const int unreachable = !t35;
+    const real_t t36 = cf_poison(single, invalid | unreachable);
+    const real_t t37 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t19, a_x * t18 + t10 * t13);
+    const real_t t38 = h * w_y;
+    const real_t t39 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t24);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t13);
-    const real_t t39 = h * w_z;
-    const real_t t40 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t27 - t28 + t35;
-    p[1] = -(t36 + t37) + t35;
-    p[2] = -(t38 + t39) + t35;
-    p[3] = -(t28 + t27) + t35;
-    p[4] = t37 - t36 + t35;
-    p[5] = t39 - t38 + t35;
-    status[0] = t40;
-    status[1] = t40;
+    const real_t t40 = h * w_z;
+    const real_t t41 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t28 - t29 + t36;
+    p[1] = -(t37 + t38) + t36;
+    p[2] = -(t39 + t40) + t36;
+    p[3] = -(t29 + t28) + t36;
+    p[4] = t38 - t37 + t36;
+    p[5] = t40 - t39 + t36;
+    status[0] = t41;
+    status[1] = t41;
 }
 
 CLOSEDFORM_DISPATCHED
-void linear_delta_fk(const linear_delta_params *params,
+CF_APART void linear_delta_fk_whole(const linear_delta_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
     const real_t one = cf_one();
     real_t status_real[2];
-    linear_delta_fk_kernel(1, one, params, q, p, status_real);
+    linear_delta_fk_whole_kernel(1, one, params, q, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_DISPATCHED
-void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_fk_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t p[6], real_t status[2],
+    real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t c1_x = f - e;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = c1_x - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
+    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
+    const real_t t13 = t9 * over;
+    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
+    const real_t n_y = t17 * over;
+    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
+    const real_t t20 = t19 * over;
+    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
+    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = c1_x - t1 * CLOSEDFORM_C(0.5) - t13 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
+    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t27 & (CLOSEDFORM_C(0.0) <= l) & t28);
+    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const real_t t30 = l * size * CLOSEDFORM_C(2.0);
+    const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t24);
+    const int unreachable = !t31;
+    const real_t t32 = cf_poison(single, invalid | unreachable);
+    const real_t t33 = h * (t1 * t20 - t6 * t13);
+    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
+    const real_t t35 = h * (t1 * n_y + c3_y * t13);
+    const real_t t36 = t6 * CLOSEDFORM_C(0.5) - (rho1 - t20 * t21);
+    const real_t t37 = cf_status(single, invalid, unreachable, 0);
+    const real_t t38 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
+    const int t39 = (u_u <= t12) | (t38 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t30);
+    p[0] = t22 - t25 + t32;
+    p[1] = t33 - t34 + t32;
+    p[2] = t35 - t36 + t32;
+    p[3] = t22 + t25 + t32;
+    p[4] = -(t34 + t33) + t32;
+    p[5] = -(t36 + t35) + t32;
+    status[0] = t37;
+    status[1] = t37;
+    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_fk_common_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *p, size_t p_stride,
-    uint8_t *status, size_t status_stride)
+    uint8_t *status, size_t status_stride,
+    uint8_t *rare, size_t rare_stride)
 {
+    (void)rare_stride;
     const linear_delta_params local = *params;
     const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t p_i[6];
             real_t status_i[2];
-            linear_delta_fk_kernel(0, one, &local, q_i, p_i, status_i);
+            real_t rare_i[1];
+            linear_delta_fk_common_kernel(0, one, &local, q_i, p_i, status_i, rare_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -139,6 +222,7 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
             p[5 * p_stride + start + i] = p_i[5];
             status_real[0][i] = status_i[0];
             status_real[1][i] = status_i[1];
+            rare_real[0][i] = rare_i[0];
         }
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
@@ -146,6 +230,107 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_fk_common(const linear_delta_params *params,
+    const real_t q[3], real_t p[6], uint8_t status[2],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t status_real[2];
+    real_t rare_real[1];
+    linear_delta_fk_common_kernel(1, one, params, q, p, status_real, rare_real);
+    for (size_t i = 0; i < 2; ++i)
+        status[i] = (uint8_t)status_real[i];
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_fk(const linear_delta_params *params,
+    const real_t q[3], real_t p[6], uint8_t status[2])
+{
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    uint8_t rare[1];
+    linear_delta_fk_common(params, q, p, status, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_fk_whole(params, q, p, status);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_fk_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_fk_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_fk_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        linear_delta_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_fk_common_batch(length, params, q + start, q_stride, p + start, p_stride, status + start, status_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+            real_t p_i[6];
+            uint8_t status_i[2];
+            linear_delta_fk_whole(params, q_i, p_i, status_i);
+            for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+            for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_fk_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_fk_other_sizes(length, dimensions, params, q + start, q_stride, p + start, p_stride, status + start, status_stride);
     }
 }
 
@@ -199,208 +384,251 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
     const real_t t24 = l * size * CLOSEDFORM_C(2.0);
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t25 = CLOSEDFORM_C(2.0) * (t16 * t16) + last * last;
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t25), t26);
-    const real_t t27 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
-    const real_t t28 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
-    const real_t t29 = l * l - t28;
-    const int t30 = t23 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t29);
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t t32 = f + t31;
-    const real_t t33 = CLOSEDFORM_C(0.0) + t31;
-    const real_t t34 = rho1 + t31;
-    const real_t t35 = e + c1_x;
-    const real_t t36 = t7 * CLOSEDFORM_C(0.5) - t18 * t27;
-    const real_t t37 = cf_rarely(single, in_line, t16 * side, d_y * t20 - t16 * n_y);
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t25 = size * t16;
+    const real_t t26 = last * last + CLOSEDFORM_C(2.0) * (t25 * t25);
+    const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t26), t27);
+    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
+    const real_t t29 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t28 * t28) + mu * CLOSEDFORM_C(0.25));
+    const real_t t30 = l * l - t29;
+    const int t31 = t23 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t30);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t31);
+    const real_t t32 = cf_poison(single, failed);
+    const real_t t33 = f + t32;
+    const real_t t34 = CLOSEDFORM_C(0.0) + t32;
+    const real_t t35 = rho1 + t32;
+    const real_t t36 = e + c1_x;
+    const real_t t37 = t7 * CLOSEDFORM_C(0.5) - t18 * t28;
+    const real_t t38 = cf_rarely(single, in_line, side * t25, d_y * t20 - t16 * n_y);
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t38 = t37 * h;
-    const real_t t39 = t36 - t38;
-    const real_t t40 = t35 - t39 + t31;
-    const real_t t41 = n_y * t27 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t16, a_x * t20 + t16 * t18);
-    const real_t t42 = h * w_y;
-    const real_t t43 = t41 + t42;
-    const real_t t44 = -t43 + t31;
-    const real_t t45 = t20 * t27 - t16 * CLOSEDFORM_C(0.5);
+    const real_t t39 = t38 * h;
+    const real_t t40 = t37 - t39;
+    const real_t t41 = t36 - t40 + t32;
+    const real_t t42 = n_y * t28 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t25, a_x * t20 + t16 * t18);
+    const real_t t43 = h * w_y;
+    const real_t t44 = t42 + t43;
+    const real_t t45 = -t44 + t32;
+    const real_t t46 = t20 * t28 - t16 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t18);
-    const real_t t46 = h * w_z;
-    const real_t t47 = rho1 + (t45 - t46) + t31;
-    const real_t t48 = t5 + t31;
-    const real_t t49 = -t5 + t31;
-    const real_t t50 = -t6 + t31;
-    const real_t t51 = t10 + t31;
-    const real_t t52 = rho2 + t31;
-    const real_t t53 = c1_x - t5;
-    const real_t t54 = t53 - t39;
-    const real_t t55 = t54 + t31;
-    const real_t t56 = t8 * CLOSEDFORM_C(0.25);
-    const real_t t57 = -(t6 + t56) + t31;
-    const real_t t58 = e * CLOSEDFORM_C(0.25);
-    const real_t t59 = t10 - t58;
-    const real_t t60 = t59 + t31;
-    const real_t t61 = t56 - t6 + t31;
-    const real_t t62 = t10 + t58;
-    const real_t t63 = t62 + t31;
-    const real_t t64 = t54 - t56 + t31;
-    const real_t t65 = t9 - t58;
-    const real_t t66 = t56 + t54 + t31;
-    const real_t t67 = t9 + t58;
-    const real_t t68 = -t10 + t31;
-    const real_t t69 = rho3 + t31;
-    const real_t t70 = -t62 + t31;
-    const real_t t71 = -t59 + t31;
-    const real_t t72 = t36 + t38;
-    const real_t t73 = t35 - t72 + t31;
-    const real_t t74 = t41 - t42;
-    const real_t t75 = -t74 + t31;
-    const real_t t76 = rho1 + (t45 + t46) + t31;
-    const real_t t77 = t53 - t72;
-    const real_t t78 = t77 + t31;
-    const real_t t79 = t77 - t56 + t31;
-    const real_t t80 = t56 + t77 + t31;
-    points[0] = t32;
-    points[1] = t33;
-    points[2] = t33;
-    points[3] = t32;
-    points[4] = t33;
-    points[5] = t34;
-    points[6] = t40;
-    points[7] = t44;
-    points[8] = t47;
-    points[9] = t32;
-    points[10] = t48;
-    points[11] = t34;
-    points[12] = t32;
-    points[13] = t49;
-    points[14] = t34;
-    points[15] = t40;
-    points[16] = t5 - t43 + t31;
-    points[17] = t47;
-    points[18] = t40;
-    points[19] = -(t5 + t43) + t31;
-    points[20] = t47;
-    points[21] = t50;
-    points[22] = t51;
-    points[23] = t33;
-    points[24] = t50;
-    points[25] = t51;
-    points[26] = t52;
-    points[27] = t55;
-    points[28] = t9 - t43 + t31;
-    points[29] = t47;
-    points[30] = t57;
-    points[31] = t60;
-    points[32] = t52;
-    points[33] = t61;
-    points[34] = t63;
-    points[35] = t52;
-    points[36] = t64;
-    points[37] = t65 - t43 + t31;
-    points[38] = t47;
-    points[39] = t66;
-    points[40] = t67 - t43 + t31;
-    points[41] = t47;
-    points[42] = t50;
-    points[43] = t68;
-    points[44] = t33;
-    points[45] = t50;
-    points[46] = t68;
-    points[47] = t69;
-    points[48] = t55;
-    points[49] = -(t9 + t43) + t31;
-    points[50] = t47;
-    points[51] = t61;
-    points[52] = t70;
-    points[53] = t69;
-    points[54] = t57;
-    points[55] = t71;
-    points[56] = t69;
-    points[57] = t66;
-    points[58] = -(t67 + t43) + t31;
-    points[59] = t47;
-    points[60] = t64;
-    points[61] = -(t65 + t43) + t31;
-    points[62] = t47;
-    points[63] = c1_x - t39 + t31;
-    points[64] = t44;
-    points[65] = t47;
-    points[66] = t32;
-    points[67] = t33;
-    points[68] = t33;
-    points[69] = t32;
-    points[70] = t33;
-    points[71] = t34;
-    points[72] = t73;
-    points[73] = t75;
-    points[74] = t76;
-    points[75] = t32;
-    points[76] = t48;
-    points[77] = t34;
-    points[78] = t32;
-    points[79] = t49;
-    points[80] = t34;
-    points[81] = t73;
-    points[82] = t5 - t74 + t31;
-    points[83] = t76;
-    points[84] = t73;
-    points[85] = -(t5 + t74) + t31;
-    points[86] = t76;
-    points[87] = t50;
-    points[88] = t51;
-    points[89] = t33;
-    points[90] = t50;
-    points[91] = t51;
-    points[92] = t52;
-    points[93] = t78;
-    points[94] = t9 - t74 + t31;
-    points[95] = t76;
-    points[96] = t57;
-    points[97] = t60;
-    points[98] = t52;
-    points[99] = t61;
-    points[100] = t63;
-    points[101] = t52;
-    points[102] = t79;
-    points[103] = t65 - t74 + t31;
-    points[104] = t76;
-    points[105] = t80;
-    points[106] = t67 - t74 + t31;
-    points[107] = t76;
-    points[108] = t50;
-    points[109] = t68;
-    points[110] = t33;
-    points[111] = t50;
-    points[112] = t68;
-    points[113] = t69;
-    points[114] = t78;
-    points[115] = -(t9 + t74) + t31;
-    points[116] = t76;
-    points[117] = t61;
-    points[118] = t70;
-    points[119] = t69;
-    points[120] = t57;
-    points[121] = t71;
-    points[122] = t69;
-    points[123] = t80;
-    points[124] = -(t67 + t74) + t31;
-    points[125] = t76;
-    points[126] = t79;
-    points[127] = -(t65 + t74) + t31;
-    points[128] = t76;
-    points[129] = c1_x - t72 + t31;
-    points[130] = t75;
-    points[131] = t76;
+    const real_t t47 = h * w_z;
+    const real_t t48 = rho1 + (t46 - t47) + t32;
+    const real_t t49 = t5 + t32;
+    const real_t t50 = -t5 + t32;
+    const real_t t51 = -t6 + t32;
+    const real_t t52 = t10 + t32;
+    const real_t t53 = rho2 + t32;
+    const real_t t54 = c1_x - t5;
+    const real_t t55 = t54 - t40;
+    const real_t t56 = t55 + t32;
+    const real_t t57 = t8 * CLOSEDFORM_C(0.25);
+    const real_t t58 = -(t6 + t57) + t32;
+    const real_t t59 = e * CLOSEDFORM_C(0.25);
+    const real_t t60 = t10 - t59;
+    const real_t t61 = t60 + t32;
+    const real_t t62 = t57 - t6 + t32;
+    const real_t t63 = t10 + t59;
+    const real_t t64 = t63 + t32;
+    const real_t t65 = t55 - t57 + t32;
+    const real_t t66 = t9 - t59;
+    const real_t t67 = t57 + t55 + t32;
+    const real_t t68 = t9 + t59;
+    const real_t t69 = -t10 + t32;
+    const real_t t70 = rho3 + t32;
+    const real_t t71 = -t63 + t32;
+    const real_t t72 = -t60 + t32;
+    const real_t t73 = t37 + t39;
+    const real_t t74 = t36 - t73 + t32;
+    const real_t t75 = t42 - t43;
+    const real_t t76 = -t75 + t32;
+    const real_t t77 = rho1 + (t46 + t47) + t32;
+    const real_t t78 = t54 - t73;
+    const real_t t79 = t78 + t32;
+    const real_t t80 = t78 - t57 + t32;
+    const real_t t81 = t57 + t78 + t32;
+    points[0] = t33;
+    points[1] = t34;
+    points[2] = t34;
+    points[3] = t33;
+    points[4] = t34;
+    points[5] = t35;
+    points[6] = t41;
+    points[7] = t45;
+    points[8] = t48;
+    points[9] = t33;
+    points[10] = t49;
+    points[11] = t35;
+    points[12] = t33;
+    points[13] = t50;
+    points[14] = t35;
+    points[15] = t41;
+    points[16] = t5 - t44 + t32;
+    points[17] = t48;
+    points[18] = t41;
+    points[19] = -(t5 + t44) + t32;
+    points[20] = t48;
+    points[21] = t51;
+    points[22] = t52;
+    points[23] = t34;
+    points[24] = t51;
+    points[25] = t52;
+    points[26] = t53;
+    points[27] = t56;
+    points[28] = t9 - t44 + t32;
+    points[29] = t48;
+    points[30] = t58;
+    points[31] = t61;
+    points[32] = t53;
+    points[33] = t62;
+    points[34] = t64;
+    points[35] = t53;
+    points[36] = t65;
+    points[37] = t66 - t44 + t32;
+    points[38] = t48;
+    points[39] = t67;
+    points[40] = t68 - t44 + t32;
+    points[41] = t48;
+    points[42] = t51;
+    points[43] = t69;
+    points[44] = t34;
+    points[45] = t51;
+    points[46] = t69;
+    points[47] = t70;
+    points[48] = t56;
+    points[49] = -(t9 + t44) + t32;
+    points[50] = t48;
+    points[51] = t62;
+    points[52] = t71;
+    points[53] = t70;
+    points[54] = t58;
+    points[55] = t72;
+    points[56] = t70;
+    points[57] = t67;
+    points[58] = -(t68 + t44) + t32;
+    points[59] = t48;
+    points[60] = t65;
+    points[61] = -(t66 + t44) + t32;
+    points[62] = t48;
+    points[63] = c1_x - t40 + t32;
+    points[64] = t45;
+    points[65] = t48;
+    points[66] = t33;
+    points[67] = t34;
+    points[68] = t34;
+    points[69] = t33;
+    points[70] = t34;
+    points[71] = t35;
+    points[72] = t74;
+    points[73] = t76;
+    points[74] = t77;
+    points[75] = t33;
+    points[76] = t49;
+    points[77] = t35;
+    points[78] = t33;
+    points[79] = t50;
+    points[80] = t35;
+    points[81] = t74;
+    points[82] = t5 - t75 + t32;
+    points[83] = t77;
+    points[84] = t74;
+    points[85] = -(t5 + t75) + t32;
+    points[86] = t77;
+    points[87] = t51;
+    points[88] = t52;
+    points[89] = t34;
+    points[90] = t51;
+    points[91] = t52;
+    points[92] = t53;
+    points[93] = t79;
+    points[94] = t9 - t75 + t32;
+    points[95] = t77;
+    points[96] = t58;
+    points[97] = t61;
+    points[98] = t53;
+    points[99] = t62;
+    points[100] = t64;
+    points[101] = t53;
+    points[102] = t80;
+    points[103] = t66 - t75 + t32;
+    points[104] = t77;
+    points[105] = t81;
+    points[106] = t68 - t75 + t32;
+    points[107] = t77;
+    points[108] = t51;
+    points[109] = t69;
+    points[110] = t34;
+    points[111] = t51;
+    points[112] = t69;
+    points[113] = t70;
+    points[114] = t79;
+    points[115] = -(t9 + t75) + t32;
+    points[116] = t77;
+    points[117] = t62;
+    points[118] = t71;
+    points[119] = t70;
+    points[120] = t58;
+    points[121] = t72;
+    points[122] = t70;
+    points[123] = t81;
+    points[124] = -(t68 + t75) + t32;
+    points[125] = t77;
+    points[126] = t80;
+    points[127] = -(t66 + t75) + t32;
+    points[128] = t77;
+    points[129] = c1_x - t73 + t32;
+    points[130] = t76;
+    points[131] = t77;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_skeleton(const linear_delta_params *params,
     const real_t q[3], real_t points[132])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_skeleton_kernel(1, params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(132, points_degrees, exponent, points, points);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_skeleton_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[132];
+        linear_delta_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -409,6 +637,7 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
     real_t *points, size_t points_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -549,6 +778,11 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
             points[130 * points_stride + start + i] = points_i[130];
             points[131 * points_stride + start + i] = points_i[131];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_skeleton_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_skeleton_other_sizes(length, dimensions, params, q + start, q_stride, points + start, points_stride);
     }
 }
 
@@ -592,67 +826,110 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t16);
-    const real_t t17 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t18 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t1 * CLOSEDFORM_C(0.5) - t12 * t18;
-    const real_t t20 = cf_rarely(single, in_line, t10 * side, d_y * t14 - t10 * n_y);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t18 * t18) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = t20 * h;
-    const real_t t25 = t19 - t24;
-    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t29 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t30 = cf_abs(t29) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
-    const real_t t32 = cf_poison(single, failed);
-    const real_t t33 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t10, a_x * t14 + t10 * t12);
-    const real_t t34 = h * w_y;
-    const real_t t35 = t33 + t34;
-    const real_t t36 = t14 * t18 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t17);
+    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
+    const real_t t21 = cf_rarely(single, in_line, side * t15, d_y * t14 - t10 * n_y);
+    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = t21 * h;
+    const real_t t26 = t20 - t25;
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t30 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t35 = h * w_y;
+    const real_t t36 = t34 + t35;
+    const real_t t37 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t12);
-    const real_t t37 = h * w_z;
-    const real_t A_13 = t36 - t37;
-    const real_t t38 = t1 - t25 + t32;
-    const real_t t39 = t19 + t24;
-    const real_t t40 = t33 - t34;
-    const real_t A_13_above = t36 + t37;
-    const real_t t41 = t1 - t39 + t32;
-    A[0] = -t25 + t32;
-    A[1] = -t35 + t32;
-    A[2] = A_13 + t32;
-    A[3] = t38;
-    A[4] = c3_y - t35 + t32;
-    A[5] = t2 + A_13 + t32;
-    A[6] = t38;
-    A[7] = -(c3_y + t35) + t32;
-    A[8] = t6 + A_13 + t32;
-    A[9] = -t39 + t32;
-    A[10] = -t40 + t32;
-    A[11] = A_13_above + t32;
-    A[12] = t41;
-    A[13] = c3_y - t40 + t32;
-    A[14] = t2 + A_13_above + t32;
-    A[15] = t41;
-    A[16] = -(c3_y + t40) + t32;
-    A[17] = t6 + A_13_above + t32;
+    const real_t t38 = h * w_z;
+    const real_t A_13 = t37 - t38;
+    const real_t t39 = t1 - t26 + t33;
+    const real_t t40 = t20 + t25;
+    const real_t t41 = t34 - t35;
+    const real_t A_13_above = t37 + t38;
+    const real_t t42 = t1 - t40 + t33;
+    A[0] = -t26 + t33;
+    A[1] = -t36 + t33;
+    A[2] = A_13 + t33;
+    A[3] = t39;
+    A[4] = c3_y - t36 + t33;
+    A[5] = t2 + A_13 + t33;
+    A[6] = t39;
+    A[7] = -(c3_y + t36) + t33;
+    A[8] = t6 + A_13 + t33;
+    A[9] = -t40 + t33;
+    A[10] = -t41 + t33;
+    A[11] = A_13_above + t33;
+    A[12] = t42;
+    A[13] = c3_y - t41 + t33;
+    A[14] = t2 + A_13_above + t33;
+    A[15] = t42;
+    A[16] = -(c3_y + t41) + t33;
+    A[17] = t6 + A_13_above + t33;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_jacobian_parallel(const linear_delta_params *params,
     const real_t q[3], real_t A[18])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_jacobian_parallel_kernel(1, params, q, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_jacobian_parallel_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_jacobian_parallel_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        linear_delta_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -661,6 +938,7 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
     real_t *A, size_t A_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -687,10 +965,16 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
             A[16 * A_stride + start + i] = A_i[16];
             A[17 * A_stride + start + i] = A_i[17];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_jacobian_parallel_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_jacobian_parallel_other_sizes(length, dimensions, params, q + start, q_stride, A + start, A_stride);
     }
 }
 
-CF_INLINE void linear_delta_jacobian_serial_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t B[6])
 {
     const real_t f = params->f;
@@ -729,43 +1013,202 @@ CF_INLINE void linear_delta_jacobian_serial_kernel(const int single, const linea
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t last = d_y + a_x * cf_sign(a_x * d_y);
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t16);
-    const real_t t17 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t18 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t13 * t18 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t17);
+    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t14);
-    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t18 * t18) + mu * CLOSEDFORM_C(0.25));
-    const real_t t21 = l * l - t20;
-    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
-    const real_t t22 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t22, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t23 = w_z * h;
-    const real_t A_13 = t19 - t23;
-    const int t24 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t26 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t27 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t28 = cf_abs(t27) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t29 = t28 & (-(CLOSEDFORM_FEASIBILITY * t22) <= t21);
-    const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= l) & t26)) | (!t29);
-    const real_t t30 = cf_poison(single, failed);
-    const real_t A_13_above = t19 + t23;
-    B[0] = A_13 + t30;
-    B[1] = t1 + A_13 + t30;
-    B[2] = t6 + A_13 + t30;
-    B[3] = A_13_above + t30;
-    B[4] = t1 + A_13_above + t30;
-    B[5] = t6 + A_13_above + t30;
+    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = l * l - t21;
+    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
+    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t24 = w_z * h;
+    const real_t A_13 = t20 - t24;
+    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t28 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t29 = cf_abs(t28) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
+    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t30);
+    const real_t t31 = cf_poison(single, failed);
+    const real_t A_13_above = t20 + t24;
+    B[0] = A_13 + t31;
+    B[1] = t1 + A_13 + t31;
+    B[2] = t6 + A_13 + t31;
+    B[3] = A_13_above + t31;
+    B[4] = t1 + A_13_above + t31;
+    B[5] = t6 + A_13_above + t31;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_APART void linear_delta_jacobian_serial_whole(const linear_delta_params *params,
+    const real_t q[3], real_t B[6])
+{
+    linear_delta_jacobian_serial_whole_kernel(1, params, q, B);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t B[6], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), u_u * nu);
+    const real_t t21 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t12 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t25 = (t2 * n_y + c3_y * t18) * cf_sqrt(part * slack);
+    const real_t t26 = t22 - t25;
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const real_t t31 = l * size * CLOSEDFORM_C(2.0);
+    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = t22 + t25;
+    const real_t t35 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t36 = (u_u <= t11) | (t35 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t31);
+    B[0] = -t26 + t33;
+    B[1] = t1 - t26 + t33;
+    B[2] = t3 - t26 + t33;
+    B[3] = -t34 + t33;
+    B[4] = t1 - t34 + t33;
+    B[5] = t3 - t34 + t33;
+    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_jacobian_serial_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t B_i[6];
+            real_t rare_i[1];
+            linear_delta_jacobian_serial_common_kernel(0, one, &local, q_i, B_i, rare_i);
+            B[start + i] = B_i[0];
+            B[B_stride + start + i] = B_i[1];
+            B[2 * B_stride + start + i] = B_i[2];
+            B[3 * B_stride + start + i] = B_i[3];
+            B[4 * B_stride + start + i] = B_i[4];
+            B[5 * B_stride + start + i] = B_i[5];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_jacobian_serial_common(const linear_delta_params *params,
+    const real_t q[3], real_t B[6], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_jacobian_serial_common_kernel(1, one, params, q, B, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_jacobian_serial(const linear_delta_params *params,
     const real_t q[3], real_t B[6])
 {
-    linear_delta_jacobian_serial_kernel(1, params, q, B);
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char B_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    uint8_t rare[1];
+    linear_delta_jacobian_serial_common(params, q, B, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_jacobian_serial_whole(params, q, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, B_degrees, exponent, B, B);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_jacobian_serial_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_jacobian_serial_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_jacobian_serial_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[6];
+        linear_delta_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -773,21 +1216,25 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
-    const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_jacobian_serial_common_batch(length, params, q + start, q_stride, B + start, B_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t B_i[6];
-            linear_delta_jacobian_serial_kernel(0, &local, q_i, B_i);
-            B[start + i] = B_i[0];
-            B[B_stride + start + i] = B_i[1];
-            B[2 * B_stride + start + i] = B_i[2];
-            B[3 * B_stride + start + i] = B_i[3];
-            B[4 * B_stride + start + i] = B_i[4];
-            B[5 * B_stride + start + i] = B_i[5];
+            linear_delta_jacobian_serial_whole(params, q_i, B_i);
+            for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_jacobian_serial_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_jacobian_serial_other_sizes(length, dimensions, params, q + start, q_stride, B + start, B_stride);
     }
 }
 
@@ -831,96 +1278,135 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
     const real_t side = cf_sign(a_x * d_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = mu * nu;
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t16);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t17);
-    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t14);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = w_z * h;
-    const real_t A_13 = t20 - t24;
-    const real_t t25 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t10, a_x * t13 + t10 * t14);
-    const real_t t26 = h * w_y;
-    const real_t t27 = t25 + t26;
-    const real_t A_22 = c3_y - t27;
+    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const real_t t26 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t13 + t10 * t14);
+    const real_t t27 = h * w_y;
+    const real_t t28 = t26 + t27;
+    const real_t A_22 = c3_y - t28;
     const real_t A_33 = t6 + A_13;
     const real_t A_23 = t1 + A_13;
-    const real_t t28 = c3_y + t27;
-    const real_t Delta = t16 * h;
-    const real_t t29 = cf_nonzero(single, Delta);
-    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t33 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t34 = cf_abs(t33) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t35 = t34 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t35);
-    const real_t t36 = cf_poison(single, failed);
-    const real_t t37 = -(A_13 * (A_22 * A_33 + A_23 * t28) / t29) + t36;
-    const real_t t38 = -(A_23 * (t27 * A_33 - A_13 * t28) / t29) + t36;
-    const real_t t39 = A_33 * (t27 * A_23 + A_13 * A_22) / t29 + t36;
-    const real_t t40 = t2 * CLOSEDFORM_C(0.5) - t14 * t19;
-    const real_t t41 = cf_rarely(single, in_line, t10 * side, d_y * t13 - t10 * n_y);
-    const real_t t42 = h * t41;
-    const real_t t43 = t40 - t42;
-    const real_t A_21 = t2 - t43;
-    const real_t t44 = A_13 * (A_33 * A_21 - A_23 * A_21) / t29 + t36;
-    const real_t t45 = A_13 * A_21;
-    const real_t t46 = A_13 * (t28 * A_21 + A_22 * A_21) / t29 + t36;
-    const real_t t47 = t27 * A_21;
-    const real_t A_13_above = t20 + t24;
-    const real_t t48 = t25 - t26;
-    const real_t A_22_above = c3_y - t48;
+    const real_t t29 = c3_y + t28;
+    const real_t Delta = t17 * h;
+    const real_t t30 = cf_nonzero(single, Delta);
+    const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t34 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t32 & (CLOSEDFORM_C(0.0) <= l) & t33)) | (!t36);
+    const real_t t37 = cf_poison(single, failed);
+    const real_t t38 = -(A_13 * (A_22 * A_33 + A_23 * t29) / t30) + t37;
+    const real_t t39 = -(A_23 * (t28 * A_33 - A_13 * t29) / t30) + t37;
+    const real_t t40 = A_33 * (t28 * A_23 + A_13 * A_22) / t30 + t37;
+    const real_t t41 = t2 * CLOSEDFORM_C(0.5) - t14 * t20;
+    const real_t t42 = cf_rarely(single, in_line, side * t15, d_y * t13 - t10 * n_y);
+    const real_t t43 = h * t42;
+    const real_t t44 = t41 - t43;
+    const real_t A_21 = t2 - t44;
+    const real_t t45 = A_13 * (A_33 * A_21 - A_23 * A_21) / t30 + t37;
+    const real_t t46 = A_13 * A_21;
+    const real_t t47 = A_13 * (t29 * A_21 + A_22 * A_21) / t30 + t37;
+    const real_t t48 = t28 * A_21;
+    const real_t A_13_above = t21 + t25;
+    const real_t t49 = t26 - t27;
+    const real_t A_22_above = c3_y - t49;
     const real_t A_33_above = t6 + A_13_above;
     const real_t A_23_above = t1 + A_13_above;
-    const real_t t49 = c3_y + t48;
-    const real_t t50 = A_13_above * (A_22_above * A_33_above + A_23_above * t49);
-    const real_t t51 = A_23_above * (t48 * A_33_above - A_13_above * t49);
-    const real_t t52 = A_33_above * (t48 * A_23_above + A_13_above * A_22_above);
-    const real_t t53 = t40 + t42;
-    const real_t A_21_above = t2 - t53;
-    const real_t t54 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const real_t t55 = A_13_above * A_21_above;
-    const real_t t56 = -(A_23_above * (A_33_above * t53 + t55) / t29);
-    const real_t t57 = A_33_above * (t55 + A_23_above * t53) / t29 + t36;
-    const real_t t58 = A_13_above * (t49 * A_21_above + A_22_above * A_21_above);
-    const real_t t59 = t48 * A_21_above;
-    const real_t t60 = -(A_23_above * (t49 * t53 + t59) / t29) + t36;
-    const real_t t61 = A_33_above * (t59 - A_22_above * t53) / t29 + t36;
-    J[0] = t37;
-    J[1] = t38;
-    J[2] = t39;
-    J[3] = t44;
-    J[4] = A_23 * (A_33 * t43 + t45) / t29 + t36;
-    J[5] = -(A_33 * (t45 + A_23 * t43) / t29) + t36;
-    J[6] = t46;
-    J[7] = A_23 * (t28 * t43 + t47) / t29 + t36;
-    J[8] = -(A_33 * (t47 - A_22 * t43) / t29) + t36;
-    J[9] = t50 / t29 + t36;
-    J[10] = t51 / t29 + t36;
-    J[11] = -(t52 / t29) + t36;
-    J[12] = -(A_13_above * t54 / t29) + t36;
-    J[13] = t56 + t36;
-    J[14] = t57;
-    J[15] = -(t58 / t29) + t36;
-    J[16] = t60;
-    J[17] = t61;
+    const real_t t50 = c3_y + t49;
+    const real_t t51 = A_13_above * (A_22_above * A_33_above + A_23_above * t50);
+    const real_t t52 = A_23_above * (t49 * A_33_above - A_13_above * t50);
+    const real_t t53 = A_33_above * (t49 * A_23_above + A_13_above * A_22_above);
+    const real_t t54 = t41 + t43;
+    const real_t A_21_above = t2 - t54;
+    const real_t t55 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const real_t t56 = A_13_above * A_21_above;
+    const real_t t57 = -(A_23_above * (A_33_above * t54 + t56) / t30);
+    const real_t t58 = A_33_above * (t56 + A_23_above * t54) / t30 + t37;
+    const real_t t59 = A_13_above * (t50 * A_21_above + A_22_above * A_21_above);
+    const real_t t60 = t49 * A_21_above;
+    const real_t t61 = -(A_23_above * (t50 * t54 + t60) / t30) + t37;
+    const real_t t62 = A_33_above * (t60 - A_22_above * t54) / t30 + t37;
+    J[0] = t38;
+    J[1] = t39;
+    J[2] = t40;
+    J[3] = t45;
+    J[4] = A_23 * (A_33 * t44 + t46) / t30 + t37;
+    J[5] = -(A_33 * (t46 + A_23 * t44) / t30) + t37;
+    J[6] = t47;
+    J[7] = A_23 * (t29 * t44 + t48) / t30 + t37;
+    J[8] = -(A_33 * (t48 - A_22 * t44) / t30) + t37;
+    J[9] = t51 / t30 + t37;
+    J[10] = t52 / t30 + t37;
+    J[11] = -(t53 / t30) + t37;
+    J[12] = -(A_13_above * t55 / t30) + t37;
+    J[13] = t57 + t37;
+    J[14] = t58;
+    J[15] = -(t59 / t30) + t37;
+    J[16] = t61;
+    J[17] = t62;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_jacobian(const linear_delta_params *params,
     const real_t q[3], real_t J[18])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_jacobian_kernel(1, params, q, J);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_jacobian_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_jacobian_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_jacobian_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[18];
+        linear_delta_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -929,6 +1415,7 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
     real_t *J, size_t J_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -955,6 +1442,11 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
             J[16 * J_stride + start + i] = J_i[16];
             J[17 * J_stride + start + i] = J_i[17];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_jacobian_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_jacobian_other_sizes(length, dimensions, params, q + start, q_stride, J + start, J_stride);
     }
 }
 
@@ -997,43 +1489,82 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t last = d_y + a_x * cf_sign(a_x * d_y);
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = mu * nu;
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t16);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t17);
-    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t14);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = w_z * h;
-    const real_t A_13 = t20 - t24;
-    const real_t Delta = t16 * h;
-    const real_t t25 = cf_quotient(single, A_13 * (t1 + A_13) * (t6 + A_13), Delta);
-    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t29 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t30 = cf_abs(t29) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
-    const real_t t32 = cf_poison(single, failed);
-    const real_t A_13_above = t20 + t24;
-    const real_t t33 = A_13_above * (t1 + A_13_above) * (t6 + A_13_above);
-    det[0] = -t25 + t32;
-    det[1] = cf_quotient(single, t33, Delta) + t32;
+    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const real_t Delta = t17 * h;
+    const real_t t26 = cf_quotient(single, A_13 * (t1 + A_13) * (t6 + A_13), Delta);
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t30 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t A_13_above = t21 + t25;
+    const real_t t34 = A_13_above * (t1 + A_13_above) * (t6 + A_13_above);
+    det[0] = -t26 + t33;
+    det[1] = cf_quotient(single, t34, Delta) + t33;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_determinant(const linear_delta_params *params,
     const real_t q[3], real_t det[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_determinant_kernel(1, params, q, det);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_determinant_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        linear_delta_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1042,6 +1573,7 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
     real_t *det, size_t det_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1052,6 +1584,11 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
             det[start + i] = det_i[0];
             det[det_stride + start + i] = det_i[1];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -1094,47 +1631,90 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t last = d_y + a_x * cf_sign(a_x * d_y);
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = mu * nu;
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t16);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t17);
-    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t14);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = w_z * h;
-    const real_t A_13 = t20 - t24;
-    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t28 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t Delta = t16 * h;
-    const real_t A_13_above = t20 + t24;
-    factors[0] = A_13 + t31;
-    factors[1] = t1 + A_13 + t31;
-    factors[2] = t6 + A_13 + t31;
-    factors[3] = -Delta + t31;
-    factors[4] = A_13_above + t31;
-    factors[5] = t1 + A_13_above + t31;
-    factors[6] = t6 + A_13_above + t31;
-    factors[7] = Delta + t31;
+    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t29 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t30 = cf_abs(t29) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
+    const real_t t32 = cf_poison(single, failed);
+    const real_t Delta = t17 * h;
+    const real_t A_13_above = t21 + t25;
+    factors[0] = A_13 + t32;
+    factors[1] = t1 + A_13 + t32;
+    factors[2] = t6 + A_13 + t32;
+    factors[3] = -Delta + t32;
+    factors[4] = A_13_above + t32;
+    factors[5] = t1 + A_13_above + t32;
+    factors[6] = t6 + A_13_above + t32;
+    factors[7] = Delta + t32;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_singularities(const linear_delta_params *params,
     const real_t q[3], real_t factors[8])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[8] = { 1, 1, 1, 3, 1, 1, 1, 3 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_singularities_kernel(1, params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_singularities_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_singularities_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_singularities_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[8];
+        linear_delta_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1143,6 +1723,7 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
     real_t *factors, size_t factors_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1159,6 +1740,11 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
             factors[6 * factors_stride + start + i] = factors_i[6];
             factors[7 * factors_stride + start + i] = factors_i[7];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_singularities_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_singularities_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 
@@ -1202,95 +1788,134 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = mu * nu;
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t16);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t17);
-    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
-    const real_t t21 = cf_rarely(single, in_line, t10 * side, d_y * t14 - t10 * n_y);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = t21 * h;
-    const real_t t26 = t20 - t25;
-    const real_t t27 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t10, a_x * t14 + t10 * t12);
-    const real_t t28 = h * w_y;
-    const real_t t29 = t27 + t28;
-    const real_t t30 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t18);
+    const real_t t19 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t12 * t20;
+    const real_t t22 = cf_rarely(single, in_line, side * t15, d_y * t14 - t10 * n_y);
+    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t24 = l * l - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t25 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t26 = t22 * h;
+    const real_t t27 = t21 - t26;
+    const real_t t28 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t29 = h * w_y;
+    const real_t t30 = t28 + t29;
+    const real_t t31 = t14 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t12);
-    const real_t t31 = h * w_z;
-    const real_t A_13 = t30 - t31;
-    const real_t A_21 = t1 - t26;
-    const real_t t32 = A_21 * A_21;
-    const real_t A_22 = c3_y - t29;
+    const real_t t32 = h * w_z;
+    const real_t A_13 = t31 - t32;
+    const real_t A_21 = t1 - t27;
+    const real_t t33 = A_21 * A_21;
+    const real_t A_22 = c3_y - t30;
     const real_t A_23 = t2 + A_13;
-    const real_t t33 = t26 * t26 + t29 * t29 + A_13 * A_13 + (t32 + A_22 * A_22 + A_23 * A_23);
-    const real_t t34 = c3_y + t29;
+    const real_t t34 = t27 * t27 + t30 * t30 + A_13 * A_13 + (t33 + A_22 * A_22 + A_23 * A_23);
+    const real_t t35 = c3_y + t30;
     const real_t A_33 = t6 + A_13;
-    const real_t t35 = t29 * A_21;
-    const real_t t36 = t26 * A_22 - t35;
-    const real_t t37 = A_13 * A_21;
-    const real_t t38 = t26 * A_23 + t37;
-    const real_t t39 = t35 + t26 * t34;
-    const real_t t40 = t37 + t26 * A_33;
-    const real_t t41 = t36 * t36 + t38 * t38 + t39 * t39 + t40 * t40;
-    const real_t t42 = t29 * A_23 + A_13 * A_22;
-    const real_t t43 = t29 * A_33 - A_13 * t34;
-    const real_t t44 = A_21 * t34 + A_21 * A_22;
-    const real_t t45 = A_21 * A_33 - A_21 * A_23;
-    const real_t t46 = t41 + t42 * t42 + t43 * t43 + t44 * t44 + t45 * t45;
-    const real_t t47 = A_22 * A_33 + A_23 * t34;
-    const real_t t48 = (t33 + (t32 + t34 * t34 + A_33 * A_33)) * (t46 + t47 * t47);
-    const real_t t49 = CLOSEDFORM_C(3.0) * (t16 * h);
-    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t52 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t53 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t54 = cf_abs(t53) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t55 = t54 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t51 & (CLOSEDFORM_C(0.0) <= l) & t52)) | (!t55);
-    const real_t t56 = cf_poison(single, failed);
-    const real_t t57 = t20 + t25;
-    const real_t t58 = t27 - t28;
-    const real_t A_13_above = t30 + t31;
-    const real_t square1_above = t57 * t57 + t58 * t58 + A_13_above * A_13_above;
-    const real_t A_21_above = t1 - t57;
-    const real_t t59 = A_21_above * A_21_above;
-    const real_t A_22_above = c3_y - t58;
+    const real_t t36 = t30 * A_21;
+    const real_t t37 = t27 * A_22 - t36;
+    const real_t t38 = A_13 * A_21;
+    const real_t t39 = t27 * A_23 + t38;
+    const real_t t40 = t36 + t27 * t35;
+    const real_t t41 = t38 + t27 * A_33;
+    const real_t t42 = t37 * t37 + t39 * t39 + t40 * t40 + t41 * t41;
+    const real_t t43 = t30 * A_23 + A_13 * A_22;
+    const real_t t44 = t30 * A_33 - A_13 * t35;
+    const real_t t45 = A_21 * t35 + A_21 * A_22;
+    const real_t t46 = A_21 * A_33 - A_21 * A_23;
+    const real_t t47 = t42 + t43 * t43 + t44 * t44 + t45 * t45 + t46 * t46;
+    const real_t t48 = A_22 * A_33 + A_23 * t35;
+    const real_t t49 = (t34 + (t33 + t35 * t35 + A_33 * A_33)) * (t47 + t48 * t48);
+    const real_t t50 = CLOSEDFORM_C(3.0) * (t17 * h);
+    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t53 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t54 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t55 = cf_abs(t54) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t24);
+    const int failed = (!(t52 & (CLOSEDFORM_C(0.0) <= l) & t53)) | (!t56);
+    const real_t t57 = cf_poison(single, failed);
+    const real_t t58 = t21 + t26;
+    const real_t t59 = t28 - t29;
+    const real_t A_13_above = t31 + t32;
+    const real_t square1_above = t58 * t58 + t59 * t59 + A_13_above * A_13_above;
+    const real_t A_21_above = t1 - t58;
+    const real_t t60 = A_21_above * A_21_above;
+    const real_t A_22_above = c3_y - t59;
     const real_t A_23_above = t2 + A_13_above;
-    const real_t square2_above = t59 + A_22_above * A_22_above + A_23_above * A_23_above;
-    const real_t t60 = c3_y + t58;
+    const real_t square2_above = t60 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const real_t t61 = c3_y + t59;
     const real_t A_33_above = t6 + A_13_above;
-    const real_t t61 = square1_above + square2_above + (t59 + t60 * t60 + A_33_above * A_33_above);
-    const real_t t62 = t58 * A_21_above;
-    const real_t t63 = t57 * A_22_above - t62;
-    const real_t t64 = A_13_above * A_21_above;
-    const real_t t65 = t57 * A_23_above + t64;
-    const real_t t66 = t62 + t57 * t60;
-    const real_t t67 = t64 + t57 * A_33_above;
-    const real_t t68 = t63 * t63 + t65 * t65 + t66 * t66 + t67 * t67;
-    const real_t t69 = t58 * A_23_above + A_13_above * A_22_above;
-    const real_t t70 = t58 * A_33_above - A_13_above * t60;
-    const real_t t71 = A_21_above * t60 + A_21_above * A_22_above;
-    const real_t t72 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const real_t t73 = t68 + t69 * t69 + t70 * t70 + t71 * t71 + t72 * t72;
-    const real_t t74 = A_22_above * A_33_above + A_23_above * t60;
-    const real_t t75 = cf_quotient(single, cf_sqrt(t61 * (t73 + t74 * t74)), t49);
-    kappa[0] = cf_quotient(single, cf_sqrt(t48), t49) + t56;
-    kappa[1] = t75 + t56;
+    const real_t t62 = square1_above + square2_above + (t60 + t61 * t61 + A_33_above * A_33_above);
+    const real_t t63 = t59 * A_21_above;
+    const real_t t64 = t58 * A_22_above - t63;
+    const real_t t65 = A_13_above * A_21_above;
+    const real_t t66 = t58 * A_23_above + t65;
+    const real_t t67 = t63 + t58 * t61;
+    const real_t t68 = t65 + t58 * A_33_above;
+    const real_t t69 = t64 * t64 + t66 * t66 + t67 * t67 + t68 * t68;
+    const real_t t70 = t59 * A_23_above + A_13_above * A_22_above;
+    const real_t t71 = t59 * A_33_above - A_13_above * t61;
+    const real_t t72 = A_21_above * t61 + A_21_above * A_22_above;
+    const real_t t73 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const real_t t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73;
+    const real_t t75 = A_22_above * A_33_above + A_23_above * t61;
+    const real_t t76 = cf_quotient(single, cf_sqrt(t62 * (t74 + t75 * t75)), t50);
+    kappa[0] = cf_quotient(single, cf_sqrt(t49), t50) + t57;
+    kappa[1] = t76 + t57;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_condition_number(const linear_delta_params *params,
     const real_t q[3], real_t kappa[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_condition_number_kernel(1, params, q, kappa);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_condition_number_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+}
+
+CF_RARE void linear_delta_condition_number_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_condition_number_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        linear_delta_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1299,6 +1924,7 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     real_t *kappa, size_t kappa_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1309,6 +1935,11 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
             kappa[start + i] = kappa_i[0];
             kappa[kappa_stride + start + i] = kappa_i[1];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_condition_number_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
     }
 }
 
@@ -1352,64 +1983,107 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t15 = CLOSEDFORM_C(2.0) * (t10 * t10) + last * last;
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t15), t16);
-    const real_t t17 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t18 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t1 * CLOSEDFORM_C(0.5) - t12 * t18;
-    const real_t t20 = cf_rarely(single, in_line, t10 * side, d_y * t14 - t10 * n_y);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t18 * t18) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = t20 * h;
-    const real_t t25 = t19 - t24;
-    const real_t t26 = t14 * t18 - t10 * CLOSEDFORM_C(0.5);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t15 = size * t10;
+    const real_t t16 = last * last + CLOSEDFORM_C(2.0) * (t15 * t15);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t16), t17);
+    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
+    const real_t t21 = cf_rarely(single, in_line, side * t15, d_y * t14 - t10 * n_y);
+    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = t21 * h;
+    const real_t t26 = t20 - t25;
+    const real_t t27 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t12);
-    const real_t t27 = h * w_z;
-    const real_t A_13 = t26 - t27;
+    const real_t t28 = h * w_z;
+    const real_t A_13 = t27 - t28;
     const real_t A_23 = t2 + A_13;
-    const real_t t28 = CLOSEDFORM_C(1.7320508075688772) * t25 * A_23;
+    const real_t t29 = CLOSEDFORM_C(1.7320508075688772) * t26 * A_23;
     const real_t A_33 = t6 + A_13;
-    const real_t t29 = (t1 - t25) * (CLOSEDFORM_C(1.7320508075688772) * A_13);
-    const real_t t30 = t28 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t29 * CLOSEDFORM_C(0.25);
-    const real_t t31 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t10, a_x * t14 + t10 * t12);
-    const real_t t32 = h * w_y;
-    const real_t t33 = t31 + t32;
-    const real_t t34 = CLOSEDFORM_C(0.75) * A_13;
-    const real_t t35 = t30 - A_33 * (c3_y - t33) * t34 + A_23 * t29 * CLOSEDFORM_C(0.25);
-    const int t36 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t38 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t39 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t40 = cf_abs(t39) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t41 = t40 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t37 & (CLOSEDFORM_C(0.0) <= l) & t38)) | (!t41);
-    const real_t t42 = cf_poison(single, failed);
-    const real_t t43 = t19 + t24;
-    const real_t A_13_above = t26 + t27;
+    const real_t t30 = (t1 - t26) * (CLOSEDFORM_C(1.7320508075688772) * A_13);
+    const real_t t31 = t29 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t30 * CLOSEDFORM_C(0.25);
+    const real_t t32 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t33 = h * w_y;
+    const real_t t34 = t32 + t33;
+    const real_t t35 = CLOSEDFORM_C(0.75) * A_13;
+    const real_t t36 = t31 - A_33 * (c3_y - t34) * t35 + A_23 * t30 * CLOSEDFORM_C(0.25);
+    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t39 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t40 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t41 = cf_abs(t40) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t42 = t41 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t38 & (CLOSEDFORM_C(0.0) <= l) & t39)) | (!t42);
+    const real_t t43 = cf_poison(single, failed);
+    const real_t t44 = t20 + t25;
+    const real_t A_13_above = t27 + t28;
     const real_t A_23_above = t2 + A_13_above;
-    const real_t t44 = CLOSEDFORM_C(1.7320508075688772) * t43 * A_23_above;
+    const real_t t45 = CLOSEDFORM_C(1.7320508075688772) * t44 * A_23_above;
     const real_t A_33_above = t6 + A_13_above;
-    const real_t t45 = CLOSEDFORM_C(1.7320508075688772) * A_13_above;
-    const real_t t46 = (t1 - t43) * t45;
-    const real_t t47 = t44 * A_33_above * CLOSEDFORM_C(0.5) + A_33_above * t46 * CLOSEDFORM_C(0.25);
-    const real_t t48 = t31 - t32;
-    const real_t t49 = CLOSEDFORM_C(0.75) * A_13_above;
-    const real_t t50 = t47 - A_33_above * (c3_y - t48) * t49 + A_23_above * t46 * CLOSEDFORM_C(0.25);
-    factors[0] = t35 - A_23 * t34 * (c3_y + t33) + t42;
-    factors[1] = t50 - A_23_above * t49 * (c3_y + t48) + t42;
+    const real_t t46 = CLOSEDFORM_C(1.7320508075688772) * A_13_above;
+    const real_t t47 = (t1 - t44) * t46;
+    const real_t t48 = t45 * A_33_above * CLOSEDFORM_C(0.5) + A_33_above * t47 * CLOSEDFORM_C(0.25);
+    const real_t t49 = t32 - t33;
+    const real_t t50 = CLOSEDFORM_C(0.75) * A_13_above;
+    const real_t t51 = t48 - A_33_above * (c3_y - t49) * t50 + A_23_above * t47 * CLOSEDFORM_C(0.25);
+    factors[0] = t36 - A_23 * t35 * (c3_y + t34) + t43;
+    factors[1] = t51 - A_23_above * t50 * (c3_y + t49) + t43;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_constraint(const linear_delta_params *params,
     const real_t q[3], real_t factors[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[2] = { 3, 3 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     linear_delta_constraint_kernel(1, params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_constraint_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_constraint_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_constraint_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        linear_delta_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1418,6 +2092,7 @@ void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
     real_t *factors, size_t factors_stride)
 {
     const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1428,6 +2103,11 @@ void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
             factors[start + i] = factors_i[0];
             factors[factors_stride + start + i] = factors_i[1];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_constraint_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_constraint_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 

@@ -3,28 +3,28 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+ *   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
  *   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
- *   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+ *   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
  *   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
- *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
  *   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
  *     multiply, 1 sqrt
- *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+ *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
  *   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
  *     1 sqrt
- *   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+ *   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
  *   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
- *   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+ *   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
  *   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
  *     sqrt
- *   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+ *   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
  *   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
  *     sqrt
- *   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+ *   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
  *   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
  *     3 sqrt
- *   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+ *   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
  *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
@@ -69,9 +69,10 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t nu = t10 + cf_rounded(single, one, n_z * n_z);
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t12 = CLOSEDFORM_C(2.0) * (d_z * d_z) + cf_rounded(single, one, last * last);
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t12 = cf_rounded(single, one, last * last) + CLOSEDFORM_C(2.0) * (up * up);
     const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t12), t13);
     const real_t t14 = cf_rounded(single, one, t4 * (d_y - t4)) + cf_rounded(single, one, t5 * (d_z - t5));
@@ -91,7 +92,7 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const int t25 = t24 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t17);
     const int unreachable = !t25;
     const real_t t26 = cf_poison(single, invalid | unreachable);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t8));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t8));
     const real_t t27 = w_y * h;
     const real_t t28 = n_y * t15 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t8);
@@ -235,9 +236,52 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_fk(const orthoglide_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_fk_common(params, q, p, status, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_fk_whole(params, q, p, status);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_fk_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_fk_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_fk_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        orthoglide_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -246,6 +290,7 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
     real_t *p, size_t p_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -261,6 +306,11 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_fk_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_fk_other_sizes(length, dimensions, params, q + start, q_stride, p + start, p_stride, status + start, status_stride);
     }
 }
 
@@ -302,10 +352,11 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const int t12 = cf_abs(t11) <= t4 * CLOSEDFORM_FEASIBILITY;
     const real_t t13 = L * size * CLOSEDFORM_C(2.0);
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t14 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t last = size * (d_y + a_x * side);
+    const real_t up = size * d_z;
+    const real_t t14 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t14), t15);
+    const real_t part = cf_rarely(single, in_line, t14, t15);
     const real_t t16 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
     const real_t t17 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t16 * t16) + mu * CLOSEDFORM_C(0.25));
     const real_t t18 = L * L - t17;
@@ -317,14 +368,14 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t23 = L * CLOSEDFORM_C(0.0625);
     const real_t t24 = t23 + t20;
     const real_t t25 = -t23 + t20;
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
     const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t13, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t26 = w_x * h;
     const real_t t27 = t9 * t16 - rho1 * CLOSEDFORM_C(0.5);
     const real_t t28 = rho1 + (t26 + t27);
     const real_t t29 = t28 + t20;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t9));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t9));
     const real_t t30 = w_y * h;
     const real_t t31 = n_y * t16 - d_y * CLOSEDFORM_C(0.5);
     const real_t A_12 = t30 - t31;
@@ -798,9 +849,49 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
     real_t points[114])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char points_degrees[114] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_skeleton_common(params, q, points, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_skeleton_whole(params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(114, points_degrees, exponent, points, points);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_skeleton_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_skeleton_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[114];
+        orthoglide_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -808,6 +899,7 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -821,6 +913,11 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_skeleton_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_skeleton_other_sizes(length, dimensions, params, q + start, q_stride, points + start, points_stride);
     }
 }
 
@@ -856,11 +953,12 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
     const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
@@ -878,7 +976,7 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const int t21 = t20 & (-(CLOSEDFORM_FEASIBILITY * t14) <= t13);
     const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L) & t18)) | (!t21);
     const real_t t22 = cf_poison(single, failed);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t23 = w_y * h;
     const real_t t24 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
     const real_t A_12 = t23 - t24;
@@ -1056,9 +1154,49 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian_parallel(const orthoglide_params *params, const real_t q[3],
     real_t A[18])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_jacobian_parallel_common(params, q, A, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_parallel_whole(params, q, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_jacobian_parallel_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_jacobian_parallel_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        orthoglide_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1066,6 +1204,7 @@ void orthoglide_jacobian_parallel_batch(size_t n, const orthoglide_params *param
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1079,6 +1218,11 @@ void orthoglide_jacobian_parallel_batch(size_t n, const orthoglide_params *param
             for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_jacobian_parallel_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_jacobian_parallel_other_sizes(length, dimensions, params, q + start, q_stride, A + start, A_stride);
     }
 }
 
@@ -1114,11 +1258,12 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
     const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
@@ -1135,7 +1280,7 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const int t21 = t20 & (-(CLOSEDFORM_FEASIBILITY * t14) <= t13);
     const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L) & t18)) | (!t21);
     const real_t t22 = cf_poison(single, failed);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t23 = w_y * h;
     const real_t t24 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
@@ -1254,9 +1399,49 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian_serial(const orthoglide_params *params, const real_t q[3],
     real_t B[6])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char B_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_jacobian_serial_common(params, q, B, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_serial_whole(params, q, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, B_degrees, exponent, B, B);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_jacobian_serial_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_jacobian_serial_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_jacobian_serial_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[6];
+        orthoglide_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1264,6 +1449,7 @@ void orthoglide_jacobian_serial_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1277,6 +1463,11 @@ void orthoglide_jacobian_serial_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_jacobian_serial_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_jacobian_serial_other_sizes(length, dimensions, params, q + start, q_stride, B + start, B_stride);
     }
 }
 
@@ -1312,12 +1503,13 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
     const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
@@ -1328,7 +1520,7 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
     const real_t A_11 = t16 + t17;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t18 = w_y * h;
     const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
     const real_t t20 = t18 - t19;
@@ -1549,9 +1741,45 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_jacobian(const orthoglide_params *params, const real_t q[3],
     real_t J[18])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_jacobian_common(params, q, J, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_jacobian_whole(params, q, J);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_jacobian_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_jacobian_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_jacobian_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[18];
+        orthoglide_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1559,6 +1787,7 @@ void orthoglide_jacobian_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1572,6 +1801,11 @@ void orthoglide_jacobian_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_jacobian_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_jacobian_other_sizes(length, dimensions, params, q + start, q_stride, J + start, J_stride);
     }
 }
 
@@ -1607,12 +1841,13 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
     const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
@@ -1622,7 +1857,7 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t18 = w_y * h;
     const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
@@ -1745,9 +1980,45 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_determinant(const orthoglide_params *params, const real_t q[3],
     real_t det[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_determinant_common(params, q, det, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_determinant_whole(params, q, det);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_determinant_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        orthoglide_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1755,6 +2026,7 @@ void orthoglide_determinant_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *det, size_t det_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1768,6 +2040,11 @@ void orthoglide_determinant_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -1803,12 +2080,13 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
     const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
@@ -1825,7 +2103,7 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const int t22 = t21 & (-(CLOSEDFORM_FEASIBILITY * t15) <= t14);
     const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L) & t19)) | (!t22);
     const real_t t23 = cf_poison(single, failed);
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t24 = w_y * h;
     const real_t t25 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -last, a_x * n_y + d_y * t7);
@@ -1953,9 +2231,49 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_singularities(const orthoglide_params *params, const real_t q[3],
     real_t factors[8])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[8] = { 1, 1, 1, 3, 1, 1, 1, 3 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_singularities_common(params, q, factors, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_singularities_whole(params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_singularities_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_singularities_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_singularities_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[8];
+        orthoglide_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1963,6 +2281,7 @@ void orthoglide_singularities_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1976,6 +2295,11 @@ void orthoglide_singularities_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_singularities_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_singularities_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 
@@ -2011,12 +2335,13 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t side = cf_sign(d_y * a_x);
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t up = size * d_z;
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t10);
+    const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
     const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
@@ -2027,7 +2352,7 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
     const real_t A_11 = t16 + t17;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t t18 = w_y * h;
     const real_t t19 = n_y * t12 - d_y * CLOSEDFORM_C(0.5);
     const real_t t20 = t18 - t19;
@@ -2245,9 +2570,45 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_condition_number(const orthoglide_params *params, const real_t q[3],
     real_t kappa[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_condition_number_common(params, q, kappa, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_condition_number_whole(params, q, kappa);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_condition_number_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+}
+
+CF_RARE void orthoglide_condition_number_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_condition_number_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        orthoglide_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2255,6 +2616,7 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2268,6 +2630,11 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
             for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_condition_number_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
     }
 }
 
@@ -2302,12 +2669,13 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t n_z = over * (a_x * t6 + d_y * m_x);
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
-    const real_t w_y = cf_rarely(single, in_line, d_z, -(a_x * n_z + d_z * t7));
+    const real_t up = size * d_z;
+    const real_t w_y = cf_rarely(single, in_line, up, -(a_x * n_z + d_z * t7));
     const real_t side = cf_sign(d_y * a_x);
-    const real_t last = d_y + a_x * side;
-    const real_t t8 = CLOSEDFORM_C(2.0) * (d_z * d_z) + last * last;
+    const real_t last = size * (d_y + a_x * side);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, last * last + CLOSEDFORM_C(2.0) * (up * up));
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t8), t9);
+    const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
     const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
@@ -2322,7 +2690,7 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t t18 = w_z * h;
     const real_t t19 = n_z * t11 - d_z * CLOSEDFORM_C(0.5);
     const real_t t20 = t18 - t19;
-    const real_t w_x = cf_rarely(single, in_line, d_z * side, d_y * n_z - d_z * n_y);
+    const real_t w_x = cf_rarely(single, in_line, side * up, d_y * n_z - d_z * n_y);
     const real_t t21 = w_x * h;
     const real_t t22 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
     const real_t A_11 = t21 + t22;
@@ -2447,9 +2815,49 @@ CLOSEDFORM_DISPATCHED
 void orthoglide_constraint(const orthoglide_params *params, const real_t q[3],
     real_t factors[2])
 {
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[2] = { 3, 3 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     uint8_t rare[1];
     orthoglide_constraint_common(params, q, factors, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_constraint_whole(params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_constraint_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void orthoglide_constraint_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_constraint_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        orthoglide_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2457,6 +2865,7 @@ void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
+    const real_t dimensions = cf_abs(params->L);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2470,6 +2879,11 @@ void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
             for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
 
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_constraint_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_constraint_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 

@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
- *   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
- *   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
- *   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
+ *   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
+ *   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  */
@@ -82,85 +82,97 @@ CF_INLINE void spherical_five_bar_fk_kernel(const int single, const real_t one,
     const real_t nu = t24 + cf_rounded(single, one, t26 * t26);
     const int in_line = nu <= t12;
     const real_t side = cf_sign(-(t13 * a_x));
-    const real_t w_x = cf_rarely(single, in_line, -(t18 * side), t13 * t26 - t18 * t23);
+    const real_t t27 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
+    const real_t t28 = t18 * t27;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t28), t13 * t26 - t18 * t23);
     const real_t length_a = cf_sqrt(mu);
-    const real_t t27 = t13 - a_x * side;
-    const real_t t28 = CLOSEDFORM_C(2.0) * (t18 * t18) + cf_rounded(single, one, t27 * t27);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, over * t28, nu));
+    const real_t t29 = t27 * (t13 - a_x * side);
+    const real_t t30 = cf_rounded(single, one, t29 * t29) + CLOSEDFORM_C(2.0) * (t28 * t28);
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, over * t30, nu));
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t t29 = r * CLOSEDFORM_C(2.0);
-    const real_t r_2 = cf_abs(s_beta2_half) * t29;
+    const real_t t31 = r * CLOSEDFORM_C(2.0);
+    const real_t r_2 = cf_abs(s_beta2_half) * t31;
     const real_t over_a = length_n * part;
-    const real_t t30 = cf_rounded(single, one, a_x * t16) - cf_rounded(single, one, t13 * t15);
-    const real_t t31 = cf_rounded(single, one, over_a * (t30 - cf_rounded(single, one, t18 * t19)));
+    const real_t t32 = cf_rounded(single, one, a_x * t16) - cf_rounded(single, one, t13 * t15);
+    const real_t t33 = cf_rounded(single, one, over_a * (t32 - cf_rounded(single, one, t18 * t19)));
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t29);
-    const real_t t32 = D + r_1;
-    const real_t t33 = cf_select(same, r, r_2);
-    const real_t t34 = t32 - t33;
-    const real_t outer = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = D - r_1;
-    const real_t t36 = t33 + t35;
-    const real_t inner = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t31);
+    const real_t t34 = D + r_1;
+    const real_t t35 = cf_select(same, r, r_2);
+    const real_t t36 = t34 - t35;
+    const real_t outer = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = D - r_1;
+    const real_t t38 = t35 + t37;
+    const real_t inner = cf_max(t38, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t37 = t33 - t35;
-    const real_t slack = cf_max(t37, CLOSEDFORM_C(0.0));
-    const real_t t38 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t38);
-    const real_t t39 = t31 + along;
-    const real_t t40 = nu - cf_rarely(single, same, r_2 * r_2, t11) + cf_rounded(single, one, t39 * t39);
-    const real_t t41 = cf_root(single, outer * inner * slack * (t33 + t32));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t41);
-    const real_t left = t40 + cf_rounded(single, one, rho * rho);
+    const real_t t39 = t35 - t37;
+    const real_t slack = cf_max(t39, CLOSEDFORM_C(0.0));
+    const real_t t40 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t40);
+    const real_t t41 = t33 + along;
+    const real_t t42 = nu - cf_rarely(single, same, r_2 * r_2, t11) + cf_rounded(single, one, t41 * t41);
+    const real_t t43 = cf_root(single, outer * inner * slack * (t35 + t34));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t43);
+    const real_t left = t42 + cf_rounded(single, one, rho * rho);
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t42 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * j * rho);
-    const real_t t43 = left + t42;
-    const real_t upper = cf_max(t43, CLOSEDFORM_C(0.0));
-    const real_t t44 = t42 - left;
-    const real_t lower = cf_max(t44, CLOSEDFORM_C(0.0));
+    const real_t t44 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * j * rho);
+    const real_t t45 = left + t44;
+    const real_t upper = cf_max(t45, CLOSEDFORM_C(0.0));
+    const real_t t46 = t44 - left;
+    const real_t lower = cf_max(t46, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t45 = cf_rarely(single, same, r_2, r);
-    const int t46 = (both <= CLOSEDFORM_VANISHING * (r * t45)) | in_line;
-    const real_t half = rho / cf_divisor(single, t46, both);
-    const real_t t47 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t46, rho, t47);
-    const real_t t48 = w_x * h;
-    const real_t Y = cf_select(t46, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t47 = cf_rarely(single, same, r_2, r);
+    const int t48 = (both <= CLOSEDFORM_VANISHING * (r * t47)) | in_line;
+    const real_t half = rho / cf_divisor(single, t48, both);
+    const real_t t49 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t48, rho, t49);
+    const real_t t50 = w_x * h;
+    const real_t Y = cf_select(t48, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
     const real_t X = over_a * along;
-    const real_t t49 = t21 * Y - (c1_x - t14 * X);
-    const int t50 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t54 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const int invalid = !(t53 & t54);
-    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t56 = (-t55 <= t37) & (-t55 <= t34) & (-t55 <= t36);
-    const real_t t57 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t45;
-    const real_t t58 = CLOSEDFORM_FEASIBILITY * (r * t57 * CLOSEDFORM_C(0.5));
-    const int unreachable = !(t56 & (-t58 <= t43) & (-t58 <= t44));
-    const real_t t59 = cf_poison(single, invalid | unreachable);
-    const real_t w_y = cf_rarely(single, in_line, -t18, a_x * t26 + t18 * t21);
-    const real_t t60 = w_y * h;
-    const real_t t61 = t23 * Y - (c1_y - t13 * X);
-    const real_t w_z = cf_rarely(single, in_line, t27, -(a_x * t23 + t13 * t21));
-    const real_t t62 = w_z * h;
-    const real_t t63 = t26 * Y - (c1_z - t18 * X);
-    const real_t t64 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t48 - t49 + t59;
-    p[1] = t60 - t61 + t59;
-    p[2] = t62 - t63 + t59;
-    p[3] = -(t49 + t48) + t59;
-    p[4] = -(t61 + t60) + t59;
-    p[5] = -(t63 + t62) + t59;
-    status[0] = t64;
-    status[1] = t64;
+    const real_t t51 = t21 * Y - (c1_x - t14 * X);
+    const int t52 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t56 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const int invalid = !(t55 & t56);
+    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t58 = (-t57 <= t39) & (-t57 <= t36) & (-t57 <= t38);
+    const real_t t59 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t47;
+    const real_t t60 = CLOSEDFORM_FEASIBILITY * (r * t59 * CLOSEDFORM_C(0.5));
+    const int unreachable = !(t58 & (-t60 <= t45) & (-t60 <= t46));
+    const real_t t61 = cf_poison(single, invalid | unreachable);
+    const real_t w_y = cf_rarely(single, in_line, -t28, a_x * t26 + t18 * t21);
+    const real_t t62 = w_y * h;
+    const real_t t63 = t23 * Y - (c1_y - t13 * X);
+    const real_t w_z = cf_rarely(single, in_line, t29, -(a_x * t23 + t13 * t21));
+    const real_t t64 = w_z * h;
+    const real_t t65 = t26 * Y - (c1_z - t18 * X);
+    const real_t t66 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t50 - t51 + t61;
+    p[1] = t62 - t63 + t61;
+    p[2] = t64 - t65 + t61;
+    p[3] = -(t51 + t50) + t61;
+    p[4] = -(t63 + t62) + t61;
+    p[5] = -(t65 + t64) + t61;
+    status[0] = t66;
+    status[1] = t66;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_fk(const spherical_five_bar_params *params,
     const real_t q[2], real_t p[6], uint8_t status[2])
 {
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
@@ -169,6 +181,26 @@ void spherical_five_bar_fk(const spherical_five_bar_params *params,
     spherical_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+CF_RARE void spherical_five_bar_fk_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        spherical_five_bar_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -179,6 +211,11 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
 {
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -314,102 +351,131 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const real_t t38 = over * (a_x * m_y + t29 * m_x);
     const real_t nu = t36 * t36 + t37 * t37 + t38 * t38;
     const int in_line = nu <= t18;
+    const real_t t39 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t29 * a_x));
-    const real_t t39 = t29 - a_x * side;
-    const real_t t40 = over * (CLOSEDFORM_C(2.0) * (t34 * t34) + t39 * t39);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t40, nu));
+    const real_t t40 = t39 * (t29 - a_x * side);
+    const real_t t41 = t34 * t39;
+    const real_t t42 = over * (t40 * t40 + CLOSEDFORM_C(2.0) * (t41 * t41));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t42, nu));
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t outer = cf_max(t24, CLOSEDFORM_C(0.0));
     const real_t inner = cf_max(t25, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
     const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t41 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t41);
-    const real_t t42 = over_a * (a_x * t32 - t29 * t31 - t34 * t35) + along;
-    const real_t t43 = nu - cf_rarely(single, same, r_2 * r_2, t17) + t42 * t42;
-    const real_t t44 = cf_root(single, outer * inner * slack * (t20 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t44);
-    const real_t left = t43 + rho * rho;
+    const real_t t43 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t43);
+    const real_t t44 = over_a * (a_x * t32 - t29 * t31 - t34 * t35) + along;
+    const real_t t45 = nu - cf_rarely(single, same, r_2 * r_2, t17) + t44 * t44;
+    const real_t t46 = cf_root(single, outer * inner * slack * (t20 + t23));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t46);
+    const real_t left = t45 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t45 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t46 = left + t45;
-    const int t47 = (-t6 <= t22) & (-t6 <= t24) & (-t6 <= t25) & (-t28 <= t46);
-    const real_t t48 = t45 - left;
-    const real_t t49 = cf_poison(single, (!(t4 & t5)) | (!(t47 & (-t28 <= t48))));
-    const real_t t50 = CLOSEDFORM_C(0.0) + t49;
-    const real_t t51 = c1_x + t49;
-    const real_t t52 = c1_y + t49;
-    const real_t t53 = c1_z + t49;
-    const real_t t54 = t10 + t49;
-    const real_t t55 = t14 + t49;
-    const real_t t56 = -t11 + t49;
-    const real_t t57 = c2_y + t49;
-    const real_t t58 = c2_z + t49;
+    const real_t t47 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t48 = left + t47;
+    const int t49 = (-t6 <= t22) & (-t6 <= t24) & (-t6 <= t25) & (-t28 <= t48);
+    const real_t t50 = t47 - left;
+    const real_t t51 = cf_poison(single, (!(t4 & t5)) | (!(t49 & (-t28 <= t50))));
+    const real_t t52 = CLOSEDFORM_C(0.0) + t51;
+    const real_t t53 = c1_x + t51;
+    const real_t t54 = c1_y + t51;
+    const real_t t55 = c1_z + t51;
+    const real_t t56 = t10 + t51;
+    const real_t t57 = t14 + t51;
+    const real_t t58 = -t11 + t51;
+    const real_t t59 = c2_y + t51;
+    const real_t t60 = c2_z + t51;
     const real_t X = over_a * along;
-    const real_t upper = cf_max(t46, CLOSEDFORM_C(0.0));
-    const real_t lower = cf_max(t48, CLOSEDFORM_C(0.0));
+    const real_t upper = cf_max(t48, CLOSEDFORM_C(0.0));
+    const real_t lower = cf_max(t50, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const int t59 = (both <= CLOSEDFORM_VANISHING * (r * t26)) | in_line;
-    const real_t half = rho / cf_divisor(single, t59, both);
-    const real_t Y = cf_select(t59, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t60 = t30 * X + t36 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t34 * side), t29 * t38 - t34 * t37);
-    const real_t t61 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t59, rho, t61);
-    const real_t t62 = w_x * h;
-    const real_t t63 = t29 * X + t37 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t34, a_x * t38 + t34 * t36);
-    const real_t t64 = w_y * h;
-    const real_t t65 = t34 * X + t38 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t39, -(a_x * t37 + t29 * t36));
-    const real_t t66 = w_z * h;
-    points[0] = t50;
-    points[1] = t50;
-    points[2] = t50;
-    points[3] = t51;
-    points[4] = t50;
-    points[5] = t50;
-    points[6] = t51;
-    points[7] = t52;
-    points[8] = t53;
-    points[9] = t54;
-    points[10] = t55;
-    points[11] = t50;
-    points[12] = t56;
-    points[13] = t57;
-    points[14] = t58;
-    points[15] = c1_x - (t60 - t62) + t49;
-    points[16] = c1_y - (t63 - t64) + t49;
-    points[17] = c1_z - (t65 - t66) + t49;
-    points[18] = t50;
-    points[19] = t50;
-    points[20] = t50;
-    points[21] = t51;
-    points[22] = t50;
-    points[23] = t50;
-    points[24] = t51;
-    points[25] = t52;
-    points[26] = t53;
-    points[27] = t54;
-    points[28] = t55;
-    points[29] = t50;
-    points[30] = t56;
-    points[31] = t57;
-    points[32] = t58;
-    points[33] = c1_x - (t60 + t62) + t49;
-    points[34] = c1_y - (t63 + t64) + t49;
-    points[35] = c1_z - (t65 + t66) + t49;
+    const int t61 = (both <= CLOSEDFORM_VANISHING * (r * t26)) | in_line;
+    const real_t half = rho / cf_divisor(single, t61, both);
+    const real_t Y = cf_select(t61, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t62 = t30 * X + t36 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t41), t29 * t38 - t34 * t37);
+    const real_t t63 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t61, rho, t63);
+    const real_t t64 = w_x * h;
+    const real_t t65 = t29 * X + t37 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t41, a_x * t38 + t34 * t36);
+    const real_t t66 = w_y * h;
+    const real_t t67 = t34 * X + t38 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t40, -(a_x * t37 + t29 * t36));
+    const real_t t68 = w_z * h;
+    points[0] = t52;
+    points[1] = t52;
+    points[2] = t52;
+    points[3] = t53;
+    points[4] = t52;
+    points[5] = t52;
+    points[6] = t53;
+    points[7] = t54;
+    points[8] = t55;
+    points[9] = t56;
+    points[10] = t57;
+    points[11] = t52;
+    points[12] = t58;
+    points[13] = t59;
+    points[14] = t60;
+    points[15] = c1_x - (t62 - t64) + t51;
+    points[16] = c1_y - (t65 - t66) + t51;
+    points[17] = c1_z - (t67 - t68) + t51;
+    points[18] = t52;
+    points[19] = t52;
+    points[20] = t52;
+    points[21] = t53;
+    points[22] = t52;
+    points[23] = t52;
+    points[24] = t53;
+    points[25] = t54;
+    points[26] = t55;
+    points[27] = t56;
+    points[28] = t57;
+    points[29] = t52;
+    points[30] = t58;
+    points[31] = t59;
+    points[32] = t60;
+    points[33] = c1_x - (t62 + t64) + t51;
+    points[34] = c1_y - (t65 + t66) + t51;
+    points[35] = c1_z - (t67 + t68) + t51;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
     const real_t q[2], real_t points[36])
 {
+    static const signed char points_degrees[36] = { 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(36, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void spherical_five_bar_skeleton_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[36];
+        spherical_five_bar_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 36; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -418,6 +484,11 @@ void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params
     real_t *points, size_t points_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -548,102 +619,131 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t19 = over * (a_x * m_y + t11 * m_x);
     const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
     const int in_line = nu <= t9;
+    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t11 * a_x));
-    const real_t t20 = t11 - a_x * side;
-    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t t21 = t20 * (t11 - a_x * side);
+    const real_t t22 = t15 * t20;
+    const real_t t23 = over * (t21 * t21 + CLOSEDFORM_C(2.0) * (t22 * t22));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t23, nu));
     const real_t length_a = cf_sqrt(mu);
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t22;
-    const real_t t23 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t22;
-    const real_t t24 = cf_select(same, r, r_2);
-    const real_t t25 = t23 - t24;
-    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = D - r_1;
-    const real_t t27 = t24 + t26;
-    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t24 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t24;
+    const real_t t25 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t24;
+    const real_t t26 = cf_select(same, r, r_2);
+    const real_t t27 = t25 - t26;
+    const real_t outer = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = D - r_1;
+    const real_t t29 = t26 + t28;
+    const real_t inner = cf_max(t29, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t28 = t24 - t26;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t t30 = t26 - t28;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t31);
     const real_t X = over_a * along;
-    const real_t t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
-    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
-    const real_t left = t31 + rho * rho;
+    const real_t t32 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const real_t t33 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t32 * t32;
+    const real_t t34 = cf_root(single, outer * inner * slack * (t26 + t25));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t34);
+    const real_t left = t33 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t34 = left + t33;
-    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = t33 - left;
-    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t35 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t36 = left + t35;
+    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = t35 - left;
+    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t36 = cf_rarely(single, same, r_2, r);
-    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
-    const real_t half = rho / cf_divisor(single, t37, both);
-    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t38 = t10 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t11 * t19 - t15 * t18);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t37, rho, t39);
-    const real_t t40 = w_x * h;
-    const real_t t41 = t38 - t40;
-    const int t42 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t46 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t47 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t48 = (-t47 <= t28) & (-t47 <= t25) & (-t47 <= t27);
-    const real_t t49 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
-    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * t49 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t45 & t46)) | (!(t48 & (-t50 <= t34) & (-t50 <= t35)));
-    const real_t t51 = cf_poison(single, failed);
-    const real_t t52 = t11 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
-    const real_t t53 = w_y * h;
-    const real_t t54 = t52 - t53;
-    const real_t t55 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t11 * t17));
-    const real_t t56 = w_z * h;
-    const real_t t57 = t55 - t56;
-    const real_t t58 = t38 + t40;
-    const real_t t59 = t52 + t53;
-    const real_t t60 = t55 + t56;
-    A[0] = c1_x - t41 + t51;
-    A[1] = c1_y - t54 + t51;
-    A[2] = c1_z - t57 + t51;
-    A[3] = -t41 + t51;
-    A[4] = -t54 + t51;
-    A[5] = -t57 + t51;
-    A[6] = t4 - t41 + t51;
-    A[7] = t6 - t54 + t51;
-    A[8] = t7 - t57 + t51;
-    A[9] = c1_x - t58 + t51;
-    A[10] = c1_y - t59 + t51;
-    A[11] = c1_z - t60 + t51;
-    A[12] = -t58 + t51;
-    A[13] = -t59 + t51;
-    A[14] = -t60 + t51;
-    A[15] = t4 - t58 + t51;
-    A[16] = t6 - t59 + t51;
-    A[17] = t7 - t60 + t51;
+    const real_t t38 = cf_rarely(single, same, r_2, r);
+    const int t39 = (both <= CLOSEDFORM_VANISHING * (r * t38)) | in_line;
+    const real_t half = rho / cf_divisor(single, t39, both);
+    const real_t Y = cf_select(t39, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t40 = t10 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t22), t11 * t19 - t15 * t18);
+    const real_t t41 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t39, rho, t41);
+    const real_t t42 = w_x * h;
+    const real_t t43 = t40 - t42;
+    const int t44 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t48 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t49 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t50 = (-t49 <= t30) & (-t49 <= t27) & (-t49 <= t29);
+    const real_t t51 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * t51 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t47 & t48)) | (!(t50 & (-t52 <= t36) & (-t52 <= t37)));
+    const real_t t53 = cf_poison(single, failed);
+    const real_t t54 = t11 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t22, a_x * t19 + t15 * t17);
+    const real_t t55 = w_y * h;
+    const real_t t56 = t54 - t55;
+    const real_t t57 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t11 * t17));
+    const real_t t58 = w_z * h;
+    const real_t t59 = t57 - t58;
+    const real_t t60 = t40 + t42;
+    const real_t t61 = t54 + t55;
+    const real_t t62 = t57 + t58;
+    A[0] = c1_x - t43 + t53;
+    A[1] = c1_y - t56 + t53;
+    A[2] = c1_z - t59 + t53;
+    A[3] = -t43 + t53;
+    A[4] = -t56 + t53;
+    A[5] = -t59 + t53;
+    A[6] = t4 - t43 + t53;
+    A[7] = t6 - t56 + t53;
+    A[8] = t7 - t59 + t53;
+    A[9] = c1_x - t60 + t53;
+    A[10] = c1_y - t61 + t53;
+    A[11] = c1_z - t62 + t53;
+    A[12] = -t60 + t53;
+    A[13] = -t61 + t53;
+    A[14] = -t62 + t53;
+    A[15] = t4 - t60 + t53;
+    A[16] = t6 - t61 + t53;
+    A[17] = t7 - t62 + t53;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian_parallel(const spherical_five_bar_params *params,
     const real_t q[2], real_t A[18])
 {
+    static const signed char A_degrees[18] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+CF_RARE void spherical_five_bar_jacobian_parallel_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        spherical_five_bar_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -652,6 +752,11 @@ void spherical_five_bar_jacobian_parallel_batch(size_t n, const spherical_five_b
     real_t *A, size_t A_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -765,90 +870,119 @@ CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
     const real_t t19 = over * (a_x * m_y + t10 * m_x);
     const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
     const int in_line = nu <= t9;
+    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t10 * a_x));
-    const real_t t20 = t10 - a_x * side;
-    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t t21 = t20 * (t10 - a_x * side);
+    const real_t t22 = t15 * t20;
+    const real_t t23 = over * (t21 * t21 + CLOSEDFORM_C(2.0) * (t22 * t22));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t23, nu));
     const real_t length_a = cf_sqrt(mu);
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t22;
-    const real_t t23 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t22;
-    const real_t t24 = cf_select(same, r, r_2);
-    const real_t t25 = t23 - t24;
-    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = D - r_1;
-    const real_t t27 = t24 + t26;
-    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t24 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t24;
+    const real_t t25 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t24;
+    const real_t t26 = cf_select(same, r, r_2);
+    const real_t t27 = t25 - t26;
+    const real_t outer = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = D - r_1;
+    const real_t t29 = t26 + t28;
+    const real_t inner = cf_max(t29, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t28 = t24 - t26;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t t30 = t26 - t28;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t31);
     const real_t X = over_a * along;
-    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
-    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
-    const real_t left = t31 + rho * rho;
+    const real_t t32 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t33 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t32 * t32;
+    const real_t t34 = cf_root(single, outer * inner * slack * (t26 + t25));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t34);
+    const real_t left = t33 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t34 = left + t33;
-    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = t33 - left;
-    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t35 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t36 = left + t35;
+    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = t35 - left;
+    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t36 = cf_rarely(single, same, r_2, r);
-    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
-    const real_t half = rho / cf_divisor(single, t37, both);
-    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t38 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t37, rho, t39);
-    const real_t t40 = w_y * h;
-    const real_t t41 = t38 - t40;
-    const real_t t42 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
-    const real_t t43 = w_z * h;
-    const real_t t44 = t42 - t43;
-    const int t45 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t49 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t51 = (-t50 <= t28) & (-t50 <= t25) & (-t50 <= t27);
-    const real_t t52 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
-    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * t52 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t48 & t49)) | (!(t51 & (-t53 <= t34) & (-t53 <= t35)));
-    const real_t t54 = cf_poison(single, failed);
-    const real_t t55 = s_gamma * c2_z;
-    const real_t t56 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
-    const real_t t57 = w_x * h;
-    const real_t t58 = c_gamma * c2_z;
-    const real_t B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t41) - t3 * (t7 + t44);
-    const real_t t59 = t38 + t40;
-    const real_t t60 = t42 + t43;
-    const real_t B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60);
-    B[0] = c1_z * t41 - c1_y * t44 + t54;
-    B[1] = B_22 + t54;
-    B[2] = c1_z * t59 - c1_y * t60 + t54;
-    B[3] = B_22_below + t54;
+    const real_t t38 = cf_rarely(single, same, r_2, r);
+    const int t39 = (both <= CLOSEDFORM_VANISHING * (r * t38)) | in_line;
+    const real_t half = rho / cf_divisor(single, t39, both);
+    const real_t Y = cf_select(t39, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t40 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t22, a_x * t19 + t15 * t17);
+    const real_t t41 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t39, rho, t41);
+    const real_t t42 = w_y * h;
+    const real_t t43 = t40 - t42;
+    const real_t t44 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
+    const real_t t45 = w_z * h;
+    const real_t t46 = t44 - t45;
+    const int t47 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t53 = (-t52 <= t30) & (-t52 <= t27) & (-t52 <= t29);
+    const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t36) & (-t55 <= t37)));
+    const real_t t56 = cf_poison(single, failed);
+    const real_t t57 = s_gamma * c2_z;
+    const real_t t58 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t22), t10 * t19 - t15 * t18);
+    const real_t t59 = w_x * h;
+    const real_t t60 = c_gamma * c2_z;
+    const real_t B_22 = t57 * (t5 - (t58 - t59)) - t60 * (t6 - t43) - t3 * (t7 + t46);
+    const real_t t61 = t40 + t42;
+    const real_t t62 = t44 + t45;
+    const real_t B_22_below = t57 * (t5 - (t58 + t59)) - t60 * (t6 - t61) - t3 * (t7 + t62);
+    B[0] = c1_z * t43 - c1_y * t46 + t56;
+    B[1] = B_22 + t56;
+    B[2] = c1_z * t61 - c1_y * t62 + t56;
+    B[3] = B_22_below + t56;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian_serial(const spherical_five_bar_params *params,
     const real_t q[2], real_t B[4])
 {
+    static const signed char B_degrees[4] = { 2, 2, 2, 2 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(4, B_degrees, exponent, B, B);
+    }
+}
+
+CF_RARE void spherical_five_bar_jacobian_serial_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[4];
+        spherical_five_bar_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 4; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -857,6 +991,11 @@ void spherical_five_bar_jacobian_serial_batch(size_t n, const spherical_five_bar
     real_t *B, size_t B_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -956,127 +1095,156 @@ CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
     const real_t t19 = over * (a_x * m_y + t10 * m_x);
     const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
     const int in_line = nu <= t9;
+    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t10 * a_x));
-    const real_t t20 = t10 - a_x * side;
-    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t t21 = t20 * (t10 - a_x * side);
+    const real_t t22 = t15 * t20;
+    const real_t t23 = over * (t21 * t21 + CLOSEDFORM_C(2.0) * (t22 * t22));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t23, nu));
     const real_t length_a = cf_sqrt(mu);
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t22;
-    const real_t t23 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t22;
-    const real_t t24 = cf_select(same, r, r_2);
-    const real_t t25 = t23 - t24;
-    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = D - r_1;
-    const real_t t27 = t24 + t26;
-    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t24 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t24;
+    const real_t t25 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t24;
+    const real_t t26 = cf_select(same, r, r_2);
+    const real_t t27 = t25 - t26;
+    const real_t outer = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = D - r_1;
+    const real_t t29 = t26 + t28;
+    const real_t inner = cf_max(t29, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t28 = t24 - t26;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t t30 = t26 - t28;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t31);
     const real_t X = over_a * along;
-    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
-    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
-    const real_t left = t31 + rho * rho;
+    const real_t t32 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t33 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t32 * t32;
+    const real_t t34 = cf_root(single, outer * inner * slack * (t26 + t25));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t34);
+    const real_t left = t33 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t34 = left + t33;
-    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = t33 - left;
-    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t35 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t36 = left + t35;
+    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = t35 - left;
+    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t36 = cf_rarely(single, same, r_2, r);
-    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
-    const real_t half = rho / cf_divisor(single, t37, both);
-    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t38 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t37, rho, t39);
-    const real_t t40 = w_y * h;
-    const real_t t41 = t38 - t40;
-    const real_t t42 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
-    const real_t t43 = w_z * h;
-    const real_t t44 = t42 - t43;
-    const real_t B_11 = c1_z * t41 - c1_y * t44;
-    const real_t A_02 = c1_y - t41;
-    const real_t t45 = t7 + t44;
-    const real_t A_03 = c1_z - t44;
-    const real_t A_22 = t6 - t41;
+    const real_t t38 = cf_rarely(single, same, r_2, r);
+    const int t39 = (both <= CLOSEDFORM_VANISHING * (r * t38)) | in_line;
+    const real_t half = rho / cf_divisor(single, t39, both);
+    const real_t Y = cf_select(t39, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t40 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t22, a_x * t19 + t15 * t17);
+    const real_t t41 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t39, rho, t41);
+    const real_t t42 = w_y * h;
+    const real_t t43 = t40 - t42;
+    const real_t t44 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
+    const real_t t45 = w_z * h;
+    const real_t t46 = t44 - t45;
+    const real_t B_11 = c1_z * t43 - c1_y * t46;
+    const real_t A_02 = c1_y - t43;
+    const real_t t47 = t7 + t46;
+    const real_t A_03 = c1_z - t46;
+    const real_t A_22 = t6 - t43;
     const real_t Delta = mu * nu * h;
-    const real_t t46 = cf_nonzero(single, Delta);
-    const int t47 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t53 = (-t52 <= t28) & (-t52 <= t25) & (-t52 <= t27);
-    const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
-    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t34) & (-t55 <= t35)));
-    const real_t t56 = cf_poison(single, failed);
-    const real_t t57 = B_11 * (A_02 * t45 + A_03 * A_22) / t46 + t56;
-    const real_t t58 = s_gamma * c2_z;
-    const real_t t59 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
-    const real_t t60 = w_x * h;
-    const real_t t61 = t59 - t60;
-    const real_t A_21 = t5 - t61;
-    const real_t t62 = c_gamma * c2_z;
-    const real_t B_22 = t58 * A_21 - t62 * A_22 - t3 * t45;
-    const real_t t63 = -(B_22 * (t44 * A_02 - t41 * A_03) / t46) + t56;
-    const real_t A_01 = c1_x - t61;
-    const real_t t64 = -(B_11 * (t45 * A_01 + A_03 * A_21) / t46) + t56;
-    const real_t t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t46) + t56;
-    const real_t t66 = -(B_22 * (t41 * A_01 - A_02 * t61) / t46) + t56;
-    const real_t t67 = t38 + t40;
-    const real_t t68 = t42 + t43;
-    const real_t B_11_below = c1_z * t67 - c1_y * t68;
-    const real_t A_02_below = c1_y - t67;
-    const real_t t69 = t7 + t68;
-    const real_t A_03_below = c1_z - t68;
-    const real_t A_22_below = t6 - t67;
-    const real_t t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below);
-    const real_t t71 = t59 + t60;
-    const real_t A_21_below = t5 - t71;
-    const real_t B_22_below = t58 * A_21_below - t62 * A_22_below - t3 * t69;
-    const real_t t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below);
-    const real_t A_01_below = c1_x - t71;
-    const real_t t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below);
-    const real_t t74 = B_22_below * (t68 * A_01_below - A_03_below * t71);
-    const real_t t75 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const real_t t76 = B_22_below * (t67 * A_01_below - A_02_below * t71);
-    J[0] = t57;
-    J[1] = t63;
-    J[2] = t64;
-    J[3] = B_22 * (t44 * A_01 - A_03 * t61) / t46 + t56;
-    J[4] = t65;
-    J[5] = t66;
-    J[6] = -(t70 / t46) + t56;
-    J[7] = t72 / t46 + t56;
-    J[8] = t73 / t46 + t56;
-    J[9] = -(t74 / t46) + t56;
-    J[10] = B_11_below * t75 / t46 + t56;
-    J[11] = t76 / t46 + t56;
+    const real_t t48 = cf_nonzero(single, Delta);
+    const int t49 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t53 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t54 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t55 = (-t54 <= t30) & (-t54 <= t27) & (-t54 <= t29);
+    const real_t t56 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
+    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * t56 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t52 & t53)) | (!(t55 & (-t57 <= t36) & (-t57 <= t37)));
+    const real_t t58 = cf_poison(single, failed);
+    const real_t t59 = B_11 * (A_02 * t47 + A_03 * A_22) / t48 + t58;
+    const real_t t60 = s_gamma * c2_z;
+    const real_t t61 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t22), t10 * t19 - t15 * t18);
+    const real_t t62 = w_x * h;
+    const real_t t63 = t61 - t62;
+    const real_t A_21 = t5 - t63;
+    const real_t t64 = c_gamma * c2_z;
+    const real_t B_22 = t60 * A_21 - t64 * A_22 - t3 * t47;
+    const real_t t65 = -(B_22 * (t46 * A_02 - t43 * A_03) / t48) + t58;
+    const real_t A_01 = c1_x - t63;
+    const real_t t66 = -(B_11 * (t47 * A_01 + A_03 * A_21) / t48) + t58;
+    const real_t t67 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t48) + t58;
+    const real_t t68 = -(B_22 * (t43 * A_01 - A_02 * t63) / t48) + t58;
+    const real_t t69 = t40 + t42;
+    const real_t t70 = t44 + t45;
+    const real_t B_11_below = c1_z * t69 - c1_y * t70;
+    const real_t A_02_below = c1_y - t69;
+    const real_t t71 = t7 + t70;
+    const real_t A_03_below = c1_z - t70;
+    const real_t A_22_below = t6 - t69;
+    const real_t t72 = B_11_below * (A_02_below * t71 + A_03_below * A_22_below);
+    const real_t t73 = t61 + t62;
+    const real_t A_21_below = t5 - t73;
+    const real_t B_22_below = t60 * A_21_below - t64 * A_22_below - t3 * t71;
+    const real_t t74 = B_22_below * (t70 * A_02_below - t69 * A_03_below);
+    const real_t A_01_below = c1_x - t73;
+    const real_t t75 = B_11_below * (t71 * A_01_below + A_03_below * A_21_below);
+    const real_t t76 = B_22_below * (t70 * A_01_below - A_03_below * t73);
+    const real_t t77 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t78 = B_22_below * (t69 * A_01_below - A_02_below * t73);
+    J[0] = t59;
+    J[1] = t65;
+    J[2] = t66;
+    J[3] = B_22 * (t46 * A_01 - A_03 * t63) / t48 + t58;
+    J[4] = t67;
+    J[5] = t68;
+    J[6] = -(t72 / t48) + t58;
+    J[7] = t74 / t48 + t58;
+    J[8] = t75 / t48 + t58;
+    J[9] = -(t76 / t48) + t58;
+    J[10] = B_11_below * t77 / t48 + t58;
+    J[11] = t78 / t48 + t58;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_jacobian(const spherical_five_bar_params *params,
     const real_t q[2], real_t J[12])
 {
+    static const signed char J_degrees[12] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(12, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void spherical_five_bar_jacobian_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[12];
+        spherical_five_bar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 12; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1085,6 +1253,11 @@ void spherical_five_bar_jacobian_batch(size_t n, const spherical_five_bar_params
     real_t *J, size_t J_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -1192,93 +1365,122 @@ CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
     const real_t t19 = over * (a_x * m_y + t10 * m_x);
     const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
     const int in_line = nu <= t9;
+    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t10 * a_x));
-    const real_t t20 = t10 - a_x * side;
-    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t t21 = t20 * (t10 - a_x * side);
+    const real_t t22 = t15 * t20;
+    const real_t t23 = over * (t21 * t21 + CLOSEDFORM_C(2.0) * (t22 * t22));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t23, nu));
     const real_t length_a = cf_sqrt(mu);
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t22;
-    const real_t t23 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t22;
-    const real_t t24 = cf_select(same, r, r_2);
-    const real_t t25 = t23 - t24;
-    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = D - r_1;
-    const real_t t27 = t24 + t26;
-    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t24 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t24;
+    const real_t t25 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t24;
+    const real_t t26 = cf_select(same, r, r_2);
+    const real_t t27 = t25 - t26;
+    const real_t outer = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = D - r_1;
+    const real_t t29 = t26 + t28;
+    const real_t inner = cf_max(t29, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t28 = t24 - t26;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t t30 = t26 - t28;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t31);
     const real_t X = over_a * along;
-    const real_t t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
-    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
-    const real_t left = t31 + rho * rho;
+    const real_t t32 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const real_t t33 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t32 * t32;
+    const real_t t34 = cf_root(single, outer * inner * slack * (t26 + t25));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t34);
+    const real_t left = t33 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t34 = left + t33;
-    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = t33 - left;
-    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t35 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t36 = left + t35;
+    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = t35 - left;
+    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t36 = cf_rarely(single, same, r_2, r);
-    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
-    const real_t half = rho / cf_divisor(single, t37, both);
-    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t38 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t37, rho, t39);
-    const real_t t40 = w_y * h;
-    const real_t t41 = t38 - t40;
-    const real_t t42 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t10 * t17));
-    const real_t t43 = w_z * h;
-    const real_t t44 = t42 - t43;
-    const int t45 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t49 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t50 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t51 = (-t50 <= t28) & (-t50 <= t25) & (-t50 <= t27);
-    const real_t t52 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
-    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * t52 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t48 & t49)) | (!(t51 & (-t53 <= t34) & (-t53 <= t35)));
-    const real_t t54 = cf_poison(single, failed);
-    const real_t t55 = s_gamma * c2_z;
-    const real_t t56 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t10 * t19 - t15 * t18);
-    const real_t t57 = w_x * h;
-    const real_t t58 = c_gamma * c2_z;
-    const real_t B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t41) - t3 * (t7 + t44);
+    const real_t t38 = cf_rarely(single, same, r_2, r);
+    const int t39 = (both <= CLOSEDFORM_VANISHING * (r * t38)) | in_line;
+    const real_t half = rho / cf_divisor(single, t39, both);
+    const real_t Y = cf_select(t39, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t40 = t10 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t22, a_x * t19 + t15 * t17);
+    const real_t t41 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t39, rho, t41);
+    const real_t t42 = w_y * h;
+    const real_t t43 = t40 - t42;
+    const real_t t44 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
+    const real_t t45 = w_z * h;
+    const real_t t46 = t44 - t45;
+    const int t47 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t53 = (-t52 <= t30) & (-t52 <= t27) & (-t52 <= t29);
+    const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t36) & (-t55 <= t37)));
+    const real_t t56 = cf_poison(single, failed);
+    const real_t t57 = s_gamma * c2_z;
+    const real_t t58 = t11 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t22), t10 * t19 - t15 * t18);
+    const real_t t59 = w_x * h;
+    const real_t t60 = c_gamma * c2_z;
+    const real_t B_22 = t57 * (t5 - (t58 - t59)) - t60 * (t6 - t43) - t3 * (t7 + t46);
     const real_t Delta = mu * nu * h;
-    const real_t t59 = t38 + t40;
-    const real_t t60 = t42 + t43;
-    const real_t B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60);
-    factors[0] = c1_z * t41 - c1_y * t44 + t54;
-    factors[1] = B_22 + t54;
-    factors[2] = Delta + t54;
-    factors[3] = c1_z * t59 - c1_y * t60 + t54;
-    factors[4] = B_22_below + t54;
-    factors[5] = -Delta + t54;
+    const real_t t61 = t40 + t42;
+    const real_t t62 = t44 + t45;
+    const real_t B_22_below = t57 * (t5 - (t58 + t59)) - t60 * (t6 - t61) - t3 * (t7 + t62);
+    factors[0] = c1_z * t43 - c1_y * t46 + t56;
+    factors[1] = B_22 + t56;
+    factors[2] = Delta + t56;
+    factors[3] = c1_z * t61 - c1_y * t62 + t56;
+    factors[4] = B_22_below + t56;
+    factors[5] = -Delta + t56;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_singularities(const spherical_five_bar_params *params,
     const real_t q[2], real_t factors[6])
 {
+    static const signed char factors_degrees[6] = { 2, 2, 3, 2, 2, 3 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void spherical_five_bar_singularities_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[6];
+        spherical_five_bar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1287,6 +1489,11 @@ void spherical_five_bar_singularities_batch(size_t n, const spherical_five_bar_p
     real_t *factors, size_t factors_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
@@ -1387,140 +1594,165 @@ CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
     const real_t t19 = over * (a_x * m_y + t11 * m_x);
     const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
     const int in_line = nu <= t9;
+    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(1.0), r);
     const real_t side = cf_sign(-(t11 * a_x));
-    const real_t t20 = t11 - a_x * side;
-    const real_t t21 = over * (CLOSEDFORM_C(2.0) * (t15 * t15) + t20 * t20);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t21, nu));
+    const real_t t21 = t20 * (t11 - a_x * side);
+    const real_t t22 = t15 * t20;
+    const real_t t23 = over * (t21 * t21 + CLOSEDFORM_C(2.0) * (t22 * t22));
+    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t23, nu));
     const real_t length_a = cf_sqrt(mu);
     const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
     const real_t over_a = length_n * part;
     const real_t D = cf_select(all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t22;
-    const real_t t23 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t22;
-    const real_t t24 = cf_select(same, r, r_2);
-    const real_t t25 = t23 - t24;
-    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t t26 = D - r_1;
-    const real_t t27 = t24 + t26;
-    const real_t inner = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t24 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t24;
+    const real_t t25 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t24;
+    const real_t t26 = cf_select(same, r, r_2);
+    const real_t t27 = t25 - t26;
+    const real_t outer = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = D - r_1;
+    const real_t t29 = t26 + t28;
+    const real_t inner = cf_max(t29, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t28 = t24 - t26;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t29);
+    const real_t t30 = t26 - t28;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t31);
     const real_t X = over_a * along;
-    const real_t t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const real_t t31 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t30 * t30;
-    const real_t t32 = cf_root(single, outer * inner * slack * (t24 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t32);
-    const real_t left = t31 + rho * rho;
+    const real_t t32 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const real_t t33 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t32 * t32;
+    const real_t t34 = cf_root(single, outer * inner * slack * (t26 + t25));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t34);
+    const real_t left = t33 + rho * rho;
     const real_t j = cf_select(in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t33 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t34 = left + t33;
-    const real_t upper = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = t33 - left;
-    const real_t lower = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t35 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t36 = left + t35;
+    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = t35 - left;
+    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t36 = cf_rarely(single, same, r_2, r);
-    const int t37 = (both <= CLOSEDFORM_VANISHING * (r * t36)) | in_line;
-    const real_t half = rho / cf_divisor(single, t37, both);
-    const real_t Y = cf_select(t37, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t38 = t10 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t15 * side), t11 * t19 - t15 * t18);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t37, rho, t39);
-    const real_t t40 = w_x * h;
-    const real_t t41 = t38 - t40;
-    const real_t A_01 = c1_x - t41;
-    const real_t t42 = t11 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t19 + t15 * t17);
-    const real_t t43 = w_y * h;
-    const real_t t44 = t42 - t43;
-    const real_t A_02 = c1_y - t44;
-    const real_t t45 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t20, -(a_x * t18 + t11 * t17));
-    const real_t t46 = w_z * h;
-    const real_t t47 = t45 - t46;
-    const real_t A_03 = c1_z - t47;
+    const real_t t38 = cf_rarely(single, same, r_2, r);
+    const int t39 = (both <= CLOSEDFORM_VANISHING * (r * t38)) | in_line;
+    const real_t half = rho / cf_divisor(single, t39, both);
+    const real_t Y = cf_select(t39, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
+    const real_t t40 = t10 * X + t17 * Y;
+    const real_t w_x = cf_rarely(single, in_line, -(side * t22), t11 * t19 - t15 * t18);
+    const real_t t41 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t39, rho, t41);
+    const real_t t42 = w_x * h;
+    const real_t t43 = t40 - t42;
+    const real_t A_01 = c1_x - t43;
+    const real_t t44 = t11 * X + t18 * Y;
+    const real_t w_y = cf_rarely(single, in_line, -t22, a_x * t19 + t15 * t17);
+    const real_t t45 = w_y * h;
+    const real_t t46 = t44 - t45;
+    const real_t A_02 = c1_y - t46;
+    const real_t t47 = t15 * X + t19 * Y;
+    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t11 * t17));
+    const real_t t48 = w_z * h;
+    const real_t t49 = t47 - t48;
+    const real_t A_03 = c1_z - t49;
     const real_t strut = cf_sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03);
-    const real_t t48 = cf_nonzero(single, strut);
-    const real_t radial_x = A_01 / t48;
-    const real_t radial_y = A_02 / t48;
-    const real_t radial_z = A_03 / t48;
-    const real_t t49 = t41 * radial_x + t44 * radial_y + t47 * radial_z;
-    const real_t t50 = t41 - radial_x * t49;
-    const real_t t51 = t44 - radial_y * t49;
-    const real_t t52 = t47 - radial_z * t49;
-    const real_t square1 = t50 * t50 + t51 * t51 + t52 * t52;
-    const real_t A_21 = t4 - t41;
-    const real_t A_22 = t6 - t44;
-    const real_t A_23 = t7 - t47;
+    const real_t t50 = cf_nonzero(single, strut);
+    const real_t radial_x = A_01 / t50;
+    const real_t radial_y = A_02 / t50;
+    const real_t radial_z = A_03 / t50;
+    const real_t t51 = t43 * radial_x + t46 * radial_y + t49 * radial_z;
+    const real_t t52 = t43 - radial_x * t51;
+    const real_t t53 = t46 - radial_y * t51;
+    const real_t t54 = t49 - radial_z * t51;
+    const real_t square1 = t52 * t52 + t53 * t53 + t54 * t54;
+    const real_t A_21 = t4 - t43;
+    const real_t A_22 = t6 - t46;
+    const real_t A_23 = t7 - t49;
     const real_t off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23;
     const real_t t2_x = A_21 - radial_x * off2;
     const real_t t2_y = A_22 - radial_y * off2;
     const real_t t2_z = A_23 - radial_z * off2;
     const real_t square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z;
-    const real_t t53 = square1 - square2;
-    const real_t t54 = t50 * t2_x + t51 * t2_y + t52 * t2_z;
-    const real_t t55 = cf_sqrt(t53 * t53 + CLOSEDFORM_C(4.0) * (t54 * t54));
-    const real_t t56 = CLOSEDFORM_C(2.0) * (mu * nu * h);
-    const real_t t57 = cf_quotient(single, strut * (square1 + square2 + t55), t56);
-    const int t58 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t62 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t63 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t64 = (-t63 <= t28) & (-t63 <= t25) & (-t63 <= t27);
-    const real_t t65 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t36;
-    const real_t t66 = CLOSEDFORM_FEASIBILITY * (r * t65 * CLOSEDFORM_C(0.5));
-    const int failed = (!(t61 & t62)) | (!(t64 & (-t66 <= t34) & (-t66 <= t35)));
-    const real_t t67 = cf_poison(single, failed);
-    const real_t t68 = t38 + t40;
-    const real_t A_01_below = c1_x - t68;
-    const real_t t69 = t42 + t43;
-    const real_t A_02_below = c1_y - t69;
-    const real_t t70 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const real_t t71 = t45 + t46;
-    const real_t A_03_below = c1_z - t71;
-    const real_t strut_below = cf_sqrt(t70 + A_03_below * A_03_below);
-    const real_t t72 = cf_nonzero(single, strut_below);
-    const real_t radial_x_below = A_01_below / t72;
-    const real_t radial_y_below = A_02_below / t72;
-    const real_t radial_z_below = A_03_below / t72;
-    const real_t t73 = t68 * radial_x_below + t69 * radial_y_below + t71 * radial_z_below;
-    const real_t t74 = t68 - radial_x_below * t73;
-    const real_t t75 = t69 - radial_y_below * t73;
-    const real_t t76 = t71 - radial_z_below * t73;
-    const real_t square1_below = t74 * t74 + t75 * t75 + t76 * t76;
-    const real_t A_21_below = t4 - t68;
-    const real_t A_22_below = t6 - t69;
-    const real_t t77 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const real_t A_23_below = t7 - t71;
-    const real_t off2_below = t77 + radial_z_below * A_23_below;
+    const real_t t55 = square1 - square2;
+    const real_t t56 = t52 * t2_x + t53 * t2_y + t54 * t2_z;
+    const real_t t57 = cf_sqrt(t55 * t55 + CLOSEDFORM_C(4.0) * (t56 * t56));
+    const real_t t58 = CLOSEDFORM_C(2.0) * (mu * nu * h);
+    const real_t t59 = cf_quotient(single, strut * (square1 + square2 + t57), t58);
+    const int t60 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t62 = t61 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t63 = t62 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t64 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t65 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t66 = (-t65 <= t30) & (-t65 <= t27) & (-t65 <= t29);
+    const real_t t67 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
+    const real_t t68 = CLOSEDFORM_FEASIBILITY * (r * t67 * CLOSEDFORM_C(0.5));
+    const int failed = (!(t63 & t64)) | (!(t66 & (-t68 <= t36) & (-t68 <= t37)));
+    const real_t t69 = cf_poison(single, failed);
+    const real_t t70 = t40 + t42;
+    const real_t A_01_below = c1_x - t70;
+    const real_t t71 = t44 + t45;
+    const real_t A_02_below = c1_y - t71;
+    const real_t t72 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const real_t t73 = t47 + t48;
+    const real_t A_03_below = c1_z - t73;
+    const real_t strut_below = cf_sqrt(t72 + A_03_below * A_03_below);
+    const real_t t74 = cf_nonzero(single, strut_below);
+    const real_t radial_x_below = A_01_below / t74;
+    const real_t radial_y_below = A_02_below / t74;
+    const real_t radial_z_below = A_03_below / t74;
+    const real_t t75 = t70 * radial_x_below + t71 * radial_y_below + t73 * radial_z_below;
+    const real_t t76 = t70 - radial_x_below * t75;
+    const real_t t77 = t71 - radial_y_below * t75;
+    const real_t t78 = t73 - radial_z_below * t75;
+    const real_t square1_below = t76 * t76 + t77 * t77 + t78 * t78;
+    const real_t A_21_below = t4 - t70;
+    const real_t A_22_below = t6 - t71;
+    const real_t t79 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const real_t A_23_below = t7 - t73;
+    const real_t off2_below = t79 + radial_z_below * A_23_below;
     const real_t t2_x_below = A_21_below - radial_x_below * off2_below;
     const real_t t2_y_below = A_22_below - radial_y_below * off2_below;
-    const real_t t78 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const real_t t80 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const real_t t2_z_below = A_23_below - radial_z_below * off2_below;
-    const real_t square2_below = t78 + t2_z_below * t2_z_below;
-    const real_t t79 = square1_below - square2_below;
-    const real_t t80 = t74 * t2_x_below + t75 * t2_y_below + t76 * t2_z_below;
-    const real_t t81 = cf_sqrt(t79 * t79 + CLOSEDFORM_C(4.0) * (t80 * t80));
-    const real_t t82 = strut_below * (square1_below + square2_below + t81);
-    kappa[0] = t57 + t67;
-    kappa[1] = cf_quotient(single, t82, t56) + t67;
+    const real_t square2_below = t80 + t2_z_below * t2_z_below;
+    const real_t t81 = square1_below - square2_below;
+    const real_t t82 = t76 * t2_x_below + t77 * t2_y_below + t78 * t2_z_below;
+    const real_t t83 = cf_sqrt(t81 * t81 + CLOSEDFORM_C(4.0) * (t82 * t82));
+    const real_t t84 = strut_below * (square1_below + square2_below + t83);
+    kappa[0] = t59 + t69;
+    kappa[1] = cf_quotient(single, t84, t58) + t69;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_five_bar_condition_number(const spherical_five_bar_params *params,
     const real_t q[2], real_t kappa[2])
 {
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
+}
+
+CF_RARE void spherical_five_bar_condition_number_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        spherical_five_bar_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1529,6 +1761,11 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
     real_t *kappa, size_t kappa_stride)
 {
     const spherical_five_bar_params local = *params;
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        spherical_five_bar_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];

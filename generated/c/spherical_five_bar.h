@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
- *   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
- *   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
- *   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
+ *   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
+ *   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *

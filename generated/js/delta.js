@@ -2,15 +2,15 @@
 // derivations/delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 43 compare and select, 64 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
-//   skeleton: 42 compare and select, 179 add, 14 divide, 84 multiply, 6 sincos, 1 sqrt
-//   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
-//   jacobian_serial: 42 compare and select, 85 add, 8 divide, 108 multiply, 6 sincos, 1 sqrt
-//   jacobian: 42 compare and select, 115 add, 26 divide, 163 multiply, 6 sincos, 1 sqrt
-//   determinant: 42 compare and select, 81 add, 10 divide, 113 multiply, 6 sincos, 1 sqrt
-//   singularities: 42 compare and select, 87 add, 8 divide, 109 multiply, 6 sincos, 1 sqrt
-//   condition_number: 42 compare and select, 119 add, 10 divide, 160 multiply, 6 sincos, 3 sqrt
-//   constraint: 42 compare and select, 91 add, 8 divide, 146 multiply, 6 sincos, 1 sqrt
+//   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+//   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+//   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+//   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+//   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+//   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+//   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+//   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+//   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
 //   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 
@@ -185,8 +185,9 @@ function _fk(v, o) {
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t9;
     const side = t13 * a_x < 0 ? -1 : 1;
-    const t22 = t13 + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / (mu * nu);
+    const t22 = size * (t13 + a_x * side);
+    const up = size * d_z;
+    const part = in_line ? 1.0 / (t22 * t22 + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
     const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
     const t25 = d_x * 0.5 - (t3 - t19 * t24);
@@ -195,7 +196,7 @@ function _fk(v, o) {
     const slack = Math.max(t27, 0.0);
     const t28 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
-    const t29 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t29 = (in_line ? side * up : t13 * n_z - d_z * t21) * h;
     const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
         Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
         Number.isFinite(alpha3);
@@ -206,7 +207,7 @@ function _fk(v, o) {
     const unreachable = !(t33 && -(_runtime.FEASIBILITY * t28) <= t27);
     const t34 = invalid || unreachable ? NaN : 0;
     const t35 = t13 * 0.5 - (t6 + t21 * t24);
-    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t36 = h * (in_line ? up : -(a_x * n_z + d_z * t19));
     const t37 = d_z * 0.5 - (t1 + n_z * t24);
     const t38 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
     const t39 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
@@ -233,7 +234,12 @@ const _FK = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -370,8 +376,9 @@ function _skeleton(v, o) {
     const t46 = Math.abs(in_line ? -t45 : 0.0) <= t34 * _runtime.FEASIBILITY;
     const t47 = l * size * 2.0;
     const side = t36 * a_x < 0 ? -1 : 1;
-    const t48 = t36 + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t48 * t48) : 1.0 / (mu * nu);
+    const t48 = size * (t36 + a_x * side);
+    const up = size * d_z;
+    const part = in_line ? 1.0 / (t48 * t48 + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t49 = in_line ? 0.0 : mu * t45 * part * 0.5;
     const t50 = all_same ? 0.0 : nu * (t49 * t49) + mu * 0.25;
     const t51 = l * l - t50;
@@ -386,11 +393,11 @@ function _skeleton(v, o) {
     const t59 = t42 * t49 + d_x * 0.5;
     const slack = Math.max(t51, 0.0);
     const h = slack <= _runtime.VANISHING * t47 ? 0.0 : Math.sqrt(part * slack);
-    const t60 = (in_line ? d_z * side : t36 * n_z - d_z * t44) * h;
+    const t60 = (in_line ? side * up : t36 * n_z - d_z * t44) * h;
     const t61 = t10 - (t59 - t60);
     const t62 = t7 - t61;
     const t63 = t44 * t49 - t36 * 0.5;
-    const t64 = h * (in_line ? d_z : -(a_x * n_z + d_z * t42));
+    const t64 = h * (in_line ? up : -(a_x * n_z + d_z * t42));
     const t65 = t19 + (t63 + t64);
     const t66 = t16 - t65;
     const t67 = n_z * t49 - d_z * 0.5;
@@ -583,7 +590,12 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 1], [1, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [67, 1], [69, 1], [70, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -684,8 +696,9 @@ function _jacobian_parallel(v, o) {
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t12;
     const side = t13 * a_x < 0 ? -1 : 1;
-    const t22 = t13 + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / (mu * nu);
+    const up = size * d_z;
+    const t22 = size * (t13 + a_x * side);
+    const part = in_line ? 1.0 / (t22 * t22 + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
     const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
     const t25 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
@@ -693,7 +706,7 @@ function _jacobian_parallel(v, o) {
     const slack = Math.max(t26, 0.0);
     const t27 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t27 ? 0.0 : Math.sqrt(part * slack);
-    const t28 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t28 = (in_line ? side * up : t13 * n_z - d_z * t21) * h;
     const t29 = t19 * t24 + d_x * 0.5;
     const t30 = t28 - t29;
     const t31 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
@@ -704,7 +717,7 @@ function _jacobian_parallel(v, o) {
     const t34 = Math.abs(in_line ? -t23 : 0.0) <= t11 * _runtime.FEASIBILITY;
     const unreachable = !(t34 && -(_runtime.FEASIBILITY * t27) <= t26);
     const t35 = !(t32 && t33) || unreachable ? NaN : 0;
-    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t36 = h * (in_line ? up : -(a_x * n_z + d_z * t19));
     const t37 = t21 * t24 - t13 * 0.5;
     const t38 = t36 + t37;
     const t39 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
@@ -745,7 +758,12 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -848,8 +866,9 @@ function _jacobian_serial(v, o) {
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
     const side = t16 * a_x < 0 ? -1 : 1;
-    const t25 = t16 + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / (mu * nu);
+    const up = size * d_z;
+    const t25 = size * (t16 + a_x * side);
+    const part = in_line ? 1.0 / (t25 * t25 + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
     const t27 = in_line ? 0.0 : mu * part * t26 * 0.5;
     const t28 = all_same ? 0.0 : nu * (t27 * t27) + mu * 0.25;
@@ -857,11 +876,11 @@ function _jacobian_serial(v, o) {
     const slack = Math.max(t29, 0.0);
     const t30 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t30 ? 0.0 : Math.sqrt(part * slack);
-    const t31 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t31 = (in_line ? side * up : t16 * n_z - d_z * t24) * h;
     const t32 = t22 * t27 + d_x * 0.5;
     const t33 = t31 - t32;
     const t34 = s_alpha1 * t1;
-    const t35 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t35 = h * (in_line ? up : -(a_x * n_z + d_z * t22));
     const t36 = t24 * t27 - t16 * 0.5;
     const t37 = t35 + t36;
     const t38 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
@@ -907,7 +926,12 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 2], [1, 2], [2, 2], [3, 2], [4, 2], [5, 2]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1010,9 +1034,10 @@ function _jacobian(v, o) {
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
     const side = t16 * a_x < 0 ? -1 : 1;
-    const t25 = t16 + a_x * side;
+    const up = size * d_z;
+    const t25 = size * (t16 + a_x * side);
     const t26 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const part = in_line ? 1.0 / (t25 * t25 + 2.0 * (up * up)) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
     const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
@@ -1020,11 +1045,11 @@ function _jacobian(v, o) {
     const slack = Math.max(t30, 0.0);
     const t31 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
-    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t32 = (in_line ? side * up : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
     const t34 = t32 - t33;
     const t35 = s_alpha1 * t1;
-    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t36 = h * (in_line ? up : -(a_x * n_z + d_z * t22));
     const t37 = t24 * t28 - t16 * 0.5;
     const t38 = t36 + t37;
     const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
@@ -1109,7 +1134,12 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1213,9 +1243,10 @@ function _determinant(v, o) {
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
     const side = t16 * a_x < 0 ? -1 : 1;
-    const t25 = t16 + a_x * side;
+    const up = size * d_z;
+    const t25 = size * (t16 + a_x * side);
     const t26 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const part = in_line ? 1.0 / (t25 * t25 + 2.0 * (up * up)) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
     const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
@@ -1223,11 +1254,11 @@ function _determinant(v, o) {
     const slack = Math.max(t30, 0.0);
     const t31 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
-    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t32 = (in_line ? side * up : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
     const t34 = t32 - t33;
     const t35 = s_alpha1 * t1;
-    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t36 = h * (in_line ? up : -(a_x * n_z + d_z * t22));
     const t37 = t24 * t28 - t16 * 0.5;
     const t38 = t36 + t37;
     const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
@@ -1272,7 +1303,12 @@ const _DETERMINANT = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 3], [1, 3]],
+        least: 2.5849394142282115e-26,
+        most: 9.353610478917779e+49,
+    },
 });
 
 /**
@@ -1375,9 +1411,10 @@ function _singularities(v, o) {
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
     const side = t16 * a_x < 0 ? -1 : 1;
-    const t25 = t16 + a_x * side;
+    const up = size * d_z;
+    const t25 = size * (t16 + a_x * side);
     const t26 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t25 * t25) : 1.0 / t26;
+    const part = in_line ? 1.0 / (t25 * t25 + 2.0 * (up * up)) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
     const t28 = in_line ? 0.0 : mu * part * t27 * 0.5;
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
@@ -1385,11 +1422,11 @@ function _singularities(v, o) {
     const slack = Math.max(t30, 0.0);
     const t31 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
-    const t32 = (in_line ? d_z * side : t16 * n_z - d_z * t24) * h;
+    const t32 = (in_line ? side * up : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
     const t34 = t32 - t33;
     const t35 = s_alpha1 * t1;
-    const t36 = h * (in_line ? d_z : -(a_x * n_z + d_z * t22));
+    const t36 = h * (in_line ? up : -(a_x * n_z + d_z * t22));
     const t37 = t24 * t28 - t16 * 0.5;
     const t38 = t36 + t37;
     const t39 = h * (in_line ? -t25 : a_x * t24 + t16 * t22);
@@ -1438,7 +1475,12 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 2], [1, 2], [2, 2], [3, 3], [4, 2], [5, 2], [6, 2], [7, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1538,9 +1580,10 @@ function _condition_number(v, o) {
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t12;
     const side = t13 * a_x < 0 ? -1 : 1;
-    const t22 = t13 + a_x * side;
+    const up = size * d_z;
+    const t22 = size * (t13 + a_x * side);
     const t23 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t22 * t22) : 1.0 / t23;
+    const part = in_line ? 1.0 / (t22 * t22 + 2.0 * (up * up)) : 1.0 / t23;
     const t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
     const t25 = in_line ? 0.0 : mu * part * t24 * 0.5;
     const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
@@ -1548,10 +1591,10 @@ function _condition_number(v, o) {
     const slack = Math.max(t27, 0.0);
     const t28 = l * size * 2.0;
     const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
-    const t29 = (in_line ? d_z * side : t13 * n_z - d_z * t21) * h;
+    const t29 = (in_line ? side * up : t13 * n_z - d_z * t21) * h;
     const t30 = t19 * t25 + d_x * 0.5;
     const t31 = t29 - t30;
-    const t32 = h * (in_line ? d_z : -(a_x * n_z + d_z * t19));
+    const t32 = h * (in_line ? up : -(a_x * n_z + d_z * t19));
     const t33 = t21 * t25 - t13 * 0.5;
     const t34 = t32 + t33;
     const t35 = h * (in_line ? -t22 : a_x * t21 + t13 * t19);
@@ -1624,7 +1667,12 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [],
+        least: 2.5849394142282115e-26,
+        most: 9.353610478917779e+49,
+    },
 });
 
 /**
@@ -1726,8 +1774,9 @@ function _constraint(v, o) {
     const nu = t20 * t20 + t22 * t22 + n_z * n_z;
     const in_line = nu <= t13;
     const side = t14 * a_x < 0 ? -1 : 1;
-    const t23 = t14 + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + t23 * t23) : 1.0 / (mu * nu);
+    const t23 = size * (t14 + a_x * side);
+    const up = size * d_z;
+    const part = in_line ? 1.0 / (t23 * t23 + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
     const t25 = in_line ? 0.0 : mu * part * t24 * 0.5;
     const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
@@ -1741,12 +1790,12 @@ function _constraint(v, o) {
     const t32 = s_alpha3 * t31;
     const t33 = t1 * t32;
     const t34 = u_z + t31;
-    const t35 = h * (in_line ? d_z : -(a_x * n_z + d_z * t20));
+    const t35 = h * (in_line ? up : -(a_x * n_z + d_z * t20));
     const t36 = t22 * t25 - t14 * 0.5;
     const t37 = t35 + t36;
     const t38 = t34 * (t11 + t37);
     const t39 = c_alpha3 * t1;
-    const t40 = (in_line ? d_z * side : t14 * n_z - d_z * t22) * h;
+    const t40 = (in_line ? side * up : t14 * n_z - d_z * t22) * h;
     const t41 = t20 * t25 + d_x * 0.5;
     const t42 = t40 - t41;
     const t43 = v_z + t31;
@@ -1810,7 +1859,12 @@ const _CONSTRAINT = _runtime.kernel({
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 3], [1, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**

@@ -2,15 +2,18 @@
 // derivations/linear_delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 42 compare and select, 50 add, 12 divide, 59 multiply, 1 sqrt
-//   skeleton: 41 compare and select, 124 add, 14 divide, 59 multiply, 1 sqrt
-//   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 59 multiply, 1 sqrt
-//   jacobian_serial: 39 compare and select, 44 add, 10 divide, 50 multiply, 1 sqrt
-//   jacobian: 41 compare and select, 88 add, 30 divide, 110 multiply, 1 sqrt
-//   determinant: 39 compare and select, 40 add, 12 divide, 55 multiply, 1 sqrt
-//   singularities: 39 compare and select, 46 add, 10 divide, 51 multiply, 1 sqrt
-//   condition_number: 41 compare and select, 104 add, 14 divide, 129 multiply, 3 sqrt
-//   constraint: 41 compare and select, 62 add, 18 divide, 83 multiply, 1 sqrt
+//   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+//   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
+//   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
+//   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
+//   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+//   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
+//     1 sqrt
+//   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
+//   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
+//   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
+//   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
+//   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
 //   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
@@ -143,43 +146,105 @@ function _fk(v, o) {
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
-    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
-    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
-    const t15 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
-    const t16 = l * l - t15;
-    const slack = Math.max(t16, 0.0);
-    const t17 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t17 ? 0.0 : Math.sqrt(part * slack);
-    const t18 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
-    const t19 = t2 * 0.5 - (c1_x + t10 * t14);
-    const t20 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t21 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t22 = t20 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t21;
-    const invalid = !t22;
-    const t23 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t23 && -(_runtime.FEASIBILITY * t17) <= t16);
-    const t24 = invalid || unreachable ? NaN : 0;
-    const t25 = n_y * t14 - d_y * 0.5;
-    const t26 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
-    const t27 = t8 * 0.5 - (rho1 + t12 * t14);
-    const t28 = h * (in_line ? -last : a_x * n_y + d_y * t10);
-    const t29 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = t18 - t19 + t24;
-    o[1] = -(t25 + t26) + t24;
-    o[2] = -(t27 + t28) + t24;
-    o[3] = -(t19 + t18) + t24;
-    o[4] = t26 - t25 + t24;
-    o[5] = t28 - t27 + t24;
-    o[6] = t29;
-    o[7] = t29;
+    const t13 = size * t8;
+    const last = size * (d_y + a_x * side);
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / (mu * nu);
+    const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t17 = l * l - t16;
+    const slack = Math.max(t17, 0.0);
+    const t18 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
+    const t19 = (in_line ? side * t13 : d_y * t12 - t8 * n_y) * h;
+    const t20 = t2 * 0.5 - (c1_x + t10 * t15);
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
+    const invalid = !t23;
+    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t18) <= t17);
+    const t25 = invalid || unreachable ? NaN : 0;
+    const t26 = n_y * t15 - d_y * 0.5;
+    const t27 = h * (in_line ? -t13 : a_x * t12 + t8 * t10);
+    const t28 = t8 * 0.5 - (rho1 + t12 * t15);
+    const t29 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const t30 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t19 - t20 + t25;
+    o[1] = -(t26 + t27) + t25;
+    o[2] = -(t28 + t29) + t25;
+    o[3] = -(t20 + t19) + t25;
+    o[4] = t27 - t26 + t25;
+    o[5] = t29 - t28 + t25;
+    o[6] = t30;
+    o[7] = t30;
+}
+
+/** @type {_runtime.Compute} */
+function _fk_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const c1_x = f - e;
+    const t1 = c1_x - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t2 = c3_y * t1;
+    const t3 = t2 + t2;
+    const t4 = rho1 - rho2;
+    const t5 = rho1 - rho3;
+    const t6 = t1 * t5 - t1 * t4;
+    const t7 = t1 * t1 + c3_y * c3_y;
+    const u_u = t4 * t4 + t7;
+    const over = 1.0 / u_u;
+    const t8 = (c3_y * t3 - t4 * t6) * over;
+    const t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5));
+    const t10 = c3_y * t5 + c3_y * t4;
+    const n_y = (t1 * t3 + t4 * t10) * over;
+    const t11 = (t1 * t6 + c3_y * t10) * over;
+    const nu = t8 * t8 + n_y * n_y + t11 * t11;
+    const part = 1.0 / (u_u * nu);
+    const t12 = t9 * part * 0.5;
+    const t13 = c1_x - t1 * 0.5 - t8 * t12;
+    const t14 = l * l - (nu * (t12 * t12) + u_u * 0.25);
+    const slack = Math.max(t14, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t15 = (c3_y * t11 + t4 * n_y) * h;
+    const t16 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t17 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t18 = t16 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t17;
+    const invalid = !t18;
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t19 = size * size;
+    const t20 = l * size * 2.0;
+    const t21 = Math.abs(0.0) <= t19 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t20) <=
+        t14;
+    const unreachable = !t21;
+    const t22 = invalid || unreachable ? NaN : 0;
+    const t23 = h * (t1 * t11 - t4 * t8);
+    const t24 = c3_y * 0.5 - n_y * t12;
+    const t25 = h * (t1 * n_y + c3_y * t8);
+    const t26 = t4 * 0.5 - (rho1 - t11 * t12);
+    const t27 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t28 = _runtime.VANISHING * _runtime.VANISHING * t19;
+    const t29 = u_u <= t28 || u_u + (t5 * t5 + t7) <= t28 || nu <= t28;
+    o[0] = t13 - t15 + t22;
+    o[1] = t23 - t24 + t22;
+    o[2] = t25 - t26 + t22;
+    o[3] = t13 + t15 + t22;
+    o[4] = -(t24 + t23) + t22;
+    o[5] = -(t26 + t25) + t22;
+    o[6] = t27;
+    o[7] = t27;
+    o[8] = (t29 || slack <= _runtime.VANISHING * t20) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
     name: "linear_delta.fk",
     compute: _fk,
-    common: null,
+    common: _fk_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -189,7 +254,12 @@ const _FK = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -279,195 +349,196 @@ function _skeleton(v, o) {
     const t21 = Math.abs(in_line ? -t20 : 0.0) <= t12 * _runtime.FEASIBILITY;
     const t22 = l * size * 2.0;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (t15 * t15) + last * last) : 1.0 / (mu * nu);
-    const t23 = in_line ? 0.0 : mu * t20 * part * 0.5;
-    const t24 = all_same ? 0.0 : nu * (t23 * t23) + mu * 0.25;
-    const t25 = l * l - t24;
-    const unreachable = !(t21 && -(_runtime.FEASIBILITY * t22) <= t25);
-    const t26 = invalid || unreachable ? NaN : 0;
-    const t27 = f + t26;
-    const t28 = 0.0 + t26;
-    const t29 = rho1 + t26;
-    const t30 = e + c1_x;
-    const t31 = t6 * 0.5 - t17 * t23;
-    const slack = Math.max(t25, 0.0);
+    const last = size * (d_y + a_x * side);
+    const t23 = size * t15;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t23 * t23)) : 1.0 / (mu * nu);
+    const t24 = in_line ? 0.0 : mu * t20 * part * 0.5;
+    const t25 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
+    const t26 = l * l - t25;
+    const unreachable = !(t21 && -(_runtime.FEASIBILITY * t22) <= t26);
+    const t27 = invalid || unreachable ? NaN : 0;
+    const t28 = f + t27;
+    const t29 = 0.0 + t27;
+    const t30 = rho1 + t27;
+    const t31 = e + c1_x;
+    const t32 = t6 * 0.5 - t17 * t24;
+    const slack = Math.max(t26, 0.0);
     const h = slack <= _runtime.VANISHING * t22 ? 0.0 : Math.sqrt(part * slack);
-    const t32 = (in_line ? t15 * side : d_y * t19 - t15 * n_y) * h;
-    const t33 = t31 - t32;
-    const t34 = t30 - t33 + t26;
-    const t35 = n_y * t23 - d_y * 0.5;
-    const t36 = h * (in_line ? -t15 : a_x * t19 + t15 * t17);
-    const t37 = t35 + t36;
-    const t38 = -t37 + t26;
-    const t39 = t19 * t23 - t15 * 0.5;
-    const t40 = h * (in_line ? -last : a_x * n_y + d_y * t17);
-    const t41 = rho1 + (t39 - t40) + t26;
-    const t42 = t4 + t26;
-    const t43 = -t4 + t26;
-    const t44 = -t5 + t26;
-    const t45 = t9 + t26;
-    const t46 = rho2 + t26;
-    const t47 = c1_x - t4;
-    const t48 = t47 - t33;
-    const t49 = t48 + t26;
-    const t50 = t7 * 0.25;
-    const t51 = -(t5 + t50) + t26;
-    const t52 = e * 0.25;
-    const t53 = t9 - t52;
-    const t54 = t53 + t26;
-    const t55 = t50 - t5 + t26;
-    const t56 = t9 + t52;
-    const t57 = t56 + t26;
-    const t58 = t48 - t50 + t26;
-    const t59 = t8 - t52;
-    const t60 = t50 + t48 + t26;
-    const t61 = t8 + t52;
-    const t62 = -t9 + t26;
-    const t63 = rho3 + t26;
-    const t64 = -t56 + t26;
-    const t65 = -t53 + t26;
-    const t66 = t31 + t32;
-    const t67 = t30 - t66 + t26;
-    const t68 = t35 - t36;
-    const t69 = -t68 + t26;
-    const t70 = rho1 + (t39 + t40) + t26;
-    const t71 = t47 - t66;
-    const t72 = t71 + t26;
-    const t73 = t71 - t50 + t26;
-    const t74 = t50 + t71 + t26;
-    o[0] = t27;
-    o[1] = t28;
-    o[2] = t28;
-    o[3] = t27;
-    o[4] = t28;
-    o[5] = t29;
-    o[6] = t34;
-    o[7] = t38;
-    o[8] = t41;
-    o[9] = t27;
-    o[10] = t42;
-    o[11] = t29;
-    o[12] = t27;
-    o[13] = t43;
-    o[14] = t29;
-    o[15] = t34;
-    o[16] = t4 - t37 + t26;
-    o[17] = t41;
-    o[18] = t34;
-    o[19] = -(t4 + t37) + t26;
-    o[20] = t41;
-    o[21] = t44;
-    o[22] = t45;
-    o[23] = t28;
-    o[24] = t44;
-    o[25] = t45;
-    o[26] = t46;
-    o[27] = t49;
-    o[28] = t8 - t37 + t26;
-    o[29] = t41;
-    o[30] = t51;
-    o[31] = t54;
-    o[32] = t46;
-    o[33] = t55;
-    o[34] = t57;
-    o[35] = t46;
-    o[36] = t58;
-    o[37] = t59 - t37 + t26;
-    o[38] = t41;
-    o[39] = t60;
-    o[40] = t61 - t37 + t26;
-    o[41] = t41;
-    o[42] = t44;
-    o[43] = t62;
-    o[44] = t28;
-    o[45] = t44;
-    o[46] = t62;
-    o[47] = t63;
-    o[48] = t49;
-    o[49] = -(t8 + t37) + t26;
-    o[50] = t41;
-    o[51] = t55;
-    o[52] = t64;
-    o[53] = t63;
-    o[54] = t51;
-    o[55] = t65;
-    o[56] = t63;
-    o[57] = t60;
-    o[58] = -(t61 + t37) + t26;
-    o[59] = t41;
-    o[60] = t58;
-    o[61] = -(t59 + t37) + t26;
-    o[62] = t41;
-    o[63] = c1_x - t33 + t26;
-    o[64] = t38;
-    o[65] = t41;
-    o[66] = t27;
-    o[67] = t28;
-    o[68] = t28;
-    o[69] = t27;
-    o[70] = t28;
-    o[71] = t29;
-    o[72] = t67;
-    o[73] = t69;
-    o[74] = t70;
-    o[75] = t27;
-    o[76] = t42;
-    o[77] = t29;
-    o[78] = t27;
-    o[79] = t43;
-    o[80] = t29;
-    o[81] = t67;
-    o[82] = t4 - t68 + t26;
-    o[83] = t70;
-    o[84] = t67;
-    o[85] = -(t4 + t68) + t26;
-    o[86] = t70;
-    o[87] = t44;
-    o[88] = t45;
-    o[89] = t28;
-    o[90] = t44;
-    o[91] = t45;
-    o[92] = t46;
-    o[93] = t72;
-    o[94] = t8 - t68 + t26;
-    o[95] = t70;
-    o[96] = t51;
-    o[97] = t54;
-    o[98] = t46;
-    o[99] = t55;
-    o[100] = t57;
-    o[101] = t46;
-    o[102] = t73;
-    o[103] = t59 - t68 + t26;
-    o[104] = t70;
-    o[105] = t74;
-    o[106] = t61 - t68 + t26;
-    o[107] = t70;
-    o[108] = t44;
-    o[109] = t62;
-    o[110] = t28;
-    o[111] = t44;
-    o[112] = t62;
-    o[113] = t63;
-    o[114] = t72;
-    o[115] = -(t8 + t68) + t26;
-    o[116] = t70;
-    o[117] = t55;
-    o[118] = t64;
-    o[119] = t63;
-    o[120] = t51;
-    o[121] = t65;
-    o[122] = t63;
-    o[123] = t74;
-    o[124] = -(t61 + t68) + t26;
-    o[125] = t70;
-    o[126] = t73;
-    o[127] = -(t59 + t68) + t26;
-    o[128] = t70;
-    o[129] = c1_x - t66 + t26;
-    o[130] = t69;
-    o[131] = t70;
+    const t33 = (in_line ? side * t23 : d_y * t19 - t15 * n_y) * h;
+    const t34 = t32 - t33;
+    const t35 = t31 - t34 + t27;
+    const t36 = n_y * t24 - d_y * 0.5;
+    const t37 = h * (in_line ? -t23 : a_x * t19 + t15 * t17);
+    const t38 = t36 + t37;
+    const t39 = -t38 + t27;
+    const t40 = t19 * t24 - t15 * 0.5;
+    const t41 = h * (in_line ? -last : a_x * n_y + d_y * t17);
+    const t42 = rho1 + (t40 - t41) + t27;
+    const t43 = t4 + t27;
+    const t44 = -t4 + t27;
+    const t45 = -t5 + t27;
+    const t46 = t9 + t27;
+    const t47 = rho2 + t27;
+    const t48 = c1_x - t4;
+    const t49 = t48 - t34;
+    const t50 = t49 + t27;
+    const t51 = t7 * 0.25;
+    const t52 = -(t5 + t51) + t27;
+    const t53 = e * 0.25;
+    const t54 = t9 - t53;
+    const t55 = t54 + t27;
+    const t56 = t51 - t5 + t27;
+    const t57 = t9 + t53;
+    const t58 = t57 + t27;
+    const t59 = t49 - t51 + t27;
+    const t60 = t8 - t53;
+    const t61 = t51 + t49 + t27;
+    const t62 = t8 + t53;
+    const t63 = -t9 + t27;
+    const t64 = rho3 + t27;
+    const t65 = -t57 + t27;
+    const t66 = -t54 + t27;
+    const t67 = t32 + t33;
+    const t68 = t31 - t67 + t27;
+    const t69 = t36 - t37;
+    const t70 = -t69 + t27;
+    const t71 = rho1 + (t40 + t41) + t27;
+    const t72 = t48 - t67;
+    const t73 = t72 + t27;
+    const t74 = t72 - t51 + t27;
+    const t75 = t51 + t72 + t27;
+    o[0] = t28;
+    o[1] = t29;
+    o[2] = t29;
+    o[3] = t28;
+    o[4] = t29;
+    o[5] = t30;
+    o[6] = t35;
+    o[7] = t39;
+    o[8] = t42;
+    o[9] = t28;
+    o[10] = t43;
+    o[11] = t30;
+    o[12] = t28;
+    o[13] = t44;
+    o[14] = t30;
+    o[15] = t35;
+    o[16] = t4 - t38 + t27;
+    o[17] = t42;
+    o[18] = t35;
+    o[19] = -(t4 + t38) + t27;
+    o[20] = t42;
+    o[21] = t45;
+    o[22] = t46;
+    o[23] = t29;
+    o[24] = t45;
+    o[25] = t46;
+    o[26] = t47;
+    o[27] = t50;
+    o[28] = t8 - t38 + t27;
+    o[29] = t42;
+    o[30] = t52;
+    o[31] = t55;
+    o[32] = t47;
+    o[33] = t56;
+    o[34] = t58;
+    o[35] = t47;
+    o[36] = t59;
+    o[37] = t60 - t38 + t27;
+    o[38] = t42;
+    o[39] = t61;
+    o[40] = t62 - t38 + t27;
+    o[41] = t42;
+    o[42] = t45;
+    o[43] = t63;
+    o[44] = t29;
+    o[45] = t45;
+    o[46] = t63;
+    o[47] = t64;
+    o[48] = t50;
+    o[49] = -(t8 + t38) + t27;
+    o[50] = t42;
+    o[51] = t56;
+    o[52] = t65;
+    o[53] = t64;
+    o[54] = t52;
+    o[55] = t66;
+    o[56] = t64;
+    o[57] = t61;
+    o[58] = -(t62 + t38) + t27;
+    o[59] = t42;
+    o[60] = t59;
+    o[61] = -(t60 + t38) + t27;
+    o[62] = t42;
+    o[63] = c1_x - t34 + t27;
+    o[64] = t39;
+    o[65] = t42;
+    o[66] = t28;
+    o[67] = t29;
+    o[68] = t29;
+    o[69] = t28;
+    o[70] = t29;
+    o[71] = t30;
+    o[72] = t68;
+    o[73] = t70;
+    o[74] = t71;
+    o[75] = t28;
+    o[76] = t43;
+    o[77] = t30;
+    o[78] = t28;
+    o[79] = t44;
+    o[80] = t30;
+    o[81] = t68;
+    o[82] = t4 - t69 + t27;
+    o[83] = t71;
+    o[84] = t68;
+    o[85] = -(t4 + t69) + t27;
+    o[86] = t71;
+    o[87] = t45;
+    o[88] = t46;
+    o[89] = t29;
+    o[90] = t45;
+    o[91] = t46;
+    o[92] = t47;
+    o[93] = t73;
+    o[94] = t8 - t69 + t27;
+    o[95] = t71;
+    o[96] = t52;
+    o[97] = t55;
+    o[98] = t47;
+    o[99] = t56;
+    o[100] = t58;
+    o[101] = t47;
+    o[102] = t74;
+    o[103] = t60 - t69 + t27;
+    o[104] = t71;
+    o[105] = t75;
+    o[106] = t62 - t69 + t27;
+    o[107] = t71;
+    o[108] = t45;
+    o[109] = t63;
+    o[110] = t29;
+    o[111] = t45;
+    o[112] = t63;
+    o[113] = t64;
+    o[114] = t73;
+    o[115] = -(t8 + t69) + t27;
+    o[116] = t71;
+    o[117] = t56;
+    o[118] = t65;
+    o[119] = t64;
+    o[120] = t52;
+    o[121] = t66;
+    o[122] = t64;
+    o[123] = t75;
+    o[124] = -(t62 + t69) + t27;
+    o[125] = t71;
+    o[126] = t74;
+    o[127] = -(t60 + t69) + t27;
+    o[128] = t71;
+    o[129] = c1_x - t67 + t27;
+    o[130] = t70;
+    o[131] = t71;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -482,7 +553,12 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 1], [3, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [69, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -552,53 +628,54 @@ function _jacobian_parallel(v, o) {
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
-    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
-    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
-    const t15 = t1 * 0.5 - t10 * t14;
-    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
-    const t17 = l * l - t16;
-    const slack = Math.max(t17, 0.0);
-    const t18 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
-    const t19 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
-    const t20 = t15 - t19;
-    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
-    const t24 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t18) <= t17);
-    const t25 = !t23 || unreachable ? NaN : 0;
-    const t26 = n_y * t14 - d_y * 0.5;
-    const t27 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
-    const t28 = t26 + t27;
-    const t29 = t12 * t14 - t8 * 0.5;
-    const t30 = h * (in_line ? -last : a_x * n_y + d_y * t10);
-    const A_13 = t29 - t30;
-    const t31 = t1 - t20 + t25;
-    const t32 = t15 + t19;
-    const t33 = t26 - t27;
-    const A_13_above = t29 + t30;
-    const t34 = t1 - t32 + t25;
-    o[0] = -t20 + t25;
-    o[1] = -t28 + t25;
-    o[2] = A_13 + t25;
-    o[3] = t31;
-    o[4] = c3_y - t28 + t25;
-    o[5] = t2 + A_13 + t25;
-    o[6] = t31;
-    o[7] = -(c3_y + t28) + t25;
-    o[8] = t4 + A_13 + t25;
-    o[9] = -t32 + t25;
-    o[10] = -t33 + t25;
-    o[11] = A_13_above + t25;
-    o[12] = t34;
-    o[13] = c3_y - t33 + t25;
-    o[14] = t2 + A_13_above + t25;
-    o[15] = t34;
-    o[16] = -(c3_y + t33) + t25;
-    o[17] = t4 + A_13_above + t25;
+    const last = size * (d_y + a_x * side);
+    const t13 = size * t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / (mu * nu);
+    const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t1 * 0.5 - t10 * t15;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? side * t13 : d_y * t12 - t8 * n_y) * h;
+    const t21 = t16 - t20;
+    const t22 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t23 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t24 = t22 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t23;
+    const t25 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t25 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t26 = !t24 || unreachable ? NaN : 0;
+    const t27 = n_y * t15 - d_y * 0.5;
+    const t28 = h * (in_line ? -t13 : a_x * t12 + t8 * t10);
+    const t29 = t27 + t28;
+    const t30 = t12 * t15 - t8 * 0.5;
+    const t31 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t30 - t31;
+    const t32 = t1 - t21 + t26;
+    const t33 = t16 + t20;
+    const t34 = t27 - t28;
+    const A_13_above = t30 + t31;
+    const t35 = t1 - t33 + t26;
+    o[0] = -t21 + t26;
+    o[1] = -t29 + t26;
+    o[2] = A_13 + t26;
+    o[3] = t32;
+    o[4] = c3_y - t29 + t26;
+    o[5] = t2 + A_13 + t26;
+    o[6] = t32;
+    o[7] = -(c3_y + t29) + t26;
+    o[8] = t4 + A_13 + t26;
+    o[9] = -t33 + t26;
+    o[10] = -t34 + t26;
+    o[11] = A_13_above + t26;
+    o[12] = t35;
+    o[13] = c3_y - t34 + t26;
+    o[14] = t2 + A_13_above + t26;
+    o[15] = t35;
+    o[16] = -(c3_y + t34) + t26;
+    o[17] = t4 + A_13_above + t26;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -613,7 +690,12 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -681,37 +763,90 @@ function _jacobian_serial(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
-    const t13 = t9 * (d_y - t9) - t7 * (t7 - t8);
-    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
-    const t15 = t11 * t14 - t8 * 0.5;
-    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
-    const t17 = l * l - t16;
-    const slack = Math.max(t17, 0.0);
-    const t18 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
-    const t19 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
-    const A_13 = t15 - t19;
-    const t20 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t21 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t22 = t20 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t21;
-    const t23 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t23 && -(_runtime.FEASIBILITY * t18) <= t17);
-    const t24 = !t22 || unreachable ? NaN : 0;
-    const A_13_above = t15 + t19;
-    o[0] = A_13 + t24;
-    o[1] = t1 + A_13 + t24;
-    o[2] = t4 + A_13 + t24;
-    o[3] = A_13_above + t24;
-    o[4] = t1 + A_13_above + t24;
-    o[5] = t4 + A_13_above + t24;
+    const last = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = size * t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / (mu * nu);
+    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t11 * t15 - t8 * 0.5;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t16 - t20;
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
+    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t25 = !t23 || unreachable ? NaN : 0;
+    const A_13_above = t16 + t20;
+    o[0] = A_13 + t25;
+    o[1] = t1 + A_13 + t25;
+    o[2] = t4 + A_13 + t25;
+    o[3] = A_13_above + t25;
+    o[4] = t1 + A_13_above + t25;
+    o[5] = t4 + A_13_above + t25;
+}
+
+/** @type {_runtime.Compute} */
+function _jacobian_serial_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t3 = rho1 - rho3;
+    const t4 = t2 * t3 - t2 * t1;
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t5 = c3_y * t3 + c3_y * t1;
+    const t6 = t2 * t2 + c3_y * c3_y;
+    const u_u = t1 * t1 + t6;
+    const over = 1.0 / u_u;
+    const t7 = (t2 * t4 + c3_y * t5) * over;
+    const t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3));
+    const t9 = c3_y * t2;
+    const t10 = t9 + t9;
+    const t11 = (c3_y * t10 - t1 * t4) * over;
+    const n_y = (t2 * t10 + t1 * t5) * over;
+    const nu = t11 * t11 + n_y * n_y + t7 * t7;
+    const part = 1.0 / (u_u * nu);
+    const t12 = t8 * part * 0.5;
+    const t13 = t1 * 0.5 + t7 * t12;
+    const t14 = l * l - (nu * (t12 * t12) + u_u * 0.25);
+    const slack = Math.max(t14, 0.0);
+    const t15 = (t2 * n_y + c3_y * t11) * Math.sqrt(part * slack);
+    const t16 = t13 - t15;
+    const t17 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t18 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t19 = t17 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t18;
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t20 = size * size;
+    const t21 = l * size * 2.0;
+    const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
+        t14;
+    const t23 = !t19 || !t22 ? NaN : 0;
+    const t24 = t13 + t15;
+    const t25 = _runtime.VANISHING * _runtime.VANISHING * t20;
+    const t26 = u_u <= t25 || u_u + (t3 * t3 + t6) <= t25 || nu <= t25;
+    o[0] = -t16 + t23;
+    o[1] = t1 - t16 + t23;
+    o[2] = t3 - t16 + t23;
+    o[3] = -t24 + t23;
+    o[4] = t1 - t24 + t23;
+    o[5] = t3 - t24 + t23;
+    o[6] = (t26 || slack <= _runtime.VANISHING * t21) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
     name: "linear_delta.jacobian_serial",
     compute: _jacobian_serial,
-    common: null,
+    common: _jacobian_serial_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -720,7 +855,12 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -789,81 +929,82 @@ function _jacobian(v, o) {
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
     const side = a_x * d_y < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const t13 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
-    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
-    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
-    const t16 = t11 * t15 - t8 * 0.5;
-    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
-    const t18 = l * l - t17;
-    const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
-    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
-    const A_13 = t16 - t20;
-    const t21 = n_y * t15 - d_y * 0.5;
-    const t22 = h * (in_line ? -t8 : a_x * t11 + t8 * t12);
-    const t23 = t21 + t22;
-    const A_22 = c3_y - t23;
+    const last = size * (d_y + a_x * side);
+    const t13 = size * t8;
+    const t14 = mu * nu;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / t14;
+    const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t16 = in_line ? 0.0 : mu * part * t15 * 0.5;
+    const t17 = t11 * t16 - t8 * 0.5;
+    const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
+    const t19 = l * l - t18;
+    const slack = Math.max(t19, 0.0);
+    const t20 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
+    const t21 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t17 - t21;
+    const t22 = n_y * t16 - d_y * 0.5;
+    const t23 = h * (in_line ? -t13 : a_x * t11 + t8 * t12);
+    const t24 = t22 + t23;
+    const A_22 = c3_y - t24;
     const A_33 = t4 + A_13;
     const A_23 = t1 + A_13;
-    const t24 = c3_y + t23;
-    const Delta = t13 * h;
-    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
-    const t28 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t28 && -(_runtime.FEASIBILITY * t19) <= t18);
-    const t29 = !t27 || unreachable ? NaN : 0;
-    const t30 = -(A_13 * (A_22 * A_33 + A_23 * t24) / Delta) + t29;
-    const t31 = -(A_23 * (t23 * A_33 - A_13 * t24) / Delta) + t29;
-    const t32 = A_33 * (t23 * A_23 + A_13 * A_22) / Delta + t29;
-    const t33 = t2 * 0.5 - t12 * t15;
-    const t34 = h * (in_line ? t8 * side : d_y * t11 - t8 * n_y);
-    const t35 = t33 - t34;
-    const A_21 = t2 - t35;
-    const t36 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t29;
-    const t37 = A_13 * A_21;
-    const t38 = A_13 * (t24 * A_21 + A_22 * A_21) / Delta + t29;
-    const t39 = t23 * A_21;
-    const A_13_above = t16 + t20;
-    const t40 = t21 - t22;
-    const A_22_above = c3_y - t40;
+    const t25 = c3_y + t24;
+    const Delta = t14 * h;
+    const t26 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t27 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t28 = t26 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t27;
+    const t29 = Math.abs(in_line ? -t15 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t29 && -(_runtime.FEASIBILITY * t20) <= t19);
+    const t30 = !t28 || unreachable ? NaN : 0;
+    const t31 = -(A_13 * (A_22 * A_33 + A_23 * t25) / Delta) + t30;
+    const t32 = -(A_23 * (t24 * A_33 - A_13 * t25) / Delta) + t30;
+    const t33 = A_33 * (t24 * A_23 + A_13 * A_22) / Delta + t30;
+    const t34 = t2 * 0.5 - t12 * t16;
+    const t35 = h * (in_line ? side * t13 : d_y * t11 - t8 * n_y);
+    const t36 = t34 - t35;
+    const A_21 = t2 - t36;
+    const t37 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t30;
+    const t38 = A_13 * A_21;
+    const t39 = A_13 * (t25 * A_21 + A_22 * A_21) / Delta + t30;
+    const t40 = t24 * A_21;
+    const A_13_above = t17 + t21;
+    const t41 = t22 - t23;
+    const A_22_above = c3_y - t41;
     const A_33_above = t4 + A_13_above;
     const A_23_above = t1 + A_13_above;
-    const t41 = c3_y + t40;
-    const t42 = A_13_above * (A_22_above * A_33_above + A_23_above * t41);
-    const t43 = A_23_above * (t40 * A_33_above - A_13_above * t41);
-    const t44 = A_33_above * (t40 * A_23_above + A_13_above * A_22_above);
-    const t45 = t33 + t34;
-    const A_21_above = t2 - t45;
-    const t46 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const t47 = A_13_above * A_21_above;
-    const t48 = A_23_above * (A_33_above * t45 + t47) / Delta;
-    const t49 = A_33_above * (t47 + A_23_above * t45) / Delta;
-    const t50 = A_13_above * (t41 * A_21_above + A_22_above * A_21_above);
-    const t51 = t40 * A_21_above;
-    const t52 = -(A_23_above * (t41 * t45 + t51) / Delta) + t29;
-    const t53 = A_33_above * (t51 - A_22_above * t45) / Delta;
-    o[0] = t30;
-    o[1] = t31;
-    o[2] = t32;
-    o[3] = t36;
-    o[4] = A_23 * (A_33 * t35 + t37) / Delta + t29;
-    o[5] = -(A_33 * (t37 + A_23 * t35) / Delta) + t29;
-    o[6] = t38;
-    o[7] = A_23 * (t24 * t35 + t39) / Delta + t29;
-    o[8] = -(A_33 * (t39 - A_22 * t35) / Delta) + t29;
-    o[9] = t42 / Delta + t29;
-    o[10] = t43 / Delta + t29;
-    o[11] = -(t44 / Delta) + t29;
-    o[12] = -(A_13_above * t46 / Delta) + t29;
-    o[13] = -t48 + t29;
-    o[14] = t49 + t29;
-    o[15] = -(t50 / Delta) + t29;
-    o[16] = t52;
-    o[17] = t53 + t29;
+    const t42 = c3_y + t41;
+    const t43 = A_13_above * (A_22_above * A_33_above + A_23_above * t42);
+    const t44 = A_23_above * (t41 * A_33_above - A_13_above * t42);
+    const t45 = A_33_above * (t41 * A_23_above + A_13_above * A_22_above);
+    const t46 = t34 + t35;
+    const A_21_above = t2 - t46;
+    const t47 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const t48 = A_13_above * A_21_above;
+    const t49 = A_23_above * (A_33_above * t46 + t48) / Delta;
+    const t50 = A_33_above * (t48 + A_23_above * t46) / Delta;
+    const t51 = A_13_above * (t42 * A_21_above + A_22_above * A_21_above);
+    const t52 = t41 * A_21_above;
+    const t53 = -(A_23_above * (t42 * t46 + t52) / Delta) + t30;
+    const t54 = A_33_above * (t52 - A_22_above * t46) / Delta;
+    o[0] = t31;
+    o[1] = t32;
+    o[2] = t33;
+    o[3] = t37;
+    o[4] = A_23 * (A_33 * t36 + t38) / Delta + t30;
+    o[5] = -(A_33 * (t38 + A_23 * t36) / Delta) + t30;
+    o[6] = t39;
+    o[7] = A_23 * (t25 * t36 + t40) / Delta + t30;
+    o[8] = -(A_33 * (t40 - A_22 * t36) / Delta) + t30;
+    o[9] = t43 / Delta + t30;
+    o[10] = t44 / Delta + t30;
+    o[11] = -(t45 / Delta) + t30;
+    o[12] = -(A_13_above * t47 / Delta) + t30;
+    o[13] = -t49 + t30;
+    o[14] = t50 + t30;
+    o[15] = -(t51 / Delta) + t30;
+    o[16] = t53;
+    o[17] = t54 + t30;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -878,7 +1019,12 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -947,31 +1093,32 @@ function _determinant(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
-    const t13 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
-    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
-    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
-    const t16 = t11 * t15 - t8 * 0.5;
-    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
-    const t18 = l * l - t17;
-    const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
-    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
-    const A_13 = t16 - t20;
-    const Delta = t13 * h;
-    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
-    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t19) <= t18);
-    const t25 = !t23 || unreachable ? NaN : 0;
-    const t26 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t25;
-    const A_13_above = t16 + t20;
-    const t27 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above);
-    o[0] = t26;
-    o[1] = t27 / Delta + t25;
+    const last = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = size * t8;
+    const t14 = mu * nu;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / t14;
+    const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t16 = in_line ? 0.0 : mu * part * t15 * 0.5;
+    const t17 = t11 * t16 - t8 * 0.5;
+    const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
+    const t19 = l * l - t18;
+    const slack = Math.max(t19, 0.0);
+    const t20 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
+    const t21 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t17 - t21;
+    const Delta = t14 * h;
+    const t22 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t23 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t24 = t22 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t23;
+    const t25 = Math.abs(in_line ? -t15 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t25 && -(_runtime.FEASIBILITY * t20) <= t19);
+    const t26 = !t24 || unreachable ? NaN : 0;
+    const t27 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t26;
+    const A_13_above = t17 + t21;
+    const t28 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above);
+    o[0] = t27;
+    o[1] = t28 / Delta + t26;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -986,7 +1133,12 @@ const _DETERMINANT = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1054,35 +1206,36 @@ function _singularities(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const last = d_y + a_x * (a_x * d_y < 0 ? -1 : 1);
-    const t13 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
-    const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
-    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
-    const t16 = t11 * t15 - t8 * 0.5;
-    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
-    const t18 = l * l - t17;
-    const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
-    const t20 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
-    const A_13 = t16 - t20;
-    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t22 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t23 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t22;
-    const t24 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t24 && -(_runtime.FEASIBILITY * t19) <= t18);
-    const t25 = !t23 || unreachable ? NaN : 0;
-    const Delta = t13 * h;
-    const A_13_above = t16 + t20;
-    o[0] = A_13 + t25;
-    o[1] = t1 + A_13 + t25;
-    o[2] = t4 + A_13 + t25;
-    o[3] = -Delta + t25;
-    o[4] = A_13_above + t25;
-    o[5] = t1 + A_13_above + t25;
-    o[6] = t4 + A_13_above + t25;
-    o[7] = Delta + t25;
+    const last = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = size * t8;
+    const t14 = mu * nu;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / t14;
+    const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
+    const t16 = in_line ? 0.0 : mu * part * t15 * 0.5;
+    const t17 = t11 * t16 - t8 * 0.5;
+    const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
+    const t19 = l * l - t18;
+    const slack = Math.max(t19, 0.0);
+    const t20 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
+    const t21 = (in_line ? -last : a_x * n_y + d_y * t12) * h;
+    const A_13 = t17 - t21;
+    const t22 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t23 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t24 = t22 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t23;
+    const t25 = Math.abs(in_line ? -t15 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t25 && -(_runtime.FEASIBILITY * t20) <= t19);
+    const t26 = !t24 || unreachable ? NaN : 0;
+    const Delta = t14 * h;
+    const A_13_above = t17 + t21;
+    o[0] = A_13 + t26;
+    o[1] = t1 + A_13 + t26;
+    o[2] = t4 + A_13 + t26;
+    o[3] = -Delta + t26;
+    o[4] = A_13_above + t26;
+    o[5] = t1 + A_13_above + t26;
+    o[6] = t4 + A_13_above + t26;
+    o[7] = Delta + t26;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1097,7 +1250,12 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 3], [4, 1], [5, 1], [6, 1], [7, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1166,81 +1324,82 @@ function _condition_number(v, o) {
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const t13 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / t13;
-    const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
-    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
-    const t16 = t1 * 0.5 - t10 * t15;
-    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
-    const t18 = l * l - t17;
-    const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
-    const t20 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
-    const t21 = t16 - t20;
-    const t22 = n_y * t15 - d_y * 0.5;
-    const t23 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
-    const t24 = t22 + t23;
-    const t25 = t12 * t15 - t8 * 0.5;
-    const t26 = h * (in_line ? -last : a_x * n_y + d_y * t10);
-    const A_13 = t25 - t26;
-    const A_21 = t1 - t21;
-    const t27 = A_21 * A_21;
-    const A_22 = c3_y - t24;
+    const last = size * (d_y + a_x * side);
+    const t13 = size * t8;
+    const t14 = mu * nu;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / t14;
+    const t15 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t16 = in_line ? 0.0 : mu * part * t15 * 0.5;
+    const t17 = t1 * 0.5 - t10 * t16;
+    const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
+    const t19 = l * l - t18;
+    const slack = Math.max(t19, 0.0);
+    const t20 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
+    const t21 = (in_line ? side * t13 : d_y * t12 - t8 * n_y) * h;
+    const t22 = t17 - t21;
+    const t23 = n_y * t16 - d_y * 0.5;
+    const t24 = h * (in_line ? -t13 : a_x * t12 + t8 * t10);
+    const t25 = t23 + t24;
+    const t26 = t12 * t16 - t8 * 0.5;
+    const t27 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t26 - t27;
+    const A_21 = t1 - t22;
+    const t28 = A_21 * A_21;
+    const A_22 = c3_y - t25;
     const A_23 = t2 + A_13;
-    const t28 = t21 * t21 + t24 * t24 + A_13 * A_13 + (t27 + A_22 * A_22 + A_23 * A_23);
-    const t29 = c3_y + t24;
+    const t29 = t22 * t22 + t25 * t25 + A_13 * A_13 + (t28 + A_22 * A_22 + A_23 * A_23);
+    const t30 = c3_y + t25;
     const A_33 = t4 + A_13;
-    const t30 = t24 * A_21;
-    const t31 = t21 * A_22 - t30;
-    const t32 = A_13 * A_21;
-    const t33 = t21 * A_23 + t32;
-    const t34 = t30 + t21 * t29;
-    const t35 = t32 + t21 * A_33;
-    const t36 = t31 * t31 + t33 * t33 + t34 * t34 + t35 * t35;
-    const t37 = t24 * A_23 + A_13 * A_22;
-    const t38 = t24 * A_33 - A_13 * t29;
-    const t39 = A_21 * t29 + A_21 * A_22;
-    const t40 = A_21 * A_33 - A_21 * A_23;
-    const t41 = t36 + t37 * t37 + t38 * t38 + t39 * t39 + t40 * t40;
-    const t42 = A_22 * A_33 + A_23 * t29;
-    const t43 = (t28 + (t27 + t29 * t29 + A_33 * A_33)) * (t41 + t42 * t42);
-    const t44 = 3.0 * (t13 * h);
-    const t45 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t46 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t47 = t45 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t46;
-    const t48 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t48 && -(_runtime.FEASIBILITY * t19) <= t18);
-    const t49 = !t47 || unreachable ? NaN : 0;
-    const t50 = t16 + t20;
-    const t51 = t22 - t23;
-    const A_13_above = t25 + t26;
-    const square1_above = t50 * t50 + t51 * t51 + A_13_above * A_13_above;
-    const A_21_above = t1 - t50;
-    const t52 = A_21_above * A_21_above;
-    const A_22_above = c3_y - t51;
+    const t31 = t25 * A_21;
+    const t32 = t22 * A_22 - t31;
+    const t33 = A_13 * A_21;
+    const t34 = t22 * A_23 + t33;
+    const t35 = t31 + t22 * t30;
+    const t36 = t33 + t22 * A_33;
+    const t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36;
+    const t38 = t25 * A_23 + A_13 * A_22;
+    const t39 = t25 * A_33 - A_13 * t30;
+    const t40 = A_21 * t30 + A_21 * A_22;
+    const t41 = A_21 * A_33 - A_21 * A_23;
+    const t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41;
+    const t43 = A_22 * A_33 + A_23 * t30;
+    const t44 = (t29 + (t28 + t30 * t30 + A_33 * A_33)) * (t42 + t43 * t43);
+    const t45 = 3.0 * (t14 * h);
+    const t46 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t47 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t48 = t46 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t47;
+    const t49 = Math.abs(in_line ? -t15 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t49 && -(_runtime.FEASIBILITY * t20) <= t19);
+    const t50 = !t48 || unreachable ? NaN : 0;
+    const t51 = t17 + t21;
+    const t52 = t23 - t24;
+    const A_13_above = t26 + t27;
+    const square1_above = t51 * t51 + t52 * t52 + A_13_above * A_13_above;
+    const A_21_above = t1 - t51;
+    const t53 = A_21_above * A_21_above;
+    const A_22_above = c3_y - t52;
     const A_23_above = t2 + A_13_above;
-    const square2_above = t52 + A_22_above * A_22_above + A_23_above * A_23_above;
-    const t53 = c3_y + t51;
+    const square2_above = t53 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const t54 = c3_y + t52;
     const A_33_above = t4 + A_13_above;
-    const t54 = square1_above + square2_above + (t52 + t53 * t53 + A_33_above * A_33_above);
-    const t55 = t51 * A_21_above;
-    const t56 = t50 * A_22_above - t55;
-    const t57 = A_13_above * A_21_above;
-    const t58 = t50 * A_23_above + t57;
-    const t59 = t55 + t50 * t53;
-    const t60 = t57 + t50 * A_33_above;
-    const t61 = t56 * t56 + t58 * t58 + t59 * t59 + t60 * t60;
-    const t62 = t51 * A_23_above + A_13_above * A_22_above;
-    const t63 = t51 * A_33_above - A_13_above * t53;
-    const t64 = A_21_above * t53 + A_21_above * A_22_above;
-    const t65 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const t66 = t61 + t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65;
-    const t67 = A_22_above * A_33_above + A_23_above * t53;
-    const t68 = Math.sqrt(t54 * (t66 + t67 * t67)) / t44 + t49;
-    o[0] = Math.sqrt(t43) / t44 + t49;
-    o[1] = t68;
+    const t55 = square1_above + square2_above + (t53 + t54 * t54 + A_33_above * A_33_above);
+    const t56 = t52 * A_21_above;
+    const t57 = t51 * A_22_above - t56;
+    const t58 = A_13_above * A_21_above;
+    const t59 = t51 * A_23_above + t58;
+    const t60 = t56 + t51 * t54;
+    const t61 = t58 + t51 * A_33_above;
+    const t62 = t57 * t57 + t59 * t59 + t60 * t60 + t61 * t61;
+    const t63 = t52 * A_23_above + A_13_above * A_22_above;
+    const t64 = t52 * A_33_above - A_13_above * t54;
+    const t65 = A_21_above * t54 + A_21_above * A_22_above;
+    const t66 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const t67 = t62 + t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66;
+    const t68 = A_22_above * A_33_above + A_23_above * t54;
+    const t69 = Math.sqrt(t55 * (t67 + t68 * t68)) / t45 + t50;
+    o[0] = Math.sqrt(t44) / t45 + t50;
+    o[1] = t69;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -1255,7 +1414,12 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [],
+        least: 2.5849394142282115e-26,
+        most: 9.353610478917779e+49,
+    },
 });
 
 /**
@@ -1325,48 +1489,49 @@ function _constraint(v, o) {
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (t8 * t8) + last * last) : 1.0 / (mu * nu);
-    const t13 = t7 * (d_y - t7) + t9 * (t8 - t9);
-    const t14 = in_line ? 0.0 : mu * part * t13 * 0.5;
-    const t15 = t1 * 0.5 - t10 * t14;
-    const t16 = all_same ? 0.0 : nu * (t14 * t14) + mu * 0.25;
-    const t17 = l * l - t16;
-    const slack = Math.max(t17, 0.0);
-    const t18 = l * size * 2.0;
-    const h = slack <= _runtime.VANISHING * t18 ? 0.0 : Math.sqrt(part * slack);
-    const t19 = (in_line ? t8 * side : d_y * t12 - t8 * n_y) * h;
-    const t20 = t15 - t19;
-    const t21 = t12 * t14 - t8 * 0.5;
-    const t22 = h * (in_line ? -last : a_x * n_y + d_y * t10);
-    const A_13 = t21 - t22;
+    const last = size * (d_y + a_x * side);
+    const t13 = size * t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (t13 * t13)) : 1.0 / (mu * nu);
+    const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
+    const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
+    const t16 = t1 * 0.5 - t10 * t15;
+    const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
+    const t18 = l * l - t17;
+    const slack = Math.max(t18, 0.0);
+    const t19 = l * size * 2.0;
+    const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
+    const t20 = (in_line ? side * t13 : d_y * t12 - t8 * n_y) * h;
+    const t21 = t16 - t20;
+    const t22 = t12 * t15 - t8 * 0.5;
+    const t23 = h * (in_line ? -last : a_x * n_y + d_y * t10);
+    const A_13 = t22 - t23;
     const A_23 = t2 + A_13;
     const A_33 = t4 + A_13;
-    const t23 = (t1 - t20) * (1.7320508075688772 * A_13);
-    const t24 = 1.7320508075688772 * t20 * A_23 * A_33 * 0.5 + A_33 * t23 * 0.25;
-    const t25 = n_y * t14 - d_y * 0.5;
-    const t26 = h * (in_line ? -t8 : a_x * t12 + t8 * t10);
-    const t27 = t25 + t26;
-    const t28 = 0.75 * A_13;
-    const t29 = t24 - A_33 * (c3_y - t27) * t28 + A_23 * t23 * 0.25;
-    const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
-    const t31 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t32 = t30 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t31;
-    const t33 = Math.abs(in_line ? -t13 : 0.0) <= t5 * _runtime.FEASIBILITY;
-    const unreachable = !(t33 && -(_runtime.FEASIBILITY * t18) <= t17);
-    const t34 = !t32 || unreachable ? NaN : 0;
-    const t35 = t15 + t19;
-    const A_13_above = t21 + t22;
+    const t24 = (t1 - t21) * (1.7320508075688772 * A_13);
+    const t25 = 1.7320508075688772 * t21 * A_23 * A_33 * 0.5 + A_33 * t24 * 0.25;
+    const t26 = n_y * t15 - d_y * 0.5;
+    const t27 = h * (in_line ? -t13 : a_x * t12 + t8 * t10);
+    const t28 = t26 + t27;
+    const t29 = 0.75 * A_13;
+    const t30 = t25 - A_33 * (c3_y - t28) * t29 + A_23 * t24 * 0.25;
+    const t31 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t32 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t33 = t31 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t32;
+    const t34 = Math.abs(in_line ? -t14 : 0.0) <= t5 * _runtime.FEASIBILITY;
+    const unreachable = !(t34 && -(_runtime.FEASIBILITY * t19) <= t18);
+    const t35 = !t33 || unreachable ? NaN : 0;
+    const t36 = t16 + t20;
+    const A_13_above = t22 + t23;
     const A_23_above = t2 + A_13_above;
     const A_33_above = t4 + A_13_above;
-    const t36 = 1.7320508075688772 * t35 * A_23_above * A_33_above;
-    const t37 = (t1 - t35) * (1.7320508075688772 * A_13_above);
-    const t38 = t25 - t26;
-    const t39 = 0.75 * A_13_above;
-    const t40 = t36 * 0.5 + A_33_above * t37 * 0.25 - A_33_above * (c3_y - t38) * t39;
-    const t41 = t40 + A_23_above * t37 * 0.25 - A_23_above * t39 * (c3_y + t38);
-    o[0] = t29 - A_23 * t28 * (c3_y + t27) + t34;
-    o[1] = t41 + t34;
+    const t37 = 1.7320508075688772 * t36 * A_23_above * A_33_above;
+    const t38 = (t1 - t36) * (1.7320508075688772 * A_13_above);
+    const t39 = t26 - t27;
+    const t40 = 0.75 * A_13_above;
+    const t41 = t37 * 0.5 + A_33_above * t38 * 0.25 - A_33_above * (c3_y - t39) * t40;
+    const t42 = t41 + A_23_above * t38 * 0.25 - A_23_above * t40 * (c3_y + t39);
+    o[0] = t30 - A_23 * t29 * (c3_y + t28) + t35;
+    o[1] = t42 + t35;
 }
 
 const _CONSTRAINT = _runtime.kernel({
@@ -1381,7 +1546,12 @@ const _CONSTRAINT = _runtime.kernel({
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 3], [1, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**

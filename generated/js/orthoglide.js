@@ -2,28 +2,28 @@
 // derivations/orthoglide.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+//   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
 //   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
-//   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+//   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
 //   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
-//   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+//   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
 //   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
 //     multiply, 1 sqrt
-//   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+//   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
 //   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
 //     1 sqrt
-//   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+//   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
 //   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
-//   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+//   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
 //   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
 //     sqrt
-//   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+//   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
 //   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
 //     sqrt
-//   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+//   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
 //   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
 //     3 sqrt
-//   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+//   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
 //   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 //     sqrt
 //   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
@@ -141,22 +141,23 @@ function _fk(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / (mu * nu);
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
     const t11 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
-    const t12 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t12 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t13 = rho1 * 0.5 - (rho1 + t7 * t9);
     const t14 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const invalid = !(Number.isFinite(L) && 0.0 <= L && t14);
     const t15 = Math.abs(in_line ? -t8 : 0.0) <= t2 * _runtime.FEASIBILITY;
     const unreachable = !(t15 && -(_runtime.FEASIBILITY * t11) <= t10);
     const t16 = invalid || unreachable ? NaN : 0;
-    const t17 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t17 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t18 = n_y * t9 - d_y * 0.5;
     const t19 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
     const t20 = n_z * t9 - d_z * 0.5;
@@ -233,7 +234,12 @@ const _FK = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -309,8 +315,9 @@ function _skeleton(v, o) {
     const t10 = Math.abs(in_line ? -t9 : 0.0) <= t3 * _runtime.FEASIBILITY;
     const t11 = L * size * 2.0;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / (mu * nu);
+    const last = size * (d_y + a_x * side);
+    const up = size * d_z;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t12 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t13 = all_same ? 0.0 : nu * (t12 * t12) + mu * 0.25;
     const t14 = L * L - t13;
@@ -324,11 +331,11 @@ function _skeleton(v, o) {
     const t20 = -t18 + t15;
     const slack = Math.max(t14, 0.0);
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
-    const t21 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t21 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t22 = t8 * t12 - rho1 * 0.5;
     const t23 = rho1 + (t21 + t22);
     const t24 = t23 + t15;
-    const t25 = (in_line ? d_z : -(a_x * n_z + d_z * t8)) * h;
+    const t25 = (in_line ? up : -(a_x * n_z + d_z * t8)) * h;
     const t26 = n_y * t12 - d_y * 0.5;
     const A_12 = t25 - t26;
     const t27 = (in_line ? -last : a_x * n_y + d_y * t8) * h;
@@ -644,7 +651,12 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[3, 1], [6, 1], [7, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [22, 1], [25, 1], [26, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [41, 1], [42, 1], [44, 1], [45, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [60, 1], [63, 1], [64, 1], [66, 1], [67, 1], [69, 1], [70, 1], [71, 1], [72, 1], [73, 1], [74, 1], [79, 1], [82, 1], [83, 1], [85, 1], [86, 1], [87, 1], [88, 1], [89, 1], [90, 1], [91, 1], [92, 1], [98, 1], [99, 1], [101, 1], [102, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [110, 1], [111, 1], [112, 1], [113, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -708,15 +720,16 @@ function _jacobian_parallel(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / (mu * nu);
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
     const t11 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
-    const t12 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t12 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t13 = t7 * t9 - rho1 * 0.5;
     const A_11 = t12 + t13;
     const t14 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
@@ -724,7 +737,7 @@ function _jacobian_parallel(v, o) {
     const unreachable = !(t15 && -(_runtime.FEASIBILITY * t11) <= t10);
     const failed = !(Number.isFinite(L) && 0.0 <= L && t14) || unreachable;
     const t16 = failed ? NaN : 0;
-    const t17 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t17 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t18 = n_y * t9 - d_y * 0.5;
     const A_12 = t17 - t18;
     const t19 = A_12 + t16;
@@ -840,7 +853,12 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -903,22 +921,23 @@ function _jacobian_serial(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / (mu * nu);
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
     const t11 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
-    const t12 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t12 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t13 = t7 * t9 - rho1 * 0.5;
     const t14 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const t15 = Math.abs(in_line ? -t8 : 0.0) <= t2 * _runtime.FEASIBILITY;
     const unreachable = !(t15 && -(_runtime.FEASIBILITY * t11) <= t10);
     const failed = !(Number.isFinite(L) && 0.0 <= L && t14) || unreachable;
     const t16 = failed ? NaN : 0;
-    const t17 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t17 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t18 = n_y * t9 - d_y * 0.5;
     const t19 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
     const t20 = n_z * t9 - d_z * 0.5;
@@ -987,7 +1006,12 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1050,9 +1074,10 @@ function _jacobian(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
     const t8 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t10 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
@@ -1060,10 +1085,10 @@ function _jacobian(v, o) {
     const slack = Math.max(t12, 0.0);
     const t13 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
-    const t14 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t14 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
     const A_11 = t14 + t15;
-    const t16 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t16 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t17 = n_y * t10 - d_y * 0.5;
     const t18 = t16 - t17;
     const t19 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
@@ -1202,7 +1227,12 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1266,9 +1296,10 @@ function _determinant(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
     const t8 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t10 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
@@ -1276,9 +1307,9 @@ function _determinant(v, o) {
     const slack = Math.max(t12, 0.0);
     const t13 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
-    const t14 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t14 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
-    const t16 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t16 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t17 = n_y * t10 - d_y * 0.5;
     const t18 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
     const t19 = n_z * t10 - d_z * 0.5;
@@ -1351,7 +1382,12 @@ const _DETERMINANT = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1414,9 +1450,10 @@ function _singularities(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
     const t8 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t10 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
@@ -1424,14 +1461,14 @@ function _singularities(v, o) {
     const slack = Math.max(t12, 0.0);
     const t13 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
-    const t14 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t14 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
     const t16 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const t17 = Math.abs(in_line ? -t9 : 0.0) <= t2 * _runtime.FEASIBILITY;
     const unreachable = !(t17 && -(_runtime.FEASIBILITY * t13) <= t12);
     const failed = !(Number.isFinite(L) && 0.0 <= L && t16) || unreachable;
     const t18 = failed ? NaN : 0;
-    const t19 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t19 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t20 = n_y * t10 - d_y * 0.5;
     const t21 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
     const t22 = n_z * t10 - d_z * 0.5;
@@ -1507,7 +1544,12 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 3], [4, 1], [5, 1], [6, 1], [7, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1570,9 +1612,10 @@ function _condition_number(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
+    const up = size * d_z;
+    const last = size * (d_y + a_x * side);
     const t8 = mu * nu;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / t8;
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t10 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
@@ -1580,10 +1623,10 @@ function _condition_number(v, o) {
     const slack = Math.max(t12, 0.0);
     const t13 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
-    const t14 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t14 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
     const A_11 = t14 + t15;
-    const t16 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t16 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t17 = n_y * t10 - d_y * 0.5;
     const t18 = t16 - t17;
     const t19 = t18 * t18;
@@ -1751,7 +1794,12 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [],
+        least: 2.5849394142282115e-26,
+        most: 9.353610478917779e+49,
+    },
 });
 
 /**
@@ -1814,22 +1862,23 @@ function _constraint(v, o) {
     const n_z = over * (a_x * t6 + d_y * m_x);
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
+    const up = size * d_z;
     const side = d_y * a_x < 0 ? -1 : 1;
-    const last = d_y + a_x * side;
-    const part = in_line ? 1.0 / (2.0 * (d_z * d_z) + last * last) : 1.0 / (mu * nu);
+    const last = size * (d_y + a_x * side);
+    const part = in_line ? 1.0 / (last * last + 2.0 * (up * up)) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
     const t11 = L * size * 2.0;
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
-    const t12 = (in_line ? d_z : -(a_x * n_z + d_z * t7)) * h;
+    const t12 = (in_line ? up : -(a_x * n_z + d_z * t7)) * h;
     const t13 = n_y * t9 - d_y * 0.5;
     const t14 = t12 - t13;
     const t15 = (in_line ? -last : a_x * n_y + d_y * t7) * h;
     const t16 = n_z * t9 - d_z * 0.5;
     const t17 = t15 - t16;
-    const t18 = (in_line ? d_z * side : d_y * n_z - d_z * n_y) * h;
+    const t18 = (in_line ? side * up : d_y * n_z - d_z * n_y) * h;
     const t19 = t7 * t9 - rho1 * 0.5;
     const A_11 = t18 + t19;
     const t20 = t14 * t17 * (rho1 + A_11) - A_11 * (rho2 - t14) * (rho3 - t17);
@@ -1907,7 +1956,12 @@ const _CONSTRAINT = _runtime.kernel({
     ],
     used: ["L"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 3], [1, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**

@@ -2,13 +2,13 @@
 // derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops on a sphere, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-//   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-//   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-//   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
-//   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
-//   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
-//   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
+//   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+//   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+//   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+//   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+//   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
+//   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
+//   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
 //   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 //   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 
@@ -148,72 +148,74 @@ function _fk(v, o) {
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
     const side = -(t10 * a_x) < 0 ? -1 : 1;
-    const w_x = in_line ? -(t15 * side) : t10 * t19 - t15 * t18;
+    const t20 = all_same ? 1.0 : r;
+    const t21 = t15 * t20;
+    const w_x = in_line ? -(side * t21) : t10 * t19 - t15 * t18;
     const length_a = Math.sqrt(mu);
-    const t20 = t10 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t22 = t20 * (t10 - a_x * side);
+    const nu_w = in_line ? over * (t22 * t22 + 2.0 * (t21 * t21)) : nu;
     const length_n = Math.sqrt(nu_w);
     const part = 1.0 / (length_a * length_n);
-    const t21 = r * 2.0;
-    const r_2 = Math.abs(s_beta2_half) * t21;
+    const t23 = r * 2.0;
+    const r_2 = Math.abs(s_beta2_half) * t23;
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
-    const t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
+    const t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const t36 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t36;
-    const t37 = w_x * h;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t38;
+    const t39 = w_x * h;
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
     const X = over_a * along;
-    const t38 = t17 * Y - (c1_x - t11 * X);
-    const t39 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const t40 = t17 * Y - (c1_x - t11 * X);
+    const t41 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t40 = t39 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t41 = t40 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t42 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const invalid = !(t41 && t42);
-    const t43 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t44 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t45 = t43 <= t27 && t43 <= t24 && t43 <= t26 && -t44 <= t32;
-    const unreachable = !(t45 && -t44 <= t33);
-    const t46 = invalid || unreachable ? NaN : 0;
-    const t47 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t48 = t18 * Y - (c1_y - t10 * X);
-    const t49 = (in_line ? t20 : -(a_x * t18 + t10 * t17)) * h;
-    const t50 = t19 * Y - (c1_z - t15 * X);
-    const t51 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = t37 - t38 + t46;
-    o[1] = t47 - t48 + t46;
-    o[2] = t49 - t50 + t46;
-    o[3] = -(t38 + t37) + t46;
-    o[4] = -(t48 + t47) + t46;
-    o[5] = -(t50 + t49) + t46;
-    o[6] = t51;
-    o[7] = t51;
+    const t42 = t41 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t43 = t42 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t44 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const invalid = !(t43 && t44);
+    const t45 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t46 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t47 = t45 <= t29 && t45 <= t26 && t45 <= t28 && -t46 <= t34;
+    const unreachable = !(t47 && -t46 <= t35);
+    const t48 = invalid || unreachable ? NaN : 0;
+    const t49 = (in_line ? -t21 : a_x * t19 + t15 * t17) * h;
+    const t50 = t18 * Y - (c1_y - t10 * X);
+    const t51 = (in_line ? t22 : -(a_x * t18 + t10 * t17)) * h;
+    const t52 = t19 * Y - (c1_z - t15 * X);
+    const t53 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t39 - t40 + t48;
+    o[1] = t49 - t50 + t48;
+    o[2] = t51 - t52 + t48;
+    o[3] = -(t40 + t39) + t48;
+    o[4] = -(t50 + t49) + t48;
+    o[5] = -(t52 + t51) + t48;
+    o[6] = t53;
+    o[7] = t53;
 }
 
 const _FK = _runtime.kernel({
@@ -229,7 +231,12 @@ const _FK = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -355,9 +362,11 @@ function _skeleton(v, o) {
     const t36 = over * (a_x * m_y + t27 * m_x);
     const nu = t34 * t34 + t35 * t35 + t36 * t36;
     const in_line = nu <= t17;
+    const t37 = all_same ? 1.0 : r;
     const side = -(t27 * a_x) < 0 ? -1 : 1;
-    const t37 = t27 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t32 * t32) + t37 * t37) : nu;
+    const t38 = t37 * (t27 - a_x * side);
+    const t39 = t32 * t37;
+    const nu_w = in_line ? over * (t38 * t38 + 2.0 * (t39 * t39)) : nu;
     const length_n = Math.sqrt(nu_w);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
@@ -365,78 +374,78 @@ function _skeleton(v, o) {
     const inner = Math.max(t24, 0.0);
     const share = 1.0 / (outer + inner);
     const slack = Math.max(t21, 0.0);
-    const t38 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t38;
-    const t39 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along;
-    const t40 = Math.sqrt(outer * inner * slack * (t19 + t22));
-    const rho = all_same ? r_1 : share * t40;
-    const left = nu - (same ? r_2 * r_2 : t16) + t39 * t39 + rho * rho;
-    const t41 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t42 = left + t41;
-    const t43 = t5 <= t21 && t5 <= t23 && t5 <= t24 && -t26 <= t42;
-    const t44 = t41 - left;
-    const t45 = !(t3 && t4) || !(t43 && -t26 <= t44) ? NaN : 0;
-    const t46 = 0.0 + t45;
-    const t47 = c1_x + t45;
-    const t48 = c1_y + t45;
-    const t49 = c1_z + t45;
-    const t50 = t9 + t45;
-    const t51 = t13 + t45;
-    const t52 = -t10 + t45;
-    const t53 = c2_y + t45;
-    const t54 = c2_z + t45;
+    const t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t40;
+    const t41 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along;
+    const t42 = Math.sqrt(outer * inner * slack * (t19 + t22));
+    const rho = all_same ? r_1 : share * t42;
+    const left = nu - (same ? r_2 * r_2 : t16) + t41 * t41 + rho * rho;
+    const t43 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t44 = left + t43;
+    const t45 = t5 <= t21 && t5 <= t23 && t5 <= t24 && -t26 <= t44;
+    const t46 = t43 - left;
+    const t47 = !(t3 && t4) || !(t45 && -t26 <= t46) ? NaN : 0;
+    const t48 = 0.0 + t47;
+    const t49 = c1_x + t47;
+    const t50 = c1_y + t47;
+    const t51 = c1_z + t47;
+    const t52 = t9 + t47;
+    const t53 = t13 + t47;
+    const t54 = -t10 + t47;
+    const t55 = c2_y + t47;
+    const t56 = c2_z + t47;
     const X = over_a * along;
-    const upper = Math.max(t42, 0.0);
-    const lower = Math.max(t44, 0.0);
+    const upper = Math.max(t44, 0.0);
+    const lower = Math.max(t46, 0.0);
     const both = upper + lower;
-    const t55 = both <= _runtime.VANISHING * (r * t25) || in_line;
+    const t57 = both <= _runtime.VANISHING * (r * t25) || in_line;
     const half = rho / both;
-    const Y = t55 ? 0.0 : length_a * part * half * (upper - lower);
-    const t56 = t28 * X + t34 * Y;
-    const w_x = in_line ? -(t32 * side) : t27 * t36 - t32 * t35;
-    const t57 = t55 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t57;
-    const t58 = w_x * h;
-    const t59 = t27 * X + t35 * Y;
-    const t60 = (in_line ? -t32 : a_x * t36 + t32 * t34) * h;
-    const t61 = t32 * X + t36 * Y;
-    const t62 = (in_line ? t37 : -(a_x * t35 + t27 * t34)) * h;
-    o[0] = t46;
-    o[1] = t46;
-    o[2] = t46;
-    o[3] = t47;
-    o[4] = t46;
-    o[5] = t46;
-    o[6] = t47;
-    o[7] = t48;
-    o[8] = t49;
-    o[9] = t50;
-    o[10] = t51;
-    o[11] = t46;
-    o[12] = t52;
-    o[13] = t53;
-    o[14] = t54;
-    o[15] = c1_x - (t56 - t58) + t45;
-    o[16] = c1_y - (t59 - t60) + t45;
-    o[17] = c1_z - (t61 - t62) + t45;
-    o[18] = t46;
-    o[19] = t46;
-    o[20] = t46;
-    o[21] = t47;
-    o[22] = t46;
-    o[23] = t46;
-    o[24] = t47;
-    o[25] = t48;
-    o[26] = t49;
-    o[27] = t50;
-    o[28] = t51;
-    o[29] = t46;
-    o[30] = t52;
-    o[31] = t53;
-    o[32] = t54;
-    o[33] = c1_x - (t56 + t58) + t45;
-    o[34] = c1_y - (t59 + t60) + t45;
-    o[35] = c1_z - (t61 + t62) + t45;
+    const Y = t57 ? 0.0 : length_a * part * half * (upper - lower);
+    const t58 = t28 * X + t34 * Y;
+    const w_x = in_line ? -(side * t39) : t27 * t36 - t32 * t35;
+    const t59 = t57 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t59;
+    const t60 = w_x * h;
+    const t61 = t27 * X + t35 * Y;
+    const t62 = (in_line ? -t39 : a_x * t36 + t32 * t34) * h;
+    const t63 = t32 * X + t36 * Y;
+    const t64 = (in_line ? t38 : -(a_x * t35 + t27 * t34)) * h;
+    o[0] = t48;
+    o[1] = t48;
+    o[2] = t48;
+    o[3] = t49;
+    o[4] = t48;
+    o[5] = t48;
+    o[6] = t49;
+    o[7] = t50;
+    o[8] = t51;
+    o[9] = t52;
+    o[10] = t53;
+    o[11] = t48;
+    o[12] = t54;
+    o[13] = t55;
+    o[14] = t56;
+    o[15] = c1_x - (t58 - t60) + t47;
+    o[16] = c1_y - (t61 - t62) + t47;
+    o[17] = c1_z - (t63 - t64) + t47;
+    o[18] = t48;
+    o[19] = t48;
+    o[20] = t48;
+    o[21] = t49;
+    o[22] = t48;
+    o[23] = t48;
+    o[24] = t49;
+    o[25] = t50;
+    o[26] = t51;
+    o[27] = t52;
+    o[28] = t53;
+    o[29] = t48;
+    o[30] = t54;
+    o[31] = t55;
+    o[32] = t56;
+    o[33] = c1_x - (t58 + t60) + t47;
+    o[34] = c1_y - (t61 + t62) + t47;
+    o[35] = c1_z - (t63 + t64) + t47;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -451,7 +460,12 @@ const _SKELETON = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[3, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [21, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -546,86 +560,88 @@ function _jacobian_parallel(v, o) {
     const t19 = over * (a_x * m_y + t11 * m_x);
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
+    const t20 = all_same ? 1.0 : r;
     const side = -(t11 * a_x) < 0 ? -1 : 1;
-    const t20 = t11 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t21 = t20 * (t11 - a_x * side);
+    const t22 = t15 * t20;
+    const nu_w = in_line ? over * (t21 * t21 + 2.0 * (t22 * t22)) : nu;
     const length_n = Math.sqrt(nu_w);
     const length_a = Math.sqrt(mu);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const t21 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const r_2 = Math.abs(s_beta2_half) * t21;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const t23 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const r_2 = Math.abs(s_beta2_half) * t23;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
     const X = over_a * along;
-    const t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
-    const t36 = t10 * X + t17 * Y;
-    const w_x = in_line ? -(t15 * side) : t11 * t19 - t15 * t18;
-    const t37 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t37;
-    const t38 = w_x * h;
-    const t39 = t36 - t38;
-    const t40 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t10 * X + t17 * Y;
+    const w_x = in_line ? -(side * t22) : t11 * t19 - t15 * t18;
+    const t39 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t39;
+    const t40 = w_x * h;
+    const t41 = t38 - t40;
+    const t42 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t41 = t40 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t42 = t41 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t43 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t44 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t45 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t46 = t44 <= t27 && t44 <= t24 && t44 <= t26 && -t45 <= t32;
-    const t47 = !(t42 && t43) || !(t46 && -t45 <= t33) ? NaN : 0;
-    const t48 = t11 * X + t18 * Y;
-    const t49 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t50 = t48 - t49;
-    const t51 = t15 * X + t19 * Y;
-    const t52 = (in_line ? t20 : -(a_x * t18 + t11 * t17)) * h;
-    const t53 = t51 - t52;
-    const t54 = t36 + t38;
-    const t55 = t48 + t49;
-    const t56 = t51 + t52;
-    o[0] = c1_x - t39 + t47;
-    o[1] = c1_y - t50 + t47;
-    o[2] = c1_z - t53 + t47;
-    o[3] = -t39 + t47;
-    o[4] = -t50 + t47;
-    o[5] = -t53 + t47;
-    o[6] = t4 - t39 + t47;
-    o[7] = t6 - t50 + t47;
-    o[8] = t7 - t53 + t47;
-    o[9] = c1_x - t54 + t47;
-    o[10] = c1_y - t55 + t47;
-    o[11] = c1_z - t56 + t47;
-    o[12] = -t54 + t47;
-    o[13] = -t55 + t47;
-    o[14] = -t56 + t47;
-    o[15] = t4 - t54 + t47;
-    o[16] = t6 - t55 + t47;
-    o[17] = t7 - t56 + t47;
+    const t43 = t42 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t44 = t43 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t45 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t46 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t48 = t46 <= t29 && t46 <= t26 && t46 <= t28 && -t47 <= t34;
+    const t49 = !(t44 && t45) || !(t48 && -t47 <= t35) ? NaN : 0;
+    const t50 = t11 * X + t18 * Y;
+    const t51 = (in_line ? -t22 : a_x * t19 + t15 * t17) * h;
+    const t52 = t50 - t51;
+    const t53 = t15 * X + t19 * Y;
+    const t54 = (in_line ? t21 : -(a_x * t18 + t11 * t17)) * h;
+    const t55 = t53 - t54;
+    const t56 = t38 + t40;
+    const t57 = t50 + t51;
+    const t58 = t53 + t54;
+    o[0] = c1_x - t41 + t49;
+    o[1] = c1_y - t52 + t49;
+    o[2] = c1_z - t55 + t49;
+    o[3] = -t41 + t49;
+    o[4] = -t52 + t49;
+    o[5] = -t55 + t49;
+    o[6] = t4 - t41 + t49;
+    o[7] = t6 - t52 + t49;
+    o[8] = t7 - t55 + t49;
+    o[9] = c1_x - t56 + t49;
+    o[10] = c1_y - t57 + t49;
+    o[11] = c1_z - t58 + t49;
+    o[12] = -t56 + t49;
+    o[13] = -t57 + t49;
+    o[14] = -t58 + t49;
+    o[15] = t4 - t56 + t49;
+    o[16] = t6 - t57 + t49;
+    o[17] = t7 - t58 + t49;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -640,7 +656,12 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -736,74 +757,76 @@ function _jacobian_serial(v, o) {
     const t19 = over * (a_x * m_y + t10 * m_x);
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
+    const t20 = all_same ? 1.0 : r;
     const side = -(t10 * a_x) < 0 ? -1 : 1;
-    const t20 = t10 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t21 = t20 * (t10 - a_x * side);
+    const t22 = t15 * t20;
+    const nu_w = in_line ? over * (t21 * t21 + 2.0 * (t22 * t22)) : nu;
     const length_n = Math.sqrt(nu_w);
     const length_a = Math.sqrt(mu);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const t21 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const r_2 = Math.abs(s_beta2_half) * t21;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const t23 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const r_2 = Math.abs(s_beta2_half) * t23;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
     const X = over_a * along;
-    const t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
-    const t36 = t10 * X + t18 * Y;
-    const t37 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t37;
-    const t38 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t39 = t36 - t38;
-    const t40 = t15 * X + t19 * Y;
-    const t41 = (in_line ? t20 : -(a_x * t18 + t10 * t17)) * h;
-    const t42 = t40 - t41;
-    const t43 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t10 * X + t18 * Y;
+    const t39 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t39;
+    const t40 = (in_line ? -t22 : a_x * t19 + t15 * t17) * h;
+    const t41 = t38 - t40;
+    const t42 = t15 * X + t19 * Y;
+    const t43 = (in_line ? t21 : -(a_x * t18 + t10 * t17)) * h;
+    const t44 = t42 - t43;
+    const t45 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t44 = t43 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t45 = t44 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t46 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t47 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t48 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t49 = t47 <= t27 && t47 <= t24 && t47 <= t26 && -t48 <= t32;
-    const t50 = !(t45 && t46) || !(t49 && -t48 <= t33) ? NaN : 0;
-    const t51 = s_gamma * c2_z;
-    const t52 = t11 * X + t17 * Y;
-    const w_x = in_line ? -(t15 * side) : t10 * t19 - t15 * t18;
-    const t53 = w_x * h;
-    const t54 = c_gamma * c2_z;
-    const B_22 = t51 * (t5 - (t52 - t53)) - t54 * (t6 - t39) - t3 * (t7 + t42);
-    const t55 = t36 + t38;
-    const t56 = t40 + t41;
-    const B_22_below = t51 * (t5 - (t52 + t53)) - t54 * (t6 - t55) - t3 * (t7 + t56);
-    o[0] = c1_z * t39 - c1_y * t42 + t50;
-    o[1] = B_22 + t50;
-    o[2] = c1_z * t55 - c1_y * t56 + t50;
-    o[3] = B_22_below + t50;
+    const t46 = t45 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t47 = t46 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t48 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t49 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t51 = t49 <= t29 && t49 <= t26 && t49 <= t28 && -t50 <= t34;
+    const t52 = !(t47 && t48) || !(t51 && -t50 <= t35) ? NaN : 0;
+    const t53 = s_gamma * c2_z;
+    const t54 = t11 * X + t17 * Y;
+    const w_x = in_line ? -(side * t22) : t10 * t19 - t15 * t18;
+    const t55 = w_x * h;
+    const t56 = c_gamma * c2_z;
+    const B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44);
+    const t57 = t38 + t40;
+    const t58 = t42 + t43;
+    const B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58);
+    o[0] = c1_z * t41 - c1_y * t44 + t52;
+    o[1] = B_22 + t52;
+    o[2] = c1_z * t57 - c1_y * t58 + t52;
+    o[3] = B_22_below + t52;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -818,7 +841,12 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[0, 2], [1, 2], [2, 2], [3, 2]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -914,111 +942,113 @@ function _jacobian(v, o) {
     const t19 = over * (a_x * m_y + t10 * m_x);
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
+    const t20 = all_same ? 1.0 : r;
     const side = -(t10 * a_x) < 0 ? -1 : 1;
-    const t20 = t10 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t21 = t20 * (t10 - a_x * side);
+    const t22 = t15 * t20;
+    const nu_w = in_line ? over * (t21 * t21 + 2.0 * (t22 * t22)) : nu;
     const length_n = Math.sqrt(nu_w);
     const length_a = Math.sqrt(mu);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const t21 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const r_2 = Math.abs(s_beta2_half) * t21;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const t23 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const r_2 = Math.abs(s_beta2_half) * t23;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
     const X = over_a * along;
-    const t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
-    const t36 = t10 * X + t18 * Y;
-    const t37 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t37;
-    const t38 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t39 = t36 - t38;
-    const t40 = t15 * X + t19 * Y;
-    const t41 = (in_line ? t20 : -(a_x * t18 + t10 * t17)) * h;
-    const t42 = t40 - t41;
-    const B_11 = c1_z * t39 - c1_y * t42;
-    const A_02 = c1_y - t39;
-    const t43 = t7 + t42;
-    const A_03 = c1_z - t42;
-    const A_22 = t6 - t39;
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t10 * X + t18 * Y;
+    const t39 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t39;
+    const t40 = (in_line ? -t22 : a_x * t19 + t15 * t17) * h;
+    const t41 = t38 - t40;
+    const t42 = t15 * X + t19 * Y;
+    const t43 = (in_line ? t21 : -(a_x * t18 + t10 * t17)) * h;
+    const t44 = t42 - t43;
+    const B_11 = c1_z * t41 - c1_y * t44;
+    const A_02 = c1_y - t41;
+    const t45 = t7 + t44;
+    const A_03 = c1_z - t44;
+    const A_22 = t6 - t41;
     const Delta = mu * nu * h;
-    const t44 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const t46 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t45 = t44 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t46 = t45 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t47 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t48 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t49 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t50 = t48 <= t27 && t48 <= t24 && t48 <= t26 && -t49 <= t32;
-    const t51 = !(t46 && t47) || !(t50 && -t49 <= t33) ? NaN : 0;
-    const t52 = B_11 * (A_02 * t43 + A_03 * A_22) / Delta + t51;
-    const t53 = s_gamma * c2_z;
-    const t54 = t11 * X + t17 * Y;
-    const w_x = in_line ? -(t15 * side) : t10 * t19 - t15 * t18;
-    const t55 = w_x * h;
-    const t56 = t54 - t55;
-    const A_21 = t5 - t56;
-    const t57 = c_gamma * c2_z;
-    const B_22 = t53 * A_21 - t57 * A_22 - t3 * t43;
-    const t58 = -(B_22 * (t42 * A_02 - t39 * A_03) / Delta) + t51;
-    const A_01 = c1_x - t56;
-    const t59 = -(B_11 * (t43 * A_01 + A_03 * A_21) / Delta) + t51;
-    const t60 = B_22 * (t42 * A_01 - A_03 * t56) / Delta + t51;
-    const t61 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta);
-    const t62 = -(B_22 * (t39 * A_01 - A_02 * t56) / Delta) + t51;
-    const t63 = t36 + t38;
-    const t64 = t40 + t41;
-    const B_11_below = c1_z * t63 - c1_y * t64;
-    const A_02_below = c1_y - t63;
-    const t65 = t7 + t64;
-    const A_03_below = c1_z - t64;
-    const A_22_below = t6 - t63;
-    const t66 = B_11_below * (A_02_below * t65 + A_03_below * A_22_below);
-    const t67 = t54 + t55;
-    const A_21_below = t5 - t67;
-    const B_22_below = t53 * A_21_below - t57 * A_22_below - t3 * t65;
-    const t68 = B_22_below * (t64 * A_02_below - t63 * A_03_below);
-    const A_01_below = c1_x - t67;
-    const t69 = B_11_below * (t65 * A_01_below + A_03_below * A_21_below);
-    const t70 = B_22_below * (t64 * A_01_below - A_03_below * t67);
-    const t71 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const t72 = B_22_below * (t63 * A_01_below - A_02_below * t67);
-    o[0] = t52;
-    o[1] = t58;
-    o[2] = t59;
-    o[3] = t60;
-    o[4] = t61 + t51;
-    o[5] = t62;
-    o[6] = -(t66 / Delta) + t51;
-    o[7] = t68 / Delta + t51;
-    o[8] = t69 / Delta + t51;
-    o[9] = -(t70 / Delta) + t51;
-    o[10] = B_11_below * t71 / Delta + t51;
-    o[11] = t72 / Delta + t51;
+    const t47 = t46 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t48 = t47 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t49 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t50 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t51 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t52 = t50 <= t29 && t50 <= t26 && t50 <= t28 && -t51 <= t34;
+    const t53 = !(t48 && t49) || !(t52 && -t51 <= t35) ? NaN : 0;
+    const t54 = B_11 * (A_02 * t45 + A_03 * A_22) / Delta + t53;
+    const t55 = s_gamma * c2_z;
+    const t56 = t11 * X + t17 * Y;
+    const w_x = in_line ? -(side * t22) : t10 * t19 - t15 * t18;
+    const t57 = w_x * h;
+    const t58 = t56 - t57;
+    const A_21 = t5 - t58;
+    const t59 = c_gamma * c2_z;
+    const B_22 = t55 * A_21 - t59 * A_22 - t3 * t45;
+    const t60 = -(B_22 * (t44 * A_02 - t41 * A_03) / Delta) + t53;
+    const A_01 = c1_x - t58;
+    const t61 = -(B_11 * (t45 * A_01 + A_03 * A_21) / Delta) + t53;
+    const t62 = B_22 * (t44 * A_01 - A_03 * t58) / Delta + t53;
+    const t63 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta);
+    const t64 = -(B_22 * (t41 * A_01 - A_02 * t58) / Delta) + t53;
+    const t65 = t38 + t40;
+    const t66 = t42 + t43;
+    const B_11_below = c1_z * t65 - c1_y * t66;
+    const A_02_below = c1_y - t65;
+    const t67 = t7 + t66;
+    const A_03_below = c1_z - t66;
+    const A_22_below = t6 - t65;
+    const t68 = B_11_below * (A_02_below * t67 + A_03_below * A_22_below);
+    const t69 = t56 + t57;
+    const A_21_below = t5 - t69;
+    const B_22_below = t55 * A_21_below - t59 * A_22_below - t3 * t67;
+    const t70 = B_22_below * (t66 * A_02_below - t65 * A_03_below);
+    const A_01_below = c1_x - t69;
+    const t71 = B_11_below * (t67 * A_01_below + A_03_below * A_21_below);
+    const t72 = B_22_below * (t66 * A_01_below - A_03_below * t69);
+    const t73 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const t74 = B_22_below * (t65 * A_01_below - A_02_below * t69);
+    o[0] = t54;
+    o[1] = t60;
+    o[2] = t61;
+    o[3] = t62;
+    o[4] = t63 + t53;
+    o[5] = t64;
+    o[6] = -(t68 / Delta) + t53;
+    o[7] = t70 / Delta + t53;
+    o[8] = t71 / Delta + t53;
+    o[9] = -(t72 / Delta) + t53;
+    o[10] = B_11_below * t73 / Delta + t53;
+    o[11] = t74 / Delta + t53;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1033,7 +1063,12 @@ const _JACOBIAN = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1130,77 +1165,79 @@ function _singularities(v, o) {
     const t19 = over * (a_x * m_y + t10 * m_x);
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
+    const t20 = all_same ? 1.0 : r;
     const side = -(t10 * a_x) < 0 ? -1 : 1;
-    const t20 = t10 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t21 = t20 * (t10 - a_x * side);
+    const t22 = t15 * t20;
+    const nu_w = in_line ? over * (t21 * t21 + 2.0 * (t22 * t22)) : nu;
     const length_n = Math.sqrt(nu_w);
     const length_a = Math.sqrt(mu);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const t21 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const r_2 = Math.abs(s_beta2_half) * t21;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const t23 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const r_2 = Math.abs(s_beta2_half) * t23;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
     const X = over_a * along;
-    const t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
-    const t36 = t10 * X + t18 * Y;
-    const t37 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t37;
-    const t38 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t39 = t36 - t38;
-    const t40 = t15 * X + t19 * Y;
-    const t41 = (in_line ? t20 : -(a_x * t18 + t10 * t17)) * h;
-    const t42 = t40 - t41;
-    const t43 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t10 * X + t18 * Y;
+    const t39 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t39;
+    const t40 = (in_line ? -t22 : a_x * t19 + t15 * t17) * h;
+    const t41 = t38 - t40;
+    const t42 = t15 * X + t19 * Y;
+    const t43 = (in_line ? t21 : -(a_x * t18 + t10 * t17)) * h;
+    const t44 = t42 - t43;
+    const t45 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t44 = t43 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t45 = t44 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t46 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t47 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t48 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t49 = t47 <= t27 && t47 <= t24 && t47 <= t26 && -t48 <= t32;
-    const t50 = !(t45 && t46) || !(t49 && -t48 <= t33) ? NaN : 0;
-    const t51 = s_gamma * c2_z;
-    const t52 = t11 * X + t17 * Y;
-    const w_x = in_line ? -(t15 * side) : t10 * t19 - t15 * t18;
-    const t53 = w_x * h;
-    const t54 = c_gamma * c2_z;
-    const B_22 = t51 * (t5 - (t52 - t53)) - t54 * (t6 - t39) - t3 * (t7 + t42);
+    const t46 = t45 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t47 = t46 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t48 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t49 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t51 = t49 <= t29 && t49 <= t26 && t49 <= t28 && -t50 <= t34;
+    const t52 = !(t47 && t48) || !(t51 && -t50 <= t35) ? NaN : 0;
+    const t53 = s_gamma * c2_z;
+    const t54 = t11 * X + t17 * Y;
+    const w_x = in_line ? -(side * t22) : t10 * t19 - t15 * t18;
+    const t55 = w_x * h;
+    const t56 = c_gamma * c2_z;
+    const B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44);
     const Delta = mu * nu * h;
-    const t55 = t36 + t38;
-    const t56 = t40 + t41;
-    const B_22_below = t51 * (t5 - (t52 + t53)) - t54 * (t6 - t55) - t3 * (t7 + t56);
-    o[0] = c1_z * t39 - c1_y * t42 + t50;
-    o[1] = B_22 + t50;
-    o[2] = Delta + t50;
-    o[3] = c1_z * t55 - c1_y * t56 + t50;
-    o[4] = B_22_below + t50;
-    o[5] = -Delta + t50;
+    const t57 = t38 + t40;
+    const t58 = t42 + t43;
+    const B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58);
+    o[0] = c1_z * t41 - c1_y * t44 + t52;
+    o[1] = B_22 + t52;
+    o[2] = Delta + t52;
+    o[3] = c1_z * t57 - c1_y * t58 + t52;
+    o[4] = B_22_below + t52;
+    o[5] = -Delta + t52;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1215,7 +1252,12 @@ const _SINGULARITIES = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [[0, 2], [1, 2], [2, 3], [3, 2], [4, 2], [5, 3]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**
@@ -1310,120 +1352,122 @@ function _condition_number(v, o) {
     const t19 = over * (a_x * m_y + t11 * m_x);
     const nu = t17 * t17 + t18 * t18 + t19 * t19;
     const in_line = nu <= t9;
+    const t20 = all_same ? 1.0 : r;
     const side = -(t11 * a_x) < 0 ? -1 : 1;
-    const t20 = t11 - a_x * side;
-    const nu_w = in_line ? over * (2.0 * (t15 * t15) + t20 * t20) : nu;
+    const t21 = t20 * (t11 - a_x * side);
+    const t22 = t15 * t20;
+    const nu_w = in_line ? over * (t21 * t21 + 2.0 * (t22 * t22)) : nu;
     const length_n = Math.sqrt(nu_w);
     const length_a = Math.sqrt(mu);
     const part = 1.0 / (length_a * length_n);
     const over_a = length_n * part;
     const D = all_same ? 0.0 : length_a;
-    const t21 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t21;
-    const t22 = D + r_1;
-    const r_2 = Math.abs(s_beta2_half) * t21;
-    const t23 = same ? r : r_2;
-    const t24 = t22 - t23;
-    const outer = Math.max(t24, 0.0);
-    const t25 = D - r_1;
-    const t26 = t23 + t25;
-    const inner = Math.max(t26, 0.0);
+    const t23 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t23;
+    const t24 = D + r_1;
+    const r_2 = Math.abs(s_beta2_half) * t23;
+    const t25 = same ? r : r_2;
+    const t26 = t24 - t25;
+    const outer = Math.max(t26, 0.0);
+    const t27 = D - r_1;
+    const t28 = t25 + t27;
+    const inner = Math.max(t28, 0.0);
     const share = 1.0 / (outer + inner);
-    const t27 = t23 - t25;
-    const slack = Math.max(t27, 0.0);
-    const t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
-    const along = all_same ? 0.0 : t28;
+    const t29 = t25 - t27;
+    const slack = Math.max(t29, 0.0);
+    const t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5;
+    const along = all_same ? 0.0 : t30;
     const X = over_a * along;
-    const t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const t30 = Math.sqrt(outer * inner * slack * (t23 + t22));
-    const rho = all_same ? r_1 : share * t30;
-    const left = nu - (same ? r_2 * r_2 : t8) + t29 * t29 + rho * rho;
-    const t31 = 2.0 * (in_line ? 0.0 : length_n) * rho;
-    const t32 = left + t31;
-    const upper = Math.max(t32, 0.0);
-    const t33 = t31 - left;
-    const lower = Math.max(t33, 0.0);
+    const t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
+    const t32 = Math.sqrt(outer * inner * slack * (t25 + t24));
+    const rho = all_same ? r_1 : share * t32;
+    const left = nu - (same ? r_2 * r_2 : t8) + t31 * t31 + rho * rho;
+    const t33 = 2.0 * (in_line ? 0.0 : length_n) * rho;
+    const t34 = left + t33;
+    const upper = Math.max(t34, 0.0);
+    const t35 = t33 - left;
+    const lower = Math.max(t35, 0.0);
     const both = upper + lower;
-    const t34 = same ? r_2 : r;
-    const t35 = both <= _runtime.VANISHING * (r * t34) || in_line;
+    const t36 = same ? r_2 : r;
+    const t37 = both <= _runtime.VANISHING * (r * t36) || in_line;
     const half = rho / both;
-    const Y = t35 ? 0.0 : length_a * part * half * (upper - lower);
-    const t36 = t10 * X + t17 * Y;
-    const w_x = in_line ? -(t15 * side) : t11 * t19 - t15 * t18;
-    const t37 = t35 ? rho : 2.0 * half * Math.sqrt(upper * lower);
-    const h = part * t37;
-    const t38 = w_x * h;
-    const t39 = t36 - t38;
-    const A_01 = c1_x - t39;
-    const t40 = t11 * X + t18 * Y;
-    const t41 = (in_line ? -t15 : a_x * t19 + t15 * t17) * h;
-    const t42 = t40 - t41;
-    const A_02 = c1_y - t42;
-    const t43 = t15 * X + t19 * Y;
-    const t44 = (in_line ? t20 : -(a_x * t18 + t11 * t17)) * h;
-    const t45 = t43 - t44;
-    const A_03 = c1_z - t45;
+    const Y = t37 ? 0.0 : length_a * part * half * (upper - lower);
+    const t38 = t10 * X + t17 * Y;
+    const w_x = in_line ? -(side * t22) : t11 * t19 - t15 * t18;
+    const t39 = t37 ? rho : 2.0 * half * Math.sqrt(upper * lower);
+    const h = part * t39;
+    const t40 = w_x * h;
+    const t41 = t38 - t40;
+    const A_01 = c1_x - t41;
+    const t42 = t11 * X + t18 * Y;
+    const t43 = (in_line ? -t22 : a_x * t19 + t15 * t17) * h;
+    const t44 = t42 - t43;
+    const A_02 = c1_y - t44;
+    const t45 = t15 * X + t19 * Y;
+    const t46 = (in_line ? t21 : -(a_x * t18 + t11 * t17)) * h;
+    const t47 = t45 - t46;
+    const A_03 = c1_z - t47;
     const strut = Math.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03);
     const radial_x = A_01 / strut;
     const radial_y = A_02 / strut;
     const radial_z = A_03 / strut;
-    const t46 = t39 * radial_x + t42 * radial_y + t45 * radial_z;
-    const t47 = t39 - radial_x * t46;
-    const t48 = t42 - radial_y * t46;
-    const t49 = t45 - radial_z * t46;
-    const square1 = t47 * t47 + t48 * t48 + t49 * t49;
-    const A_21 = t4 - t39;
-    const A_22 = t6 - t42;
-    const A_23 = t7 - t45;
+    const t48 = t41 * radial_x + t44 * radial_y + t47 * radial_z;
+    const t49 = t41 - radial_x * t48;
+    const t50 = t44 - radial_y * t48;
+    const t51 = t47 - radial_z * t48;
+    const square1 = t49 * t49 + t50 * t50 + t51 * t51;
+    const A_21 = t4 - t41;
+    const A_22 = t6 - t44;
+    const A_23 = t7 - t47;
     const off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23;
     const t2_x = A_21 - radial_x * off2;
     const t2_y = A_22 - radial_y * off2;
     const t2_z = A_23 - radial_z * off2;
     const square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z;
-    const t50 = square1 - square2;
-    const t51 = t47 * t2_x + t48 * t2_y + t49 * t2_z;
-    const t52 = square1 + square2 + Math.sqrt(t50 * t50 + 4.0 * (t51 * t51));
-    const t53 = 2.0 * (mu * nu * h);
-    const t54 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
+    const t52 = square1 - square2;
+    const t53 = t49 * t2_x + t50 * t2_y + t51 * t2_z;
+    const t54 = square1 + square2 + Math.sqrt(t52 * t52 + 4.0 * (t53 * t53));
+    const t55 = 2.0 * (mu * nu * h);
+    const t56 = Number.isFinite(r) && Number.isFinite(gamma) && Number.isFinite(alpha1) &&
         Number.isFinite(alpha2) && Number.isFinite(beta1) && Number.isFinite(beta2);
-    const t55 = t54 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
-    const t56 = t55 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
-    const t57 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t58 = -(_runtime.FEASIBILITY * (r * 0.25));
-    const t59 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t34) * 0.5);
-    const t60 = t58 <= t27 && t58 <= t24 && t58 <= t26 && -t59 <= t32;
-    const t61 = !(t56 && t57) || !(t60 && -t59 <= t33) ? NaN : 0;
-    const t62 = t36 + t38;
-    const A_01_below = c1_x - t62;
-    const t63 = t40 + t41;
-    const A_02_below = c1_y - t63;
-    const t64 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const t65 = t43 + t44;
-    const A_03_below = c1_z - t65;
-    const strut_below = Math.sqrt(t64 + A_03_below * A_03_below);
+    const t57 = t56 && 0.0 <= r && 0.0 <= gamma && 0.0 <= alpha1;
+    const t58 = t57 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
+    const t59 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t60 = -(_runtime.FEASIBILITY * (r * 0.25));
+    const t61 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5);
+    const t62 = t60 <= t29 && t60 <= t26 && t60 <= t28 && -t61 <= t34;
+    const t63 = !(t58 && t59) || !(t62 && -t61 <= t35) ? NaN : 0;
+    const t64 = t38 + t40;
+    const A_01_below = c1_x - t64;
+    const t65 = t42 + t43;
+    const A_02_below = c1_y - t65;
+    const t66 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const t67 = t45 + t46;
+    const A_03_below = c1_z - t67;
+    const strut_below = Math.sqrt(t66 + A_03_below * A_03_below);
     const radial_x_below = A_01_below / strut_below;
     const radial_y_below = A_02_below / strut_below;
     const radial_z_below = A_03_below / strut_below;
-    const t66 = t62 * radial_x_below + t63 * radial_y_below + t65 * radial_z_below;
-    const t67 = t62 - radial_x_below * t66;
-    const t68 = t63 - radial_y_below * t66;
-    const t69 = t65 - radial_z_below * t66;
-    const square1_below = t67 * t67 + t68 * t68 + t69 * t69;
-    const A_21_below = t4 - t62;
-    const A_22_below = t6 - t63;
-    const t70 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const A_23_below = t7 - t65;
-    const off2_below = t70 + radial_z_below * A_23_below;
+    const t68 = t64 * radial_x_below + t65 * radial_y_below + t67 * radial_z_below;
+    const t69 = t64 - radial_x_below * t68;
+    const t70 = t65 - radial_y_below * t68;
+    const t71 = t67 - radial_z_below * t68;
+    const square1_below = t69 * t69 + t70 * t70 + t71 * t71;
+    const A_21_below = t4 - t64;
+    const A_22_below = t6 - t65;
+    const t72 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const A_23_below = t7 - t67;
+    const off2_below = t72 + radial_z_below * A_23_below;
     const t2_x_below = A_21_below - radial_x_below * off2_below;
     const t2_y_below = A_22_below - radial_y_below * off2_below;
-    const t71 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const t73 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const t2_z_below = A_23_below - radial_z_below * off2_below;
-    const square2_below = t71 + t2_z_below * t2_z_below;
-    const t72 = square1_below - square2_below;
-    const t73 = t67 * t2_x_below + t68 * t2_y_below + t69 * t2_z_below;
-    const t74 = square1_below + square2_below + Math.sqrt(t72 * t72 + 4.0 * (t73 * t73));
-    o[0] = strut * t52 / t53 + t61;
-    o[1] = strut_below * t74 / t53 + t61;
+    const square2_below = t73 + t2_z_below * t2_z_below;
+    const t74 = square1_below - square2_below;
+    const t75 = t69 * t2_x_below + t70 * t2_y_below + t71 * t2_z_below;
+    const t76 = square1_below + square2_below + Math.sqrt(t74 * t74 + 4.0 * (t75 * t75));
+    o[0] = strut * t54 / t55 + t63;
+    o[1] = strut_below * t76 / t55 + t63;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -1438,7 +1482,12 @@ const _CONDITION_NUMBER = _runtime.kernel({
     ],
     used: ["r", "gamma", "alpha1", "alpha2", "beta1", "beta2"],
     defaults: DEFAULTS,
-    size: null,
+    size: {
+        lengths: [2],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
 });
 
 /**

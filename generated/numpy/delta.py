@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 43 compare and select, 64 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
-#   skeleton: 42 compare and select, 179 add, 14 divide, 84 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 84 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 42 compare and select, 85 add, 8 divide, 108 multiply, 6 sincos, 1 sqrt
-#   jacobian: 42 compare and select, 115 add, 26 divide, 163 multiply, 6 sincos, 1 sqrt
-#   determinant: 42 compare and select, 81 add, 10 divide, 113 multiply, 6 sincos, 1 sqrt
-#   singularities: 42 compare and select, 87 add, 8 divide, 109 multiply, 6 sincos, 1 sqrt
-#   condition_number: 42 compare and select, 119 add, 10 divide, 160 multiply, 6 sincos, 3 sqrt
-#   constraint: 42 compare and select, 91 add, 8 divide, 146 multiply, 6 sincos, 1 sqrt
+#   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+#   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+#   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+#   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+#   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+#   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+#   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
 #   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -209,14 +209,15 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t9
     del t9
     side = _runtime.sign(t13 * a_x)
-    t22 = t13 + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / (mu * nu))
+    t22 = size * (t13 + a_x * side)
+    up = size * d_z
+    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
     t25 = d_x * 0.5 - (t3 - t19 * t24)
     del d_x, t3
-    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
+    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
     del side
     t26 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
     del all_same, mu, nu
@@ -242,7 +243,8 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = _runtime.poison(invalid | unreachable)
     t35 = t13 * 0.5 - (t6 + t21 * t24)
     del t6
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
+    del up
     t36 = h * w_y
     del w_y
     t37 = d_z * 0.5 - (t1 + n_z * t24)
@@ -272,6 +274,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -409,10 +412,11 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
     del t34
     t47 = l * size * 2.0
-    del size
     side = _runtime.sign(t36 * a_x)
-    t48 = t36 + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t48 * t48), 1.0 / (mu * nu))
+    t48 = size * (t36 + a_x * side)
+    up = size * d_z
+    del size
+    part = _runtime.select(in_line, 1.0 / (t48 * t48 + 2.0 * (up * up)), 1.0 / (mu * nu))
     t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
     del t45
     t50 = _runtime.select(all_same, 0.0, nu * (t49 * t49) + mu * 0.25)
@@ -433,7 +437,7 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t58 = -t5 + t52
     t59 = t42 * t49 + d_x * 0.5
     del d_x
-    w_x = _runtime.select(in_line, d_z * side, t36 * n_z - d_z * t44)
+    w_x = _runtime.select(in_line, side * up, t36 * n_z - d_z * t44)
     del side
     slack = np.maximum(t51, 0.0)
     del t51
@@ -444,7 +448,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t61 = t10 - (t59 - t60)
     t62 = t7 - t61
     t63 = t44 * t49 - t36 * 0.5
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t42))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t42))
+    del up
     t64 = h * w_y
     del w_y
     t65 = t19 + (t63 + t64)
@@ -661,6 +666,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -759,10 +765,11 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     in_line = nu <= t12
     del t12
     side = _runtime.sign(t13 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
-    t22 = t13 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
+    t22 = size * (t13 + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
@@ -790,7 +797,8 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del t26, t27, t34
     t35 = _runtime.poison(np.logical_not(t32 & t33) | unreachable)
     del t32, t33, unreachable
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
+    del up
     t36 = h * w_y
     del w_y
     t37 = t21 * t24 - t13 * 0.5
@@ -837,6 +845,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -934,10 +943,11 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     in_line = nu <= t15
     del t15
     side = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
-    t25 = t16 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / (mu * nu))
     t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t27 = _runtime.select(in_line, 0.0, mu * part * t26 * 0.5)
@@ -957,7 +967,8 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t33 = t31 - t32
     t34 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
+    del up
     t35 = h * w_y
     del w_y
     t36 = t24 * t27 - t16 * 0.5
@@ -1017,6 +1028,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1114,11 +1126,12 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t15
     del t15
     side = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
-    t25 = t16 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * side)
     del side
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1138,7 +1151,8 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
+    del up
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1249,6 +1263,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1347,11 +1362,12 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t15
     del t15
     side = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
-    t25 = t16 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * side)
     del side
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1371,7 +1387,8 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
+    del up
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1434,6 +1451,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1531,11 +1549,12 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t15
     del t15
     side = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t16 * n_z - d_z * t24)
-    t25 = t16 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * side)
     del side
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t25 * t25), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1555,7 +1574,8 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t22))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
+    del up
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1619,6 +1639,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1716,11 +1737,12 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     in_line = nu <= t12
     del t12
     side = _runtime.sign(t13 * a_x)
-    w_x = _runtime.select(in_line, d_z * side, t13 * n_z - d_z * t21)
-    t22 = t13 + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
+    t22 = size * (t13 + a_x * side)
     del side
     t23 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t22 * t22), 1.0 / t23)
+    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / t23)
     t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
@@ -1738,7 +1760,8 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t30 = t19 * t25 + d_x * 0.5
     del d_x
     t31 = t29 - t30
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t19))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
+    del up
     t32 = h * w_y
     del w_y
     t33 = t21 * t25 - t13 * 0.5
@@ -1841,6 +1864,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1938,8 +1962,9 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t13
     del t13
     side = _runtime.sign(t14 * a_x)
-    t23 = t14 + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + t23 * t23), 1.0 / (mu * nu))
+    t23 = size * (t14 + a_x * side)
+    up = size * d_z
+    part = _runtime.select(in_line, 1.0 / (t23 * t23 + 2.0 * (up * up)), 1.0 / (mu * nu))
     t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
     del t15, t16, t18
     t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
@@ -1961,7 +1986,7 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = s_alpha3 * t31
     t33 = t1 * t32
     t34 = u_z + t31
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t20))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t20))
     del a_x
     t35 = h * w_y
     del w_y
@@ -1969,8 +1994,8 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t37 = t35 + t36
     t38 = t34 * (t11 + t37)
     t39 = c_alpha3 * t1
-    w_x = _runtime.select(in_line, d_z * side, t14 * n_z - d_z * t22)
-    del d_z, n_z, side, t14, t22
+    w_x = _runtime.select(in_line, side * up, t14 * n_z - d_z * t22)
+    del d_z, n_z, side, t14, t22, up
     t40 = w_x * h
     del h, w_x
     t41 = t20 * t25 + d_x * 0.5
@@ -2061,6 +2086,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -2,15 +2,18 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 42 compare and select, 50 add, 12 divide, 59 multiply, 1 sqrt
-#   skeleton: 41 compare and select, 124 add, 14 divide, 59 multiply, 1 sqrt
-#   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 59 multiply, 1 sqrt
-#   jacobian_serial: 39 compare and select, 44 add, 10 divide, 50 multiply, 1 sqrt
-#   jacobian: 41 compare and select, 88 add, 30 divide, 110 multiply, 1 sqrt
-#   determinant: 39 compare and select, 40 add, 12 divide, 55 multiply, 1 sqrt
-#   singularities: 39 compare and select, 46 add, 10 divide, 51 multiply, 1 sqrt
-#   condition_number: 41 compare and select, 104 add, 14 divide, 129 multiply, 3 sqrt
-#   constraint: 41 compare and select, 62 add, 18 divide, 83 multiply, 1 sqrt
+#   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+#   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
+#   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
+#   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
+#   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+#   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
+#     1 sqrt
+#   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
+#   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
+#   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
+#   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
+#   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
 #   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -171,58 +174,132 @@ def _fk(rho1, rho2, rho3, f, e, l):
     in_line = nu <= t6
     del t6
     side = _runtime.sign(d_y * a_x)
-    t13 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
-    last = d_y + a_x * side
+    t13 = size * t8
+    t14 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
+    last = size * (d_y + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
-    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
+    t17 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu
-    t17 = l * l - t16
-    del t16
-    slack = np.maximum(t17, 0.0)
-    t18 = l * size * 2.0
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t18, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
     del part, slack
-    t19 = t13 * h
-    del t13
-    t20 = t2 * 0.5 - (c1_x + t10 * t15)
+    t20 = t14 * h
+    del t14
+    t21 = t2 * 0.5 - (c1_x + t10 * t16)
     del c1_x, t2
-    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
-    del t21, t22
-    invalid = np.logical_not(t23)
-    del t23
-    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t14, t5
-    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t18) <= t17))
-    del t17, t18, t24
-    t25 = _runtime.poison(invalid | unreachable)
-    t26 = n_y * t15 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
-    t27 = h * w_y
+    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
+    del t22, t23
+    invalid = np.logical_not(t24)
+    del t24
+    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t15, t5
+    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t25
+    t26 = _runtime.poison(invalid | unreachable)
+    t27 = n_y * t16 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
+    del t13
+    t28 = h * w_y
     del w_y
-    t28 = t8 * 0.5 - (rho1 + t12 * t15)
-    del t12, t15, t8
+    t29 = t8 * 0.5 - (rho1 + t12 * t16)
+    del t12, t16, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
     del a_x, d_y, last, n_y, t10
-    t29 = h * w_z
+    t30 = h * w_z
     del h, w_z
-    t30 = _runtime.status(invalid, unreachable, in_line)
+    t31 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t19 - t20 + t25,
-        -(t26 + t27) + t25,
-        -(t28 + t29) + t25,
-        -(t20 + t19) + t25,
-        t27 - t26 + t25,
-        t29 - t28 + t25,
-        t30,
-        t30,
+        t20 - t21 + t26,
+        -(t27 + t28) + t26,
+        -(t29 + t30) + t26,
+        -(t21 + t20) + t26,
+        t28 - t27 + t26,
+        t30 - t29 + t26,
+        t31,
+        t31,
+    )
+
+
+def _fk_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    c1_x = f - e
+    t1 = c1_x - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t2 = c3_y * t1
+    t3 = t2 + t2
+    del t2
+    t4 = rho1 - rho2
+    t5 = rho1 - rho3
+    t6 = t1 * t5 - t1 * t4
+    t7 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t7
+    over = 1.0 / u_u
+    t8 = (c3_y * t3 - t4 * t6) * over
+    t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
+    t10 = c3_y * t5 + c3_y * t4
+    n_y = (t1 * t3 + t4 * t10) * over
+    del t3
+    t11 = (t1 * t6 + c3_y * t10) * over
+    del over, t10, t6
+    nu = t8 * t8 + n_y * n_y + t11 * t11
+    part = 1.0 / (u_u * nu)
+    t12 = t9 * part * 0.5
+    del t9
+    t13 = c1_x - t1 * 0.5 - t8 * t12
+    del c1_x
+    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t15 = (c3_y * t11 + t4 * n_y) * h
+    t16 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t18 = t16 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t17
+    del t16, t17
+    invalid = np.logical_not(t18)
+    del t18
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t19 = size * size
+    t20 = l * size * 2.0
+    del size
+    t21 = (np.abs(0.0) <= t19 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t20) <= t14)
+    del t14
+    unreachable = np.logical_not(t21)
+    del t21
+    t22 = _runtime.poison(invalid | unreachable)
+    t23 = h * (t1 * t11 - t4 * t8)
+    t24 = c3_y * 0.5 - n_y * t12
+    t25 = h * (t1 * n_y + c3_y * t8)
+    del c3_y, h, n_y, t1, t8
+    t26 = t4 * 0.5 - (rho1 - t11 * t12)
+    del t11, t12, t4
+    t27 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t28 = _runtime.VANISHING * _runtime.VANISHING * t19
+    del t19
+    t29 = (u_u <= t28) | (u_u + (t5 * t5 + t7) <= t28) | (nu <= t28)
+    del nu, t28, t5, t7, u_u
+    return (
+        t13 - t15 + t22,
+        t23 - t24 + t22,
+        t25 - t26 + t22,
+        t13 + t15 + t22,
+        -(t24 + t23) + t22,
+        -(t26 + t25) + t22,
+        t27,
+        t27,
+        t29 | (slack <= _runtime.VANISHING * t20),
     )
 
 
@@ -233,6 +310,8 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_fk_common,
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -329,228 +408,230 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
     del t13
     t23 = l * size * 2.0
-    del size
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t16 * t16) + last * last), 1.0 / (mu * nu))
-    t24 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
+    last = size * (d_y + a_x * side)
+    t24 = size * t16
+    del size
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t24 * t24)), 1.0 / (mu * nu))
+    t25 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
     del t21
-    t25 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
     del all_same, mu, nu
-    t26 = l * l - t25
-    del t25
-    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t23) <= t26))
-    del t22
-    t27 = _runtime.poison(np.logical_not(t3) | unreachable)
-    del t3, unreachable
-    t28 = f + t27
-    t29 = 0.0 + t27
-    t30 = rho1 + t27
-    t31 = e + c1_x
-    t32 = t7 * 0.5 - t18 * t24
-    del t7
-    t33 = _runtime.select(in_line, t16 * side, d_y * t20 - t16 * n_y)
-    del side
-    slack = np.maximum(t26, 0.0)
+    t27 = l * l - t26
     del t26
+    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t23) <= t27))
+    del t22
+    t28 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
+    t29 = f + t28
+    t30 = 0.0 + t28
+    t31 = rho1 + t28
+    t32 = e + c1_x
+    t33 = t7 * 0.5 - t18 * t25
+    del t7
+    t34 = _runtime.select(in_line, side * t24, d_y * t20 - t16 * n_y)
+    del side
+    slack = np.maximum(t27, 0.0)
+    del t27
     h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
     del part, slack, t23
-    t34 = t33 * h
-    del t33
-    t35 = t32 - t34
-    t36 = t31 - t35 + t27
-    t37 = n_y * t24 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t16, a_x * t20 + t16 * t18)
-    t38 = h * w_y
+    t35 = t34 * h
+    del t34
+    t36 = t33 - t35
+    t37 = t32 - t36 + t28
+    t38 = n_y * t25 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t24, a_x * t20 + t16 * t18)
+    del t24
+    t39 = h * w_y
     del w_y
-    t39 = t37 + t38
-    t40 = -t39 + t27
-    t41 = t20 * t24 - t16 * 0.5
-    del t16, t20, t24
+    t40 = t38 + t39
+    t41 = -t40 + t28
+    t42 = t20 * t25 - t16 * 0.5
+    del t16, t20, t25
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t18)
     del a_x, d_y, in_line, last, n_y, t18
-    t42 = h * w_z
+    t43 = h * w_z
     del h, w_z
-    t43 = rho1 + (t41 - t42) + t27
-    t44 = t5 + t27
-    t45 = -t5 + t27
-    t46 = -t6 + t27
-    t47 = t10 + t27
-    t48 = rho2 + t27
-    t49 = c1_x - t5
-    t50 = t49 - t35
-    t51 = t50 + t27
-    t52 = t8 * 0.25
+    t44 = rho1 + (t42 - t43) + t28
+    t45 = t5 + t28
+    t46 = -t5 + t28
+    t47 = -t6 + t28
+    t48 = t10 + t28
+    t49 = rho2 + t28
+    t50 = c1_x - t5
+    t51 = t50 - t36
+    t52 = t51 + t28
+    t53 = t8 * 0.25
     del t8
-    t53 = -(t6 + t52) + t27
-    t54 = e * 0.25
-    t55 = t10 - t54
-    t56 = t55 + t27
-    t57 = t52 - t6 + t27
+    t54 = -(t6 + t53) + t28
+    t55 = e * 0.25
+    t56 = t10 - t55
+    t57 = t56 + t28
+    t58 = t53 - t6 + t28
     del t6
-    t58 = t10 + t54
-    t59 = t58 + t27
-    t60 = t50 - t52 + t27
-    t61 = t9 - t54
-    t62 = t52 + t50 + t27
-    del t50
-    t63 = t9 + t54
-    del t54
-    t64 = -t10 + t27
-    del t10
-    t65 = rho3 + t27
-    t66 = -t58 + t27
-    del t58
-    t67 = -t55 + t27
+    t59 = t10 + t55
+    t60 = t59 + t28
+    t61 = t51 - t53 + t28
+    t62 = t9 - t55
+    t63 = t53 + t51 + t28
+    del t51
+    t64 = t9 + t55
     del t55
-    t68 = t32 + t34
-    del t32, t34
-    t69 = t31 - t68 + t27
-    del t31
-    t70 = t37 - t38
-    del t37, t38
-    t71 = -t70 + t27
-    t72 = rho1 + (t41 + t42) + t27
-    del t41, t42
-    t73 = t49 - t68
-    del t49
-    t74 = t73 + t27
-    t75 = t73 - t52 + t27
-    t76 = t52 + t73 + t27
-    del t52, t73
+    t65 = -t10 + t28
+    del t10
+    t66 = rho3 + t28
+    t67 = -t59 + t28
+    del t59
+    t68 = -t56 + t28
+    del t56
+    t69 = t33 + t35
+    del t33, t35
+    t70 = t32 - t69 + t28
+    del t32
+    t71 = t38 - t39
+    del t38, t39
+    t72 = -t71 + t28
+    t73 = rho1 + (t42 + t43) + t28
+    del t42, t43
+    t74 = t50 - t69
+    del t50
+    t75 = t74 + t28
+    t76 = t74 - t53 + t28
+    t77 = t53 + t74 + t28
+    del t53, t74
     return (
-        t28,
-        t29,
-        t29,
-        t28,
         t29,
         t30,
-        t36,
-        t40,
-        t43,
-        t28,
+        t30,
+        t29,
+        t30,
+        t31,
+        t37,
+        t41,
         t44,
-        t30,
-        t28,
+        t29,
         t45,
-        t30,
-        t36,
-        t5 - t39 + t27,
-        t43,
-        t36,
-        -(t5 + t39) + t27,
-        t43,
-        t46,
-        t47,
+        t31,
         t29,
         t46,
-        t47,
-        t48,
-        t51,
-        t9 - t39 + t27,
-        t43,
-        t53,
-        t56,
-        t48,
-        t57,
-        t59,
-        t48,
-        t60,
-        t61 - t39 + t27,
-        t43,
-        t62,
-        t63 - t39 + t27,
-        t43,
-        t46,
-        t64,
-        t29,
-        t46,
-        t64,
-        t65,
-        t51,
-        -(t9 + t39) + t27,
-        t43,
-        t57,
-        t66,
-        t65,
-        t53,
-        t67,
-        t65,
-        t62,
-        -(t63 + t39) + t27,
-        t43,
-        t60,
-        -(t61 + t39) + t27,
-        t43,
-        c1_x - t35 + t27,
-        t40,
-        t43,
-        t28,
-        t29,
-        t29,
-        t28,
-        t29,
-        t30,
-        t69,
-        t71,
-        t72,
-        t28,
+        t31,
+        t37,
+        t5 - t40 + t28,
         t44,
-        t30,
-        t28,
-        t45,
-        t30,
-        t69,
-        t5 - t70 + t27,
-        t72,
-        t69,
-        -(t5 + t70) + t27,
-        t72,
-        t46,
-        t47,
-        t29,
-        t46,
+        t37,
+        -(t5 + t40) + t28,
+        t44,
         t47,
         t48,
-        t74,
-        t9 - t70 + t27,
-        t72,
-        t53,
-        t56,
+        t30,
+        t47,
         t48,
+        t49,
+        t52,
+        t9 - t40 + t28,
+        t44,
+        t54,
         t57,
-        t59,
-        t48,
-        t75,
-        t61 - t70 + t27,
-        t72,
-        t76,
-        t63 - t70 + t27,
-        t72,
-        t46,
-        t64,
-        t29,
-        t46,
-        t64,
+        t49,
+        t58,
+        t60,
+        t49,
+        t61,
+        t62 - t40 + t28,
+        t44,
+        t63,
+        t64 - t40 + t28,
+        t44,
+        t47,
         t65,
-        t74,
-        -(t9 + t70) + t27,
-        t72,
-        t57,
+        t30,
+        t47,
+        t65,
         t66,
-        t65,
-        t53,
+        t52,
+        -(t9 + t40) + t28,
+        t44,
+        t58,
         t67,
-        t65,
-        t76,
-        -(t63 + t70) + t27,
+        t66,
+        t54,
+        t68,
+        t66,
+        t63,
+        -(t64 + t40) + t28,
+        t44,
+        t61,
+        -(t62 + t40) + t28,
+        t44,
+        c1_x - t36 + t28,
+        t41,
+        t44,
+        t29,
+        t30,
+        t30,
+        t29,
+        t30,
+        t31,
+        t70,
         t72,
+        t73,
+        t29,
+        t45,
+        t31,
+        t29,
+        t46,
+        t31,
+        t70,
+        t5 - t71 + t28,
+        t73,
+        t70,
+        -(t5 + t71) + t28,
+        t73,
+        t47,
+        t48,
+        t30,
+        t47,
+        t48,
+        t49,
         t75,
-        -(t61 + t70) + t27,
+        t9 - t71 + t28,
+        t73,
+        t54,
+        t57,
+        t49,
+        t58,
+        t60,
+        t49,
+        t76,
+        t62 - t71 + t28,
+        t73,
+        t77,
+        t64 - t71 + t28,
+        t73,
+        t47,
+        t65,
+        t30,
+        t47,
+        t65,
+        t66,
+        t75,
+        -(t9 + t71) + t28,
+        t73,
+        t58,
+        t67,
+        t66,
+        t54,
+        t68,
+        t66,
+        t77,
+        -(t64 + t71) + t28,
+        t73,
+        t76,
+        -(t62 + t71) + t28,
+        t73,
+        c1_x - t69 + t28,
         t72,
-        c1_x - t68 + t27,
-        t71,
-        t72,
+        t73,
     )
 
 
@@ -561,6 +642,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -633,76 +715,78 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     in_line = nu <= t6
     del t6
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
-    t13 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    last = size * (d_y + a_x * side)
+    t13 = size * t8
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
-    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
-    t15 = t1 * 0.5 - t10 * t14
-    t16 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t1 * 0.5 - t10 * t15
+    t17 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
     del side
-    t17 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
+    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
     del all_same, mu, nu
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 2.0
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = t16 * h
-    del t16
-    t21 = t15 - t20
-    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
-    del t22, t23
-    t25 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t13, t5
-    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t25
-    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
-    del t24, unreachable
-    t27 = n_y * t14 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
-    t28 = h * w_y
+    t21 = t17 * h
+    del t17
+    t22 = t16 - t21
+    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t25 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t24
+    del t23, t24
+    t26 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t14, t5
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t26
+    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
+    del t25, unreachable
+    t28 = n_y * t15 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
+    del t13
+    t29 = h * w_y
     del w_y
-    t29 = t27 + t28
-    t30 = t12 * t14 - t8 * 0.5
-    del t12, t14, t8
+    t30 = t28 + t29
+    t31 = t12 * t15 - t8 * 0.5
+    del t12, t15, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
     del a_x, d_y, in_line, last, n_y, t10
-    t31 = h * w_z
+    t32 = h * w_z
     del h, w_z
-    A_13 = t30 - t31
-    t32 = t1 - t21 + t26
-    t33 = t15 + t20
-    del t15, t20
-    t34 = t27 - t28
-    del t27, t28
-    A_13_above = t30 + t31
-    del t30, t31
-    t35 = t1 - t33 + t26
+    A_13 = t31 - t32
+    t33 = t1 - t22 + t27
+    t34 = t16 + t21
+    del t16, t21
+    t35 = t28 - t29
+    del t28, t29
+    A_13_above = t31 + t32
+    del t31, t32
+    t36 = t1 - t34 + t27
     del t1
     return (
-        -t21 + t26,
-        -t29 + t26,
-        A_13 + t26,
-        t32,
-        c3_y - t29 + t26,
-        t2 + A_13 + t26,
-        t32,
-        -(c3_y + t29) + t26,
-        t4 + A_13 + t26,
-        -t33 + t26,
-        -t34 + t26,
-        A_13_above + t26,
-        t35,
-        c3_y - t34 + t26,
-        t2 + A_13_above + t26,
-        t35,
-        -(c3_y + t34) + t26,
-        t4 + A_13_above + t26,
+        -t22 + t27,
+        -t30 + t27,
+        A_13 + t27,
+        t33,
+        c3_y - t30 + t27,
+        t2 + A_13 + t27,
+        t33,
+        -(c3_y + t30) + t27,
+        t4 + A_13 + t27,
+        -t34 + t27,
+        -t35 + t27,
+        A_13_above + t27,
+        t36,
+        c3_y - t35 + t27,
+        t2 + A_13_above + t27,
+        t36,
+        -(c3_y + t35) + t27,
+        t4 + A_13_above + t27,
     )
 
 
@@ -713,6 +797,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -784,46 +869,109 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = d_y + a_x * _runtime.sign(a_x * d_y)
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
-    t13 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = size * t8
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    del t13
+    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
-    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
-    t15 = t11 * t14 - t8 * 0.5
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t11 * t15 - t8 * 0.5
     del t11, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
     del a_x, d_y, last, n_y, t12
-    t16 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
-    del all_same, mu, nu, t14
-    t17 = l * l - t16
-    del t16
-    slack = np.maximum(t17, 0.0)
-    t18 = l * size * 2.0
+    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    del all_same, mu, nu, t15
+    t18 = l * l - t17
+    del t17
+    slack = np.maximum(t18, 0.0)
+    t19 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t18, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
     del part, slack
-    t19 = w_z * h
+    t20 = w_z * h
     del h, w_z
-    A_13 = t15 - t19
-    t20 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t22 = t20 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t21
-    del t20, t21
-    t23 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t13, t5
-    unreachable = np.logical_not(t23 & (-(_runtime.FEASIBILITY * t18) <= t17))
-    del t17, t18, t23
-    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
-    del t22, unreachable
-    A_13_above = t15 + t19
-    del t15, t19
+    A_13 = t16 - t20
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
+    del t21, t22
+    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t14, t5
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
+    del t18, t19, t24
+    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
+    del t23, unreachable
+    A_13_above = t16 + t20
+    del t16, t20
     return (
-        A_13 + t24,
-        t1 + A_13 + t24,
-        t4 + A_13 + t24,
-        A_13_above + t24,
-        t1 + A_13_above + t24,
-        t4 + A_13_above + t24,
+        A_13 + t25,
+        t1 + A_13 + t25,
+        t4 + A_13 + t25,
+        A_13_above + t25,
+        t1 + A_13_above + t25,
+        t4 + A_13_above + t25,
+    )
+
+
+def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    t3 = rho1 - rho3
+    t4 = t2 * t3 - t2 * t1
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = c3_y * t3 + c3_y * t1
+    t6 = t2 * t2 + c3_y * c3_y
+    u_u = t1 * t1 + t6
+    over = 1.0 / u_u
+    t7 = (t2 * t4 + c3_y * t5) * over
+    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
+    t9 = c3_y * t2
+    t10 = t9 + t9
+    del t9
+    t11 = (c3_y * t10 - t1 * t4) * over
+    del t4
+    n_y = (t2 * t10 + t1 * t5) * over
+    del over, t10, t5
+    nu = t11 * t11 + n_y * n_y + t7 * t7
+    part = 1.0 / (u_u * nu)
+    t12 = t8 * part * 0.5
+    del t8
+    t13 = t1 * 0.5 + t7 * t12
+    del t7
+    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
+    del t12
+    slack = np.maximum(t14, 0.0)
+    t15 = (t2 * n_y + c3_y * t11) * np.sqrt(part * slack)
+    del c3_y, n_y, part, t11, t2
+    t16 = t13 - t15
+    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t19 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t18
+    del t17, t18
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t20 = size * size
+    t21 = l * size * 2.0
+    del size
+    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
+    del t14
+    t23 = _runtime.poison(np.logical_not(t19) | np.logical_not(t22))
+    del t19, t22
+    t24 = t13 + t15
+    del t13, t15
+    t25 = _runtime.VANISHING * _runtime.VANISHING * t20
+    del t20
+    t26 = (u_u <= t25) | (u_u + (t3 * t3 + t6) <= t25) | (nu <= t25)
+    del nu, t25, t6, u_u
+    return (
+        -t16 + t23,
+        t1 - t16 + t23,
+        t3 - t16 + t23,
+        -t24 + t23,
+        t1 - t24 + t23,
+        t3 - t24 + t23,
+        t26 | (slack <= _runtime.VANISHING * t21),
     )
 
 
@@ -834,6 +982,8 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_jacobian_serial_common,
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -905,115 +1055,116 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     in_line = nu <= t6
     del t6
     side = _runtime.sign(a_x * d_y)
-    last = d_y + a_x * side
-    t13 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
-    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    last = size * (d_y + a_x * side)
+    t13 = size * t8
+    t14 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t11 * t15 - t8 * 0.5
+    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
+    t17 = t11 * t16 - t8 * 0.5
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
     del last
-    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 2.0
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = w_z * h
+    t21 = w_z * h
     del w_z
-    A_13 = t16 - t20
-    t21 = n_y * t15 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t8, a_x * t11 + t8 * t12)
+    A_13 = t17 - t21
+    t22 = n_y * t16 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t13, a_x * t11 + t8 * t12)
     del a_x
-    t22 = h * w_y
+    t23 = h * w_y
     del w_y
-    t23 = t21 + t22
-    A_22 = c3_y - t23
+    t24 = t22 + t23
+    A_22 = c3_y - t24
     A_33 = t4 + A_13
     A_23 = t1 + A_13
-    t24 = c3_y + t23
-    Delta = t13 * h
-    del t13
-    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
-    del t25, t26
-    t28 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t14, t5
-    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t28
-    t29 = _runtime.poison(np.logical_not(t27) | unreachable)
-    del t27, unreachable
-    t30 = -(A_13 * (A_22 * A_33 + A_23 * t24) / Delta) + t29
-    t31 = -(A_23 * (t23 * A_33 - A_13 * t24) / Delta) + t29
-    t32 = A_33 * (t23 * A_23 + A_13 * A_22) / Delta + t29
-    t33 = t2 * 0.5 - t12 * t15
-    del t12, t15
-    t34 = _runtime.select(in_line, t8 * side, d_y * t11 - t8 * n_y)
-    del d_y, in_line, n_y, side, t11, t8
-    t35 = h * t34
-    del h, t34
-    t36 = t33 - t35
-    A_21 = t2 - t36
-    t37 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t29
-    t38 = A_13 * A_21
-    t39 = A_13 * (t24 * A_21 + A_22 * A_21) / Delta + t29
+    t25 = c3_y + t24
+    Delta = t14 * h
+    del t14
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t15, t5
+    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t29
+    t30 = _runtime.poison(np.logical_not(t28) | unreachable)
+    del t28, unreachable
+    t31 = -(A_13 * (A_22 * A_33 + A_23 * t25) / Delta) + t30
+    t32 = -(A_23 * (t24 * A_33 - A_13 * t25) / Delta) + t30
+    t33 = A_33 * (t24 * A_23 + A_13 * A_22) / Delta + t30
+    t34 = t2 * 0.5 - t12 * t16
+    del t12, t16
+    t35 = _runtime.select(in_line, side * t13, d_y * t11 - t8 * n_y)
+    del d_y, in_line, n_y, side, t11, t13, t8
+    t36 = h * t35
+    del h, t35
+    t37 = t34 - t36
+    A_21 = t2 - t37
+    t38 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t30
+    t39 = A_13 * A_21
+    t40 = A_13 * (t25 * A_21 + A_22 * A_21) / Delta + t30
     del A_13
-    t40 = t23 * A_21
-    del A_21, t23
-    A_13_above = t16 + t20
-    del t16, t20
-    t41 = t21 - t22
-    del t21, t22
-    A_22_above = c3_y - t41
+    t41 = t24 * A_21
+    del A_21, t24
+    A_13_above = t17 + t21
+    del t17, t21
+    t42 = t22 - t23
+    del t22, t23
+    A_22_above = c3_y - t42
     A_33_above = t4 + A_13_above
     del t4
     A_23_above = t1 + A_13_above
     del t1
-    t42 = c3_y + t41
+    t43 = c3_y + t42
     del c3_y
-    t43 = A_13_above * (A_22_above * A_33_above + A_23_above * t42)
-    t44 = A_23_above * (t41 * A_33_above - A_13_above * t42)
-    t45 = A_33_above * (t41 * A_23_above + A_13_above * A_22_above)
-    t46 = t33 + t35
-    del t33, t35
-    A_21_above = t2 - t46
+    t44 = A_13_above * (A_22_above * A_33_above + A_23_above * t43)
+    t45 = A_23_above * (t42 * A_33_above - A_13_above * t43)
+    t46 = A_33_above * (t42 * A_23_above + A_13_above * A_22_above)
+    t47 = t34 + t36
+    del t34, t36
+    A_21_above = t2 - t47
     del t2
-    t47 = A_33_above * A_21_above - A_23_above * A_21_above
-    t48 = A_13_above * A_21_above
-    t49 = A_23_above * (A_33_above * t46 + t48) / Delta
-    t50 = A_33_above * (t48 + A_23_above * t46) / Delta
-    del t48
-    t51 = A_13_above * (t42 * A_21_above + A_22_above * A_21_above)
-    t52 = t41 * A_21_above
-    del A_21_above, t41
-    t53 = -(A_23_above * (t42 * t46 + t52) / Delta) + t29
-    del A_23_above, t42
-    t54 = A_33_above * (t52 - A_22_above * t46) / Delta
-    del A_22_above, A_33_above, t46, t52
+    t48 = A_33_above * A_21_above - A_23_above * A_21_above
+    t49 = A_13_above * A_21_above
+    t50 = A_23_above * (A_33_above * t47 + t49) / Delta
+    t51 = A_33_above * (t49 + A_23_above * t47) / Delta
+    del t49
+    t52 = A_13_above * (t43 * A_21_above + A_22_above * A_21_above)
+    t53 = t42 * A_21_above
+    del A_21_above, t42
+    t54 = -(A_23_above * (t43 * t47 + t53) / Delta) + t30
+    del A_23_above, t43
+    t55 = A_33_above * (t53 - A_22_above * t47) / Delta
+    del A_22_above, A_33_above, t47, t53
     return (
-        t30,
         t31,
         t32,
-        t37,
-        A_23 * (A_33 * t36 + t38) / Delta + t29,
-        -(A_33 * (t38 + A_23 * t36) / Delta) + t29,
-        t39,
-        A_23 * (t24 * t36 + t40) / Delta + t29,
-        -(A_33 * (t40 - A_22 * t36) / Delta) + t29,
-        t43 / Delta + t29,
-        t44 / Delta + t29,
-        -(t45 / Delta) + t29,
-        -(A_13_above * t47 / Delta) + t29,
-        -t49 + t29,
-        t50 + t29,
-        -(t51 / Delta) + t29,
-        t53,
-        t54 + t29,
+        t33,
+        t38,
+        A_23 * (A_33 * t37 + t39) / Delta + t30,
+        -(A_33 * (t39 + A_23 * t37) / Delta) + t30,
+        t40,
+        A_23 * (t25 * t37 + t41) / Delta + t30,
+        -(A_33 * (t41 - A_22 * t37) / Delta) + t30,
+        t44 / Delta + t30,
+        t45 / Delta + t30,
+        -(t46 / Delta) + t30,
+        -(A_13_above * t48 / Delta) + t30,
+        -t50 + t30,
+        t51 + t30,
+        -(t52 / Delta) + t30,
+        t54,
+        t55 + t30,
     )
 
 
@@ -1024,6 +1175,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1096,49 +1248,51 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = d_y + a_x * _runtime.sign(a_x * d_y)
-    t13 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
-    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = size * t8
+    t14 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    del t13
+    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t11 * t15 - t8 * 0.5
+    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
+    t17 = t11 * t16 - t8 * 0.5
     del t11, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
     del a_x, d_y, last, n_y, t12
-    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
-    del all_same, mu, nu, t15
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 2.0
+    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
+    del all_same, mu, nu, t16
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = w_z * h
+    t21 = w_z * h
     del w_z
-    A_13 = t16 - t20
-    Delta = t13 * h
-    del h, t13
-    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
-    del t21, t22
-    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t14, t5
-    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t24
-    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
-    del t23, unreachable
-    t26 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t25
+    A_13 = t17 - t21
+    Delta = t14 * h
+    del h, t14
+    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
+    del t22, t23
+    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t15, t5
+    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t25
+    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
+    del t24, unreachable
+    t27 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t26
     del A_13
-    A_13_above = t16 + t20
-    del t16, t20
-    t27 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
+    A_13_above = t17 + t21
+    del t17, t21
+    t28 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
     del A_13_above, t1, t4
     return (
-        t26,
-        t27 / Delta + t25,
+        t27,
+        t28 / Delta + t26,
     )
 
 
@@ -1149,6 +1303,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1220,51 +1375,53 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = d_y + a_x * _runtime.sign(a_x * d_y)
-    t13 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
-    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
+    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = size * t8
+    t14 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    del t13
+    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t11 * t15 - t8 * 0.5
+    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
+    t17 = t11 * t16 - t8 * 0.5
     del t11, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
     del a_x, d_y, last, n_y, t12
-    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
-    del all_same, mu, nu, t15
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 2.0
+    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
+    del all_same, mu, nu, t16
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = w_z * h
+    t21 = w_z * h
     del w_z
-    A_13 = t16 - t20
-    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
-    del t21, t22
-    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t14, t5
-    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t24
-    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
-    del t23, unreachable
-    Delta = t13 * h
-    del h, t13
-    A_13_above = t16 + t20
-    del t16, t20
+    A_13 = t17 - t21
+    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
+    del t22, t23
+    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t15, t5
+    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t25
+    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
+    del t24, unreachable
+    Delta = t14 * h
+    del h, t14
+    A_13_above = t17 + t21
+    del t17, t21
     return (
-        A_13 + t25,
-        t1 + A_13 + t25,
-        t4 + A_13 + t25,
-        -Delta + t25,
-        A_13_above + t25,
-        t1 + A_13_above + t25,
-        t4 + A_13_above + t25,
-        Delta + t25,
+        A_13 + t26,
+        t1 + A_13 + t26,
+        t4 + A_13 + t26,
+        -Delta + t26,
+        A_13_above + t26,
+        t1 + A_13_above + t26,
+        t4 + A_13_above + t26,
+        Delta + t26,
     )
 
 
@@ -1275,6 +1432,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1346,123 +1504,125 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     in_line = nu <= t6
     del t6
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    t13 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / t13)
-    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    last = size * (d_y + a_x * side)
+    t13 = size * t8
+    t14 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t1 * 0.5 - t10 * t15
-    t17 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
+    t17 = t1 * 0.5 - t10 * t16
+    t18 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
     del side
-    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
+    t19 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = l * size * 2.0
+    t20 = l * l - t19
+    del t19
+    slack = np.maximum(t20, 0.0)
+    t21 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = t17 * h
-    del t17
-    t22 = t16 - t21
-    t23 = n_y * t15 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
-    t24 = h * w_y
+    t22 = t18 * h
+    del t18
+    t23 = t17 - t22
+    t24 = n_y * t16 - d_y * 0.5
+    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
+    del t13
+    t25 = h * w_y
     del w_y
-    t25 = t23 + t24
-    t26 = t12 * t15 - t8 * 0.5
-    del t12, t15, t8
+    t26 = t24 + t25
+    t27 = t12 * t16 - t8 * 0.5
+    del t12, t16, t8
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
     del a_x, d_y, last, n_y, t10
-    t27 = h * w_z
+    t28 = h * w_z
     del w_z
-    A_13 = t26 - t27
-    A_21 = t1 - t22
-    t28 = A_21 * A_21
-    A_22 = c3_y - t25
+    A_13 = t27 - t28
+    A_21 = t1 - t23
+    t29 = A_21 * A_21
+    A_22 = c3_y - t26
     A_23 = t2 + A_13
-    t29 = t22 * t22 + t25 * t25 + A_13 * A_13 + (t28 + A_22 * A_22 + A_23 * A_23)
-    t30 = c3_y + t25
+    t30 = t23 * t23 + t26 * t26 + A_13 * A_13 + (t29 + A_22 * A_22 + A_23 * A_23)
+    t31 = c3_y + t26
     A_33 = t4 + A_13
-    t31 = t25 * A_21
-    t32 = t22 * A_22 - t31
-    t33 = A_13 * A_21
-    t34 = t22 * A_23 + t33
-    t35 = t31 + t22 * t30
-    del t31
-    t36 = t33 + t22 * A_33
-    del t22, t33
-    t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36
-    del t32, t34, t35, t36
-    t38 = t25 * A_23 + A_13 * A_22
-    t39 = t25 * A_33 - A_13 * t30
-    del A_13, t25
-    t40 = A_21 * t30 + A_21 * A_22
-    t41 = A_21 * A_33 - A_21 * A_23
+    t32 = t26 * A_21
+    t33 = t23 * A_22 - t32
+    t34 = A_13 * A_21
+    t35 = t23 * A_23 + t34
+    t36 = t32 + t23 * t31
+    del t32
+    t37 = t34 + t23 * A_33
+    del t23, t34
+    t38 = t33 * t33 + t35 * t35 + t36 * t36 + t37 * t37
+    del t33, t35, t36, t37
+    t39 = t26 * A_23 + A_13 * A_22
+    t40 = t26 * A_33 - A_13 * t31
+    del A_13, t26
+    t41 = A_21 * t31 + A_21 * A_22
+    t42 = A_21 * A_33 - A_21 * A_23
     del A_21
-    t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41
-    del t37, t38, t39, t40, t41
-    t43 = A_22 * A_33 + A_23 * t30
+    t43 = t38 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42
+    del t38, t39, t40, t41, t42
+    t44 = A_22 * A_33 + A_23 * t31
     del A_22, A_23
-    t44 = (t29 + (t28 + t30 * t30 + A_33 * A_33)) * (t42 + t43 * t43)
-    del A_33, t28, t29, t30, t42, t43
-    t45 = 3.0 * (t13 * h)
-    del h, t13
-    t46 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t47 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t48 = t46 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t47
-    del t46, t47
-    t49 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t14, t5
-    unreachable = np.logical_not(t49 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t49
-    t50 = _runtime.poison(np.logical_not(t48) | unreachable)
-    del t48, unreachable
-    t51 = t16 + t21
-    del t16, t21
-    t52 = t23 - t24
-    del t23, t24
-    A_13_above = t26 + t27
-    del t26, t27
-    square1_above = t51 * t51 + t52 * t52 + A_13_above * A_13_above
-    A_21_above = t1 - t51
+    t45 = (t30 + (t29 + t31 * t31 + A_33 * A_33)) * (t43 + t44 * t44)
+    del A_33, t29, t30, t31, t43, t44
+    t46 = 3.0 * (t14 * h)
+    del h, t14
+    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t48 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t49 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t48
+    del t47, t48
+    t50 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t15, t5
+    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t21) <= t20))
+    del t20, t21, t50
+    t51 = _runtime.poison(np.logical_not(t49) | unreachable)
+    del t49, unreachable
+    t52 = t17 + t22
+    del t17, t22
+    t53 = t24 - t25
+    del t24, t25
+    A_13_above = t27 + t28
+    del t27, t28
+    square1_above = t52 * t52 + t53 * t53 + A_13_above * A_13_above
+    A_21_above = t1 - t52
     del t1
-    t53 = A_21_above * A_21_above
-    A_22_above = c3_y - t52
+    t54 = A_21_above * A_21_above
+    A_22_above = c3_y - t53
     A_23_above = t2 + A_13_above
     del t2
-    square2_above = t53 + A_22_above * A_22_above + A_23_above * A_23_above
-    t54 = c3_y + t52
+    square2_above = t54 + A_22_above * A_22_above + A_23_above * A_23_above
+    t55 = c3_y + t53
     del c3_y
     A_33_above = t4 + A_13_above
     del t4
-    t55 = square1_above + square2_above + (t53 + t54 * t54 + A_33_above * A_33_above)
-    del square1_above, square2_above, t53
-    t56 = t52 * A_21_above
-    t57 = t51 * A_22_above - t56
-    t58 = A_13_above * A_21_above
-    t59 = t51 * A_23_above + t58
-    t60 = t56 + t51 * t54
-    del t56
-    t61 = t58 + t51 * A_33_above
-    del t51, t58
-    t62 = t57 * t57 + t59 * t59 + t60 * t60 + t61 * t61
-    del t57, t59, t60, t61
-    t63 = t52 * A_23_above + A_13_above * A_22_above
-    t64 = t52 * A_33_above - A_13_above * t54
-    del A_13_above, t52
-    t65 = A_21_above * t54 + A_21_above * A_22_above
-    t66 = A_21_above * A_33_above - A_21_above * A_23_above
+    t56 = square1_above + square2_above + (t54 + t55 * t55 + A_33_above * A_33_above)
+    del square1_above, square2_above, t54
+    t57 = t53 * A_21_above
+    t58 = t52 * A_22_above - t57
+    t59 = A_13_above * A_21_above
+    t60 = t52 * A_23_above + t59
+    t61 = t57 + t52 * t55
+    del t57
+    t62 = t59 + t52 * A_33_above
+    del t52, t59
+    t63 = t58 * t58 + t60 * t60 + t61 * t61 + t62 * t62
+    del t58, t60, t61, t62
+    t64 = t53 * A_23_above + A_13_above * A_22_above
+    t65 = t53 * A_33_above - A_13_above * t55
+    del A_13_above, t53
+    t66 = A_21_above * t55 + A_21_above * A_22_above
+    t67 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
-    t67 = t62 + t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66
-    del t62, t63, t64, t65, t66
-    t68 = A_22_above * A_33_above + A_23_above * t54
-    del A_22_above, A_23_above, A_33_above, t54
+    t68 = t63 + t64 * t64 + t65 * t65 + t66 * t66 + t67 * t67
+    del t63, t64, t65, t66, t67
+    t69 = A_22_above * A_33_above + A_23_above * t55
+    del A_22_above, A_23_above, A_33_above, t55
     return (
-        np.sqrt(t44) / t45 + t50,
-        np.sqrt(t55 * (t67 + t68 * t68)) / t45 + t50,
+        np.sqrt(t45) / t46 + t51,
+        np.sqrt(t56 * (t68 + t69 * t69)) / t46 + t51,
     )
 
 
@@ -1473,6 +1633,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1545,80 +1706,81 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     in_line = nu <= t6
     del t6
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t8 * t8) + last * last), 1.0 / (mu * nu))
-    t13 = t7 * (d_y - t7) + t9 * (t8 - t9)
+    last = size * (d_y + a_x * side)
+    t13 = size * t8
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
-    t14 = _runtime.select(in_line, 0.0, mu * part * t13 * 0.5)
-    t15 = t1 * 0.5 - t10 * t14
-    t16 = _runtime.select(in_line, t8 * side, d_y * t12 - t8 * n_y)
+    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
+    t16 = t1 * 0.5 - t10 * t15
+    t17 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
     del side
-    t17 = _runtime.select(all_same, 0.0, nu * (t14 * t14) + mu * 0.25)
+    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
     del all_same, mu, nu
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 2.0
+    t19 = l * l - t18
+    del t18
+    slack = np.maximum(t19, 0.0)
+    t20 = l * size * 2.0
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = t16 * h
-    del t16
-    t21 = t15 - t20
-    t22 = t12 * t14 - t8 * 0.5
+    t21 = t17 * h
+    del t17
+    t22 = t16 - t21
+    t23 = t12 * t15 - t8 * 0.5
     w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
     del last
-    t23 = h * w_z
+    t24 = h * w_z
     del w_z
-    A_13 = t22 - t23
+    A_13 = t23 - t24
     A_23 = t2 + A_13
     A_33 = t4 + A_13
-    t24 = (t1 - t21) * (1.7320508075688772 * A_13)
-    t25 = 1.7320508075688772 * t21 * A_23 * A_33 * 0.5 + A_33 * t24 * 0.25
-    del t21
-    t26 = n_y * t14 - d_y * 0.5
-    del d_y, n_y, t14
-    w_y = _runtime.select(in_line, -t8, a_x * t12 + t8 * t10)
-    del a_x, t10, t12, t8
-    t27 = h * w_y
+    t25 = (t1 - t22) * (1.7320508075688772 * A_13)
+    t26 = 1.7320508075688772 * t22 * A_23 * A_33 * 0.5 + A_33 * t25 * 0.25
+    del t22
+    t27 = n_y * t15 - d_y * 0.5
+    del d_y, n_y, t15
+    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
+    del a_x, t10, t12, t13, t8
+    t28 = h * w_y
     del h, w_y
-    t28 = t26 + t27
-    t29 = 0.75 * A_13
+    t29 = t27 + t28
+    t30 = 0.75 * A_13
     del A_13
-    t30 = t25 - A_33 * (c3_y - t28) * t29 + A_23 * t24 * 0.25
-    del A_33, t24, t25
-    t31 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t32 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t33 = t31 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t32
-    del t31, t32
-    t34 = np.abs(_runtime.select(in_line, -t13, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t13, t5
-    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t34
-    t35 = _runtime.poison(np.logical_not(t33) | unreachable)
-    del t33, unreachable
-    t36 = t15 + t20
-    del t15, t20
-    A_13_above = t22 + t23
-    del t22, t23
+    t31 = t26 - A_33 * (c3_y - t29) * t30 + A_23 * t25 * 0.25
+    del A_33, t25, t26
+    t32 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t33 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t34 = t32 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t33
+    del t32, t33
+    t35 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t14, t5
+    unreachable = np.logical_not(t35 & (-(_runtime.FEASIBILITY * t20) <= t19))
+    del t19, t20, t35
+    t36 = _runtime.poison(np.logical_not(t34) | unreachable)
+    del t34, unreachable
+    t37 = t16 + t21
+    del t16, t21
+    A_13_above = t23 + t24
+    del t23, t24
     A_23_above = t2 + A_13_above
     del t2
     A_33_above = t4 + A_13_above
     del t4
-    t37 = 1.7320508075688772 * t36 * A_23_above * A_33_above
-    t38 = (t1 - t36) * (1.7320508075688772 * A_13_above)
-    del t1, t36
-    t39 = t26 - t27
-    del t26, t27
-    t40 = 0.75 * A_13_above
+    t38 = 1.7320508075688772 * t37 * A_23_above * A_33_above
+    t39 = (t1 - t37) * (1.7320508075688772 * A_13_above)
+    del t1, t37
+    t40 = t27 - t28
+    del t27, t28
+    t41 = 0.75 * A_13_above
     del A_13_above
-    t41 = t37 * 0.5 + A_33_above * t38 * 0.25 - A_33_above * (c3_y - t39) * t40
-    del A_33_above, t37
-    t42 = t41 + A_23_above * t38 * 0.25 - A_23_above * t40 * (c3_y + t39)
-    del A_23_above, t38, t39, t40, t41
+    t42 = t38 * 0.5 + A_33_above * t39 * 0.25 - A_33_above * (c3_y - t40) * t41
+    del A_33_above, t38
+    t43 = t42 + A_23_above * t39 * 0.25 - A_23_above * t41 * (c3_y + t40)
+    del A_23_above, t39, t40, t41, t42
     return (
-        t30 - A_23 * t29 * (c3_y + t28) + t35,
-        t42 + t35,
+        t31 - A_23 * t30 * (c3_y + t29) + t36,
+        t43 + t36,
     )
 
 
@@ -1629,6 +1791,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

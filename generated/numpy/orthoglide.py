@@ -2,28 +2,28 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 38 compare and select, 40 add, 8 divide, 56 multiply, 1 sqrt
+#   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
 #   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
-#   skeleton: 37 compare and select, 71 add, 9 divide, 56 multiply, 1 sqrt
+#   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
 #   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
-#   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 56 multiply, 1 sqrt
+#   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
 #   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
 #     multiply, 1 sqrt
-#   jacobian_serial: 37 compare and select, 43 add, 8 divide, 56 multiply, 1 sqrt
+#   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
 #   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
 #     1 sqrt
-#   jacobian: 37 compare and select, 75 add, 26 divide, 99 multiply, 1 sqrt
+#   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
 #   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
-#   determinant: 37 compare and select, 39 add, 10 divide, 61 multiply, 1 sqrt
+#   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
 #   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
 #     sqrt
-#   singularities: 37 compare and select, 45 add, 8 divide, 57 multiply, 1 sqrt
+#   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
 #   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
 #     sqrt
-#   condition_number: 37 compare and select, 91 add, 10 divide, 114 multiply, 3 sqrt
+#   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
 #   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
 #     3 sqrt
-#   constraint: 37 compare and select, 43 add, 8 divide, 64 multiply, 1 sqrt
+#   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
 #   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 #     sqrt
 #   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
@@ -170,10 +170,11 @@ def _fk(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -197,7 +198,8 @@ def _fk(rho1, rho2, rho3, L):
     unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
@@ -286,6 +288,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_fk_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -370,10 +373,11 @@ def _skeleton(rho1, rho2, rho3, L):
     t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
     del t3
     t11 = L * size * 2.0
-    del size
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    last = size * (d_y + a_x * side)
+    up = size * d_z
+    del size
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
     t12 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
     del t9
     t13 = _runtime.select(all_same, 0.0, nu * (t12 * t12) + mu * 0.25)
@@ -389,7 +393,7 @@ def _skeleton(rho1, rho2, rho3, L):
     t18 = L * 0.0625
     t19 = t18 + t15
     t20 = -t18 + t15
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
     del side
     slack = np.maximum(t14, 0.0)
     del t14
@@ -400,7 +404,8 @@ def _skeleton(rho1, rho2, rho3, L):
     t22 = t8 * t12 - rho1 * 0.5
     t23 = rho1 + (t21 + t22)
     t24 = t23 + t15
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t8))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t8))
+    del up
     t25 = w_y * h
     del w_y
     t26 = n_y * t12 - d_y * 0.5
@@ -734,6 +739,7 @@ _SKELETON = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_skeleton_common,
+    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -802,10 +808,11 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -831,7 +838,8 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
@@ -964,6 +972,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_parallel_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1031,10 +1040,11 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -1059,7 +1069,8 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
@@ -1139,6 +1150,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_serial_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1206,11 +1218,12 @@ def _jacobian(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1227,7 +1240,8 @@ def _jacobian(rho1, rho2, rho3, L):
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
     A_11 = t14 + t15
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
@@ -1391,6 +1405,7 @@ _JACOBIAN = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_common,
+    size=_runtime.Size((0, 1, 2, 3), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1459,11 +1474,12 @@ def _determinant(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1479,7 +1495,8 @@ def _determinant(rho1, rho2, rho3, L):
     t14 = w_x * h
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
@@ -1572,6 +1589,7 @@ _DETERMINANT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_determinant_common,
+    size=_runtime.Size((0, 1, 2, 3), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1639,11 +1657,12 @@ def _singularities(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1668,7 +1687,8 @@ def _singularities(rho1, rho2, rho3, L):
     del t12, t13, t17
     t18 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t19 = w_y * h
     del w_y
     t20 = n_y * t10 - d_y * 0.5
@@ -1757,6 +1777,7 @@ _SINGULARITIES = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_singularities_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1824,11 +1845,12 @@ def _condition_number(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     side = _runtime.sign(d_y * a_x)
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    last = d_y + a_x * side
+    up = size * d_z
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    last = size * (d_y + a_x * side)
     del side
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1845,7 +1867,8 @@ def _condition_number(rho1, rho2, rho3, L):
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
     A_11 = t14 + t15
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
+    del up
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
@@ -2073,6 +2096,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_condition_number_common,
+    size=_runtime.Size((0, 1, 2, 3), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -2140,10 +2164,11 @@ def _constraint(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    w_y = _runtime.select(in_line, d_z, -(a_x * n_z + d_z * t7))
+    up = size * d_z
+    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
     side = _runtime.sign(d_y * a_x)
-    last = d_y + a_x * side
-    part = _runtime.select(in_line, 1.0 / (2.0 * (d_z * d_z) + last * last), 1.0 / (mu * nu))
+    last = size * (d_y + a_x * side)
+    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -2166,8 +2191,8 @@ def _constraint(rho1, rho2, rho3, L):
     del w_z
     t17 = n_z * t9 - d_z * 0.5
     t18 = t16 - t17
-    w_x = _runtime.select(in_line, d_z * side, d_y * n_z - d_z * n_y)
-    del d_y, d_z, n_y, n_z, side
+    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
+    del d_y, d_z, n_y, n_z, side, up
     t19 = w_x * h
     del h, w_x
     t20 = t7 * t9 - rho1 * 0.5
@@ -2268,6 +2293,7 @@ _CONSTRAINT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_constraint_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

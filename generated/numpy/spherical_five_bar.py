@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 66 compare and select, 62 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-#   skeleton: 65 compare and select, 74 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel: 65 compare and select, 83 add, 11 divide, 94 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial: 65 compare and select, 69 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
-#   jacobian: 65 compare and select, 95 add, 23 divide, 144 multiply, 7 sincos, 4 sqrt
-#   singularities: 65 compare and select, 71 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
-#   condition_number: 65 compare and select, 111 add, 19 divide, 153 multiply, 7 sincos, 8 sqrt
+#   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+#   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
+#   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
+#   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
+#   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
 #   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -171,114 +171,117 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     side = _runtime.sign(-(t10 * a_x))
-    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
+    t20 = _runtime.select(all_same, 1.0, r)
+    t21 = t15 * t20
+    w_x = _runtime.select(in_line, -(side * t21), t10 * t19 - t15 * t18)
     length_a = np.sqrt(mu)
     del mu
-    t20 = t10 - a_x * side
-    del side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t22 = t20 * (t10 - a_x * side)
+    del side, t20
+    nu_w = _runtime.select(in_line, over * (t22 * t22 + 2.0 * (t21 * t21)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
     part = 1.0 / (length_a * length_n)
-    t21 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t21
+    t23 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t23
     del s_beta2_half
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    r_1 = np.abs(s_beta1_half) * t21
-    del s_beta1_half, t21
-    t22 = D + r_1
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    r_1 = np.abs(s_beta1_half) * t23
+    del s_beta1_half, t23
+    t24 = D + r_1
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del nu, t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del nu, t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    t38 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
+    t40 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del rho
-    h = part * t38
-    del t38
-    t39 = w_x * h
+    h = part * t40
+    del t40
+    t41 = w_x * h
     del w_x
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
-    del half, length_a, lower, part, t37, upper
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    del half, length_a, lower, part, t39, upper
     X = over_a * along
     del along, over_a
-    t40 = t17 * Y - (c1_x - t11 * X)
+    t42 = t17 * Y - (c1_x - t11 * X)
     del c1_x, t11
-    t41 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t42 = t41 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t41
-    t43 = t42 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t42
-    t44 = t43 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t43 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t44 = t43 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t43
-    invalid = np.logical_not(t44)
+    t45 = t44 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t44
-    t45 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t46 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t47 = (t45 <= t27) & (t45 <= t24) & (t45 <= t26) & (-t46 <= t34)
-    del t24, t26, t27, t34, t45
-    unreachable = np.logical_not(t47 & (-t46 <= t35))
-    del t35, t46, t47
-    t48 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t49 = w_y * h
+    t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t45
+    invalid = np.logical_not(t46)
+    del t46
+    t47 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t48 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t49 = (t47 <= t29) & (t47 <= t26) & (t47 <= t28) & (-t48 <= t36)
+    del t26, t28, t29, t36, t47
+    unreachable = np.logical_not(t49 & (-t48 <= t37))
+    del t37, t48, t49
+    t50 = _runtime.poison(invalid | unreachable)
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
+    del t21
+    t51 = w_y * h
     del w_y
-    t50 = t18 * Y - (c1_y - t10 * X)
+    t52 = t18 * Y - (c1_y - t10 * X)
     del c1_y
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
-    del a_x, t10, t17, t18, t20
-    t51 = w_z * h
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
+    del a_x, t10, t17, t18, t22
+    t53 = w_z * h
     del h, w_z
-    t52 = t19 * Y - (c1_z - t15 * X)
+    t54 = t19 * Y - (c1_z - t15 * X)
     del X, Y, c1_z, t15, t19
-    t53 = _runtime.status(invalid, unreachable, in_line)
+    t55 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t39 - t40 + t48,
-        t49 - t50 + t48,
-        t51 - t52 + t48,
-        -(t40 + t39) + t48,
-        -(t50 + t49) + t48,
-        -(t52 + t51) + t48,
-        t53,
-        t53,
+        t41 - t42 + t50,
+        t51 - t52 + t50,
+        t53 - t54 + t50,
+        -(t42 + t41) + t50,
+        -(t52 + t51) + t50,
+        -(t54 + t53) + t50,
+        t55,
+        t55,
     )
 
 
@@ -289,6 +292,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -421,9 +425,12 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t34 * t34 + t35 * t35 + t36 * t36
     in_line = nu <= t17
     del t17
+    t37 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t27 * a_x))
-    t37 = t27 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t32 * t32) + t37 * t37), nu)
+    t38 = t37 * (t27 - a_x * side)
+    t39 = t32 * t37
+    del t37
+    nu_w = _runtime.select(in_line, over * (t38 * t38 + 2.0 * (t39 * t39)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -433,117 +440,118 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     inner = np.maximum(t24, 0.0)
     share = 1.0 / (outer + inner)
     slack = np.maximum(t21, 0.0)
-    t38 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t38)
-    del t38
-    t39 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along
-    del t29, t30, t33
-    t40 = nu - _runtime.select(same, r_2 * r_2, t16) + t39 * t39
-    del nu, r_2, same, t16, t39
-    t41 = share * np.sqrt(outer * inner * slack * (t19 + t22))
-    del inner, outer, share, slack, t19, t22
-    rho = _runtime.select(all_same, r_1, t41)
-    del all_same, r_1, t41
-    left = t40 + rho * rho
+    along = _runtime.select(all_same, 0.0, t40)
     del t40
-    t42 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t43 = t42 * rho
+    t41 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along
+    del t29, t30, t33
+    t42 = nu - _runtime.select(same, r_2 * r_2, t16) + t41 * t41
+    del nu, r_2, same, t16, t41
+    t43 = share * np.sqrt(outer * inner * slack * (t19 + t22))
+    del inner, outer, share, slack, t19, t22
+    rho = _runtime.select(all_same, r_1, t43)
+    del all_same, r_1, t43
+    left = t42 + rho * rho
     del t42
-    t44 = left + t43
-    t45 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (-t26 <= t44)
+    t44 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t45 = t44 * rho
+    del t44
+    t46 = left + t45
+    t47 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (-t26 <= t46)
     del t21, t23, t24, t5
-    t46 = t43 - left
-    del left, t43
-    failed = np.logical_not(t4) | np.logical_not(t45 & (-t26 <= t46))
-    del t26, t4, t45
-    t47 = _runtime.poison(failed)
+    t48 = t45 - left
+    del left, t45
+    failed = np.logical_not(t4) | np.logical_not(t47 & (-t26 <= t48))
+    del t26, t4, t47
+    t49 = _runtime.poison(failed)
     del failed
-    t48 = 0.0 + t47
-    t49 = c1_x + t47
-    t50 = c1_y + t47
-    t51 = c1_z + t47
-    t52 = t9 + t47
+    t50 = 0.0 + t49
+    t51 = c1_x + t49
+    t52 = c1_y + t49
+    t53 = c1_z + t49
+    t54 = t9 + t49
     del t9
-    t53 = t13 + t47
+    t55 = t13 + t49
     del t13
-    t54 = -t10 + t47
+    t56 = -t10 + t49
     del t10
-    t55 = c2_y + t47
+    t57 = c2_y + t49
     del c2_y
-    t56 = c2_z + t47
+    t58 = c2_z + t49
     del c2_z
     X = over_a * along
     del along, over_a
-    upper = np.maximum(t44, 0.0)
-    del t44
-    lower = np.maximum(t46, 0.0)
+    upper = np.maximum(t46, 0.0)
     del t46
+    lower = np.maximum(t48, 0.0)
+    del t48
     both = upper + lower
-    t57 = (both <= _runtime.VANISHING * (r * t25)) | in_line
+    t59 = (both <= _runtime.VANISHING * (r * t25)) | in_line
     del t25
     half = rho / both
     del both
-    Y = _runtime.select(t57, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t59, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t58 = t28 * X + t34 * Y
+    t60 = t28 * X + t34 * Y
     del t28
-    w_x = _runtime.select(in_line, -(t32 * side), t27 * t36 - t32 * t35)
+    w_x = _runtime.select(in_line, -(side * t39), t27 * t36 - t32 * t35)
     del side
-    t59 = _runtime.select(t57, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t57, upper
-    h = part * t59
-    del part, t59
-    t60 = w_x * h
+    t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t59, upper
+    h = part * t61
+    del part, t61
+    t62 = w_x * h
     del w_x
-    t61 = t27 * X + t35 * Y
-    w_y = _runtime.select(in_line, -t32, a_x * t36 + t32 * t34)
-    t62 = w_y * h
+    t63 = t27 * X + t35 * Y
+    w_y = _runtime.select(in_line, -t39, a_x * t36 + t32 * t34)
+    del t39
+    t64 = w_y * h
     del w_y
-    t63 = t32 * X + t36 * Y
+    t65 = t32 * X + t36 * Y
     del X, Y, t32, t36
-    w_z = _runtime.select(in_line, t37, -(a_x * t35 + t27 * t34))
-    del a_x, in_line, t27, t34, t35, t37
-    t64 = w_z * h
+    w_z = _runtime.select(in_line, t38, -(a_x * t35 + t27 * t34))
+    del a_x, in_line, t27, t34, t35, t38
+    t66 = w_z * h
     del h, w_z
     return (
-        t48,
-        t48,
-        t48,
-        t49,
-        t48,
-        t48,
-        t49,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
         t50,
         t51,
         t52,
         t53,
-        t48,
         t54,
         t55,
+        t50,
         t56,
-        c1_x - (t58 - t60) + t47,
-        c1_y - (t61 - t62) + t47,
-        c1_z - (t63 - t64) + t47,
-        t48,
-        t48,
-        t48,
-        t49,
-        t48,
-        t48,
-        t49,
+        t57,
+        t58,
+        c1_x - (t60 - t62) + t49,
+        c1_y - (t63 - t64) + t49,
+        c1_z - (t65 - t66) + t49,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
         t50,
         t51,
         t52,
         t53,
-        t48,
         t54,
         t55,
+        t50,
         t56,
-        c1_x - (t58 + t60) + t47,
-        c1_y - (t61 + t62) + t47,
-        c1_z - (t63 + t64) + t47,
+        t57,
+        t58,
+        c1_x - (t60 + t62) + t49,
+        c1_y - (t63 + t64) + t49,
+        c1_z - (t65 + t66) + t49,
     )
 
 
@@ -554,6 +562,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -644,9 +653,12 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
+    t20 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t11 * a_x))
-    t20 = t11 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t21 = t20 * (t11 - a_x * side)
+    t22 = t15 * t20
+    del t20
+    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -655,118 +667,119 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t21 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t21
+    t23 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t23
     del s_beta1_half
-    t22 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t21
-    del s_beta2_half, t21
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    t24 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t23
+    del s_beta2_half, t23
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    X = over_a * along
-    t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del nu, t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    X = over_a * along
+    t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del nu, t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t38 = t10 * X + t17 * Y
+    t40 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(t15 * side), t11 * t19 - t15 * t18)
+    w_x = _runtime.select(in_line, -(side * t22), t11 * t19 - t15 * t18)
     del side
-    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t37, upper
-    h = part * t39
-    del part, t39
-    t40 = w_x * h
+    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t39, upper
+    h = part * t41
+    del part, t41
+    t42 = w_x * h
     del w_x
-    t41 = t38 - t40
-    t42 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t43 = t42 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t42
-    t44 = t43 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t43
-    t45 = t44 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t43 = t40 - t42
+    t44 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t45 = t44 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t44
-    t46 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t48 = (t46 <= t27) & (t46 <= t24) & (t46 <= t26) & (-t47 <= t34)
-    del t24, t26, t27, t34, t46
-    failed = np.logical_not(t45) | np.logical_not(t48 & (-t47 <= t35))
-    del t35, t45, t47, t48
-    t49 = _runtime.poison(failed)
+    t46 = t45 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t45
+    t47 = t46 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t46
+    t48 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t49 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t50 = (t48 <= t29) & (t48 <= t26) & (t48 <= t28) & (-t49 <= t36)
+    del t26, t28, t29, t36, t48
+    failed = np.logical_not(t47) | np.logical_not(t50 & (-t49 <= t37))
+    del t37, t47, t49, t50
+    t51 = _runtime.poison(failed)
     del failed
-    t50 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t51 = w_y * h
+    t52 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    del t22
+    t53 = w_y * h
     del w_y
-    t52 = t50 - t51
-    t53 = t15 * X + t19 * Y
+    t54 = t52 - t53
+    t55 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t20
-    t54 = w_z * h
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t56 = w_z * h
     del h, w_z
-    t55 = t53 - t54
-    t56 = t38 + t40
-    del t38, t40
-    t57 = t50 + t51
-    del t50, t51
-    t58 = t53 + t54
-    del t53, t54
+    t57 = t55 - t56
+    t58 = t40 + t42
+    del t40, t42
+    t59 = t52 + t53
+    del t52, t53
+    t60 = t55 + t56
+    del t55, t56
     return (
-        c1_x - t41 + t49,
-        c1_y - t52 + t49,
-        c1_z - t55 + t49,
-        -t41 + t49,
-        -t52 + t49,
-        -t55 + t49,
-        t4 - t41 + t49,
-        t6 - t52 + t49,
-        t7 - t55 + t49,
-        c1_x - t56 + t49,
-        c1_y - t57 + t49,
-        c1_z - t58 + t49,
-        -t56 + t49,
-        -t57 + t49,
-        -t58 + t49,
-        t4 - t56 + t49,
-        t6 - t57 + t49,
-        t7 - t58 + t49,
+        c1_x - t43 + t51,
+        c1_y - t54 + t51,
+        c1_z - t57 + t51,
+        -t43 + t51,
+        -t54 + t51,
+        -t57 + t51,
+        t4 - t43 + t51,
+        t6 - t54 + t51,
+        t7 - t57 + t51,
+        c1_x - t58 + t51,
+        c1_y - t59 + t51,
+        c1_z - t60 + t51,
+        -t58 + t51,
+        -t59 + t51,
+        -t60 + t51,
+        t4 - t58 + t51,
+        t6 - t59 + t51,
+        t7 - t60 + t51,
     )
 
 
@@ -777,6 +790,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -869,9 +883,12 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
+    t20 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t10 * a_x))
-    t20 = t10 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t21 = t20 * (t10 - a_x * side)
+    t22 = t15 * t20
+    del t20
+    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -880,107 +897,107 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t21 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t21
+    t23 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t23
     del s_beta1_half
-    t22 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t21
-    del s_beta2_half, t21
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    t24 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t23
+    del s_beta2_half, t23
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    X = over_a * along
-    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del nu, t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    X = over_a * along
+    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del nu, t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t38 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t37, upper
-    h = part * t39
-    del part, t39
-    t40 = w_y * h
+    t40 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t39, upper
+    h = part * t41
+    del part, t41
+    t42 = w_y * h
     del w_y
-    t41 = t38 - t40
-    t42 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
-    del a_x, t20
-    t43 = w_z * h
+    t43 = t40 - t42
+    t44 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t45 = w_z * h
     del w_z
-    t44 = t42 - t43
-    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t45
-    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t46
-    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t46 = t44 - t45
+    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t47
-    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t51 = (t49 <= t27) & (t49 <= t24) & (t49 <= t26) & (-t50 <= t34)
-    del t24, t26, t27, t34, t49
-    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t35))
-    del t35, t48, t50, t51
-    t52 = _runtime.poison(failed)
+    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t48
+    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t49
+    t51 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t52 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t53 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (-t52 <= t36)
+    del t26, t28, t29, t36, t51
+    failed = np.logical_not(t50) | np.logical_not(t53 & (-t52 <= t37))
+    del t37, t50, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t53 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t54 = t11 * X + t17 * Y
+    t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19
-    t55 = w_x * h
+    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19, t22
+    t57 = w_x * h
     del h, w_x
-    t56 = c_gamma * c2_z
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44)
-    t57 = t38 + t40
-    del t38, t40
-    t58 = t42 + t43
-    del t42, t43
-    B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58)
-    del t3, t5, t53, t54, t55, t56, t6, t7
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t43) - t3 * (t7 + t46)
+    t59 = t40 + t42
+    del t40, t42
+    t60 = t44 + t45
+    del t44, t45
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t41 - c1_y * t44 + t52,
-        B_22 + t52,
-        c1_z * t57 - c1_y * t58 + t52,
-        B_22_below + t52,
+        c1_z * t43 - c1_y * t46 + t54,
+        B_22 + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
     )
 
 
@@ -991,6 +1008,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1082,9 +1100,12 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
+    t20 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t10 * a_x))
-    t20 = t10 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t21 = t20 * (t10 - a_x * side)
+    t22 = t15 * t20
+    del t20
+    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1092,160 +1113,160 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t21 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t21
+    t23 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t23
     del s_beta1_half
-    t22 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t21
-    del s_beta2_half, t21
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    t24 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t23
+    del s_beta2_half, t23
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    X = over_a * along
-    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    X = over_a * along
+    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t38 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t37, upper
-    h = part * t39
-    del part, t39
-    t40 = w_y * h
+    t40 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t39, upper
+    h = part * t41
+    del part, t41
+    t42 = w_y * h
     del w_y
-    t41 = t38 - t40
-    t42 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
-    del a_x, t20
-    t43 = w_z * h
+    t43 = t40 - t42
+    t44 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t45 = w_z * h
     del w_z
-    t44 = t42 - t43
-    B_11 = c1_z * t41 - c1_y * t44
-    A_02 = c1_y - t41
-    t45 = t7 + t44
-    A_03 = c1_z - t44
-    A_22 = t6 - t41
+    t46 = t44 - t45
+    B_11 = c1_z * t43 - c1_y * t46
+    A_02 = c1_y - t43
+    t47 = t7 + t46
+    A_03 = c1_z - t46
+    A_22 = t6 - t43
     Delta = mu * nu * h
     del mu, nu
-    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t46
-    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t47
-    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t48 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t49 = t48 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t48
-    t50 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t51 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t52 = (t50 <= t27) & (t50 <= t24) & (t50 <= t26) & (-t51 <= t34)
-    del t24, t26, t27, t34, t50
-    failed = np.logical_not(t49) | np.logical_not(t52 & (-t51 <= t35))
-    del t35, t49, t51, t52
-    t53 = _runtime.poison(failed)
+    t50 = t49 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t49
+    t51 = t50 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t50
+    t52 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t53 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t54 = (t52 <= t29) & (t52 <= t26) & (t52 <= t28) & (-t53 <= t36)
+    del t26, t28, t29, t36, t52
+    failed = np.logical_not(t51) | np.logical_not(t54 & (-t53 <= t37))
+    del t37, t51, t53, t54
+    t55 = _runtime.poison(failed)
     del failed
-    t54 = B_11 * (A_02 * t45 + A_03 * A_22) / Delta + t53
-    t55 = s_gamma * c2_z
+    t56 = B_11 * (A_02 * t47 + A_03 * A_22) / Delta + t55
+    t57 = s_gamma * c2_z
     del s_gamma
-    t56 = t11 * X + t17 * Y
+    t58 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19
-    t57 = w_x * h
+    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19, t22
+    t59 = w_x * h
     del h, w_x
-    t58 = t56 - t57
-    A_21 = t5 - t58
-    t59 = c_gamma * c2_z
+    t60 = t58 - t59
+    A_21 = t5 - t60
+    t61 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t55 * A_21 - t59 * A_22 - t3 * t45
-    t60 = -(B_22 * (t44 * A_02 - t41 * A_03) / Delta) + t53
-    A_01 = c1_x - t58
-    t61 = -(B_11 * (t45 * A_01 + A_03 * A_21) / Delta) + t53
-    del t45
-    t62 = B_22 * (t44 * A_01 - A_03 * t58) / Delta + t53
-    del A_03, t44
-    t63 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    B_22 = t57 * A_21 - t61 * A_22 - t3 * t47
+    t62 = -(B_22 * (t46 * A_02 - t43 * A_03) / Delta) + t55
+    A_01 = c1_x - t60
+    t63 = -(B_11 * (t47 * A_01 + A_03 * A_21) / Delta) + t55
+    del t47
+    t64 = B_22 * (t46 * A_01 - A_03 * t60) / Delta + t55
+    del A_03, t46
+    t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t64 = -(B_22 * (t41 * A_01 - A_02 * t58) / Delta) + t53
-    del A_01, A_02, B_22, t41, t58
-    t65 = t38 + t40
-    del t38, t40
-    t66 = t42 + t43
-    del t42, t43
-    B_11_below = c1_z * t65 - c1_y * t66
-    A_02_below = c1_y - t65
+    t66 = -(B_22 * (t43 * A_01 - A_02 * t60) / Delta) + t55
+    del A_01, A_02, B_22, t43, t60
+    t67 = t40 + t42
+    del t40, t42
+    t68 = t44 + t45
+    del t44, t45
+    B_11_below = c1_z * t67 - c1_y * t68
+    A_02_below = c1_y - t67
     del c1_y
-    t67 = t7 + t66
+    t69 = t7 + t68
     del t7
-    A_03_below = c1_z - t66
+    A_03_below = c1_z - t68
     del c1_z
-    A_22_below = t6 - t65
+    A_22_below = t6 - t67
     del t6
-    t68 = B_11_below * (A_02_below * t67 + A_03_below * A_22_below)
-    t69 = t56 + t57
-    del t56, t57
-    A_21_below = t5 - t69
+    t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below)
+    t71 = t58 + t59
+    del t58, t59
+    A_21_below = t5 - t71
     del t5
-    B_22_below = t55 * A_21_below - t59 * A_22_below - t3 * t67
-    del t3, t55, t59
-    t70 = B_22_below * (t66 * A_02_below - t65 * A_03_below)
-    A_01_below = c1_x - t69
+    B_22_below = t57 * A_21_below - t61 * A_22_below - t3 * t69
+    del t3, t57, t61
+    t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below)
+    A_01_below = c1_x - t71
     del c1_x
-    t71 = B_11_below * (t67 * A_01_below + A_03_below * A_21_below)
-    del t67
-    t72 = B_22_below * (t66 * A_01_below - A_03_below * t69)
-    del A_03_below, t66
-    t73 = A_22_below * A_01_below - A_02_below * A_21_below
+    t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below)
+    del t69
+    t74 = B_22_below * (t68 * A_01_below - A_03_below * t71)
+    del A_03_below, t68
+    t75 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t74 = B_22_below * (t65 * A_01_below - A_02_below * t69)
-    del A_01_below, A_02_below, B_22_below, t65, t69
+    t76 = B_22_below * (t67 * A_01_below - A_02_below * t71)
+    del A_01_below, A_02_below, B_22_below, t67, t71
     return (
-        t54,
-        t60,
-        t61,
+        t56,
         t62,
-        t63 + t53,
+        t63,
         t64,
-        -(t68 / Delta) + t53,
-        t70 / Delta + t53,
-        t71 / Delta + t53,
-        -(t72 / Delta) + t53,
-        B_11_below * t73 / Delta + t53,
-        t74 / Delta + t53,
+        t65 + t55,
+        t66,
+        -(t70 / Delta) + t55,
+        t72 / Delta + t55,
+        t73 / Delta + t55,
+        -(t74 / Delta) + t55,
+        B_11_below * t75 / Delta + t55,
+        t76 / Delta + t55,
     )
 
 
@@ -1256,6 +1277,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1349,9 +1371,12 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
+    t20 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t10 * a_x))
-    t20 = t10 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t21 = t20 * (t10 - a_x * side)
+    t22 = t15 * t20
+    del t20
+    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1359,111 +1384,111 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t21 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t21
+    t23 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t23
     del s_beta1_half
-    t22 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t21
-    del s_beta2_half, t21
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    t24 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t23
+    del s_beta2_half, t23
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    X = over_a * along
-    t29 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    X = over_a * along
+    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t38 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t37, upper
-    h = part * t39
-    del part, t39
-    t40 = w_y * h
+    t40 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t39, upper
+    h = part * t41
+    del part, t41
+    t42 = w_y * h
     del w_y
-    t41 = t38 - t40
-    t42 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t10 * t17))
-    del a_x, t20
-    t43 = w_z * h
+    t43 = t40 - t42
+    t44 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t45 = w_z * h
     del w_z
-    t44 = t42 - t43
-    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t45
-    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t46
-    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t46 = t44 - t45
+    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t47
-    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t51 = (t49 <= t27) & (t49 <= t24) & (t49 <= t26) & (-t50 <= t34)
-    del t24, t26, t27, t34, t49
-    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t35))
-    del t35, t48, t50, t51
-    t52 = _runtime.poison(failed)
+    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t48
+    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t49
+    t51 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t52 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t53 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (-t52 <= t36)
+    del t26, t28, t29, t36, t51
+    failed = np.logical_not(t50) | np.logical_not(t53 & (-t52 <= t37))
+    del t37, t50, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t53 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t54 = t11 * X + t17 * Y
+    t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t15 * side), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19
-    t55 = w_x * h
+    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
+    del in_line, side, t10, t15, t18, t19, t22
+    t57 = w_x * h
     del w_x
-    t56 = c_gamma * c2_z
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t53 * (t5 - (t54 - t55)) - t56 * (t6 - t41) - t3 * (t7 + t44)
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t43) - t3 * (t7 + t46)
     Delta = mu * nu * h
     del h, mu, nu
-    t57 = t38 + t40
-    del t38, t40
-    t58 = t42 + t43
-    del t42, t43
-    B_22_below = t53 * (t5 - (t54 + t55)) - t56 * (t6 - t57) - t3 * (t7 + t58)
-    del t3, t5, t53, t54, t55, t56, t6, t7
+    t59 = t40 + t42
+    del t40, t42
+    t60 = t44 + t45
+    del t44, t45
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t41 - c1_y * t44 + t52,
-        B_22 + t52,
-        Delta + t52,
-        c1_z * t57 - c1_y * t58 + t52,
-        B_22_below + t52,
-        -Delta + t52,
+        c1_z * t43 - c1_y * t46 + t54,
+        B_22 + t54,
+        Delta + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
+        -Delta + t54,
     )
 
 
@@ -1474,6 +1499,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1564,9 +1590,12 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
+    t20 = _runtime.select(all_same, 1.0, r)
     side = _runtime.sign(-(t11 * a_x))
-    t20 = t11 - a_x * side
-    nu_w = _runtime.select(in_line, over * (2.0 * (t15 * t15) + t20 * t20), nu)
+    t21 = t20 * (t11 - a_x * side)
+    t22 = t15 * t20
+    del t20
+    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1574,80 +1603,81 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t21 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t21
+    t23 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t23
     del s_beta1_half
-    t22 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t21
-    del s_beta2_half, t21
-    t23 = _runtime.select(same, r, r_2)
-    t24 = t22 - t23
-    outer = np.maximum(t24, 0.0)
-    t25 = D - r_1
-    t26 = t23 + t25
-    inner = np.maximum(t26, 0.0)
+    t24 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t23
+    del s_beta2_half, t23
+    t25 = _runtime.select(same, r, r_2)
+    t26 = t24 - t25
+    outer = np.maximum(t26, 0.0)
+    t27 = D - r_1
+    t28 = t25 + t27
+    inner = np.maximum(t28, 0.0)
     share = 1.0 / (outer + inner)
-    t27 = t23 - t25
-    del t25
-    slack = np.maximum(t27, 0.0)
-    t28 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t29 = t25 - t27
+    del t27
+    slack = np.maximum(t29, 0.0)
+    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t28)
-    del t28
-    X = over_a * along
-    t29 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t30 = nu - _runtime.select(same, r_2 * r_2, t8) + t29 * t29
-    del t29, t8
-    t31 = share * np.sqrt(outer * inner * slack * (t23 + t22))
-    del inner, outer, share, slack, t22, t23
-    rho = _runtime.select(all_same, r_1, t31)
-    del all_same, r_1, t31
-    left = t30 + rho * rho
+    along = _runtime.select(all_same, 0.0, t30)
     del t30
-    t32 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t33 = t32 * rho
+    X = over_a * along
+    t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
+    del t31, t8
+    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
+    del inner, outer, share, slack, t24, t25
+    rho = _runtime.select(all_same, r_1, t33)
+    del all_same, r_1, t33
+    left = t32 + rho * rho
     del t32
-    t34 = left + t33
-    upper = np.maximum(t34, 0.0)
-    t35 = t33 - left
-    del left, t33
-    lower = np.maximum(t35, 0.0)
+    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t35 = t34 * rho
+    del t34
+    t36 = left + t35
+    upper = np.maximum(t36, 0.0)
+    t37 = t35 - left
+    del left, t35
+    lower = np.maximum(t37, 0.0)
     both = upper + lower
-    t36 = _runtime.select(same, r_2, r)
+    t38 = _runtime.select(same, r_2, r)
     del r_2, same
-    t37 = (both <= _runtime.VANISHING * (r * t36)) | in_line
+    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t37, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t38 = t10 * X + t17 * Y
+    t40 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(t15 * side), t11 * t19 - t15 * t18)
+    w_x = _runtime.select(in_line, -(side * t22), t11 * t19 - t15 * t18)
     del side
-    t39 = _runtime.select(t37, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t37, upper
-    h = part * t39
-    del part, t39
-    t40 = w_x * h
+    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t39, upper
+    h = part * t41
+    del part, t41
+    t42 = w_x * h
     del w_x
-    t41 = t38 - t40
-    A_01 = c1_x - t41
-    t42 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t15, a_x * t19 + t15 * t17)
-    t43 = w_y * h
+    t43 = t40 - t42
+    A_01 = c1_x - t43
+    t44 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    del t22
+    t45 = w_y * h
     del w_y
-    t44 = t42 - t43
-    A_02 = c1_y - t44
-    t45 = t15 * X + t19 * Y
+    t46 = t44 - t45
+    A_02 = c1_y - t46
+    t47 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t20, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t20
-    t46 = w_z * h
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t48 = w_z * h
     del w_z
-    t47 = t45 - t46
-    A_03 = c1_z - t47
+    t49 = t47 - t48
+    A_03 = c1_z - t49
     strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
     radial_x = A_01 / strut
     del A_01
@@ -1655,18 +1685,18 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_02
     radial_z = A_03 / strut
     del A_03
-    t48 = t41 * radial_x + t44 * radial_y + t47 * radial_z
-    t49 = t41 - radial_x * t48
-    t50 = t44 - radial_y * t48
-    t51 = t47 - radial_z * t48
-    del t48
-    square1 = t49 * t49 + t50 * t50 + t51 * t51
-    A_21 = t4 - t41
-    del t41
-    A_22 = t6 - t44
-    del t44
-    A_23 = t7 - t47
-    del t47
+    t50 = t43 * radial_x + t46 * radial_y + t49 * radial_z
+    t51 = t43 - radial_x * t50
+    t52 = t46 - radial_y * t50
+    t53 = t49 - radial_z * t50
+    del t50
+    square1 = t51 * t51 + t52 * t52 + t53 * t53
+    A_21 = t4 - t43
+    del t43
+    A_22 = t6 - t46
+    del t46
+    A_23 = t7 - t49
+    del t49
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     del A_21, radial_x
@@ -1675,82 +1705,82 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t2_z = A_23 - radial_z * off2
     del A_23, off2, radial_z
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t52 = square1 - square2
-    t53 = t49 * t2_x + t50 * t2_y + t51 * t2_z
-    del t2_x, t2_y, t2_z, t49, t50, t51
-    t54 = square1 + square2 + np.sqrt(t52 * t52 + 4.0 * (t53 * t53))
-    del square1, square2, t52, t53
-    t55 = 2.0 * (mu * nu * h)
+    t54 = square1 - square2
+    t55 = t51 * t2_x + t52 * t2_y + t53 * t2_z
+    del t2_x, t2_y, t2_z, t51, t52, t53
+    t56 = square1 + square2 + np.sqrt(t54 * t54 + 4.0 * (t55 * t55))
+    del square1, square2, t54, t55
+    t57 = 2.0 * (mu * nu * h)
     del h, mu, nu
-    t56 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t57 = t56 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t56
-    t58 = t57 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t57
-    t59 = t58 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t58 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t59 = t58 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t58
-    t60 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t61 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t36) * 0.5)
-    del t36
-    t62 = (t60 <= t27) & (t60 <= t24) & (t60 <= t26) & (-t61 <= t34)
-    del t24, t26, t27, t34, t60
-    failed = np.logical_not(t59) | np.logical_not(t62 & (-t61 <= t35))
-    del t35, t59, t61, t62
-    t63 = _runtime.poison(failed)
+    t60 = t59 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t59
+    t61 = t60 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t60
+    t62 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t63 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    del t38
+    t64 = (t62 <= t29) & (t62 <= t26) & (t62 <= t28) & (-t63 <= t36)
+    del t26, t28, t29, t36, t62
+    failed = np.logical_not(t61) | np.logical_not(t64 & (-t63 <= t37))
+    del t37, t61, t63, t64
+    t65 = _runtime.poison(failed)
     del failed
-    t64 = t38 + t40
-    del t38, t40
-    A_01_below = c1_x - t64
+    t66 = t40 + t42
+    del t40, t42
+    A_01_below = c1_x - t66
     del c1_x
-    t65 = t42 + t43
-    del t42, t43
-    A_02_below = c1_y - t65
+    t67 = t44 + t45
+    del t44, t45
+    A_02_below = c1_y - t67
     del c1_y
-    t66 = A_01_below * A_01_below + A_02_below * A_02_below
-    t67 = t45 + t46
-    del t45, t46
-    A_03_below = c1_z - t67
+    t68 = A_01_below * A_01_below + A_02_below * A_02_below
+    t69 = t47 + t48
+    del t47, t48
+    A_03_below = c1_z - t69
     del c1_z
-    strut_below = np.sqrt(t66 + A_03_below * A_03_below)
-    del t66
+    strut_below = np.sqrt(t68 + A_03_below * A_03_below)
+    del t68
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t68 = t64 * radial_x_below + t65 * radial_y_below + t67 * radial_z_below
-    t69 = t64 - radial_x_below * t68
-    t70 = t65 - radial_y_below * t68
-    t71 = t67 - radial_z_below * t68
-    del t68
-    square1_below = t69 * t69 + t70 * t70 + t71 * t71
-    A_21_below = t4 - t64
-    del t4, t64
-    A_22_below = t6 - t65
-    del t6, t65
-    t72 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t7 - t67
-    del t67, t7
-    off2_below = t72 + radial_z_below * A_23_below
-    del t72
+    t70 = t66 * radial_x_below + t67 * radial_y_below + t69 * radial_z_below
+    t71 = t66 - radial_x_below * t70
+    t72 = t67 - radial_y_below * t70
+    t73 = t69 - radial_z_below * t70
+    del t70
+    square1_below = t71 * t71 + t72 * t72 + t73 * t73
+    A_21_below = t4 - t66
+    del t4, t66
+    A_22_below = t6 - t67
+    del t6, t67
+    t74 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t69
+    del t69, t7
+    off2_below = t74 + radial_z_below * A_23_below
+    del t74
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t73 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t75 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t73 + t2_z_below * t2_z_below
-    del t73
-    t74 = square1_below - square2_below
-    t75 = t69 * t2_x_below + t70 * t2_y_below + t71 * t2_z_below
-    del t2_x_below, t2_y_below, t2_z_below, t69, t70, t71
-    t76 = square1_below + square2_below + np.sqrt(t74 * t74 + 4.0 * (t75 * t75))
-    del square1_below, square2_below, t74, t75
+    square2_below = t75 + t2_z_below * t2_z_below
+    del t75
+    t76 = square1_below - square2_below
+    t77 = t71 * t2_x_below + t72 * t2_y_below + t73 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t71, t72, t73
+    t78 = square1_below + square2_below + np.sqrt(t76 * t76 + 4.0 * (t77 * t77))
+    del square1_below, square2_below, t76, t77
     return (
-        strut * t54 / t55 + t63,
-        strut_below * t76 / t55 + t63,
+        strut * t56 / t57 + t65,
+        strut_below * t78 / t57 + t65,
     )
 
 
@@ -1761,6 +1791,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    size=_runtime.Size((2,), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -61,10 +61,10 @@ class Diagram:
         )  # fmt: skip
 
     def passive(self, at: ArrayLike, shade: str = INK, size: float = 3.6) -> None:
-        """A joint without a drive: a small circle."""
+        """Joints without a drive: small circles."""
         self.ax.plot(
             *self._here(at).T, "o", color="white", markeredgecolor=shade, markersize=size,
-            markeredgewidth=0.9, zorder=4,
+            markeredgewidth=0.9, zorder=4, linestyle="none",
         )  # fmt: skip
 
     def hand(self, at: ArrayLike, shade: str = COLOURS[0]) -> None:

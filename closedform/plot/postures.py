@@ -308,8 +308,8 @@ def draw(
         if joint.kind == "prismatic":
             _slide(diagram, ends, shade, width, named)
             named = {}
-    for point in _passive(skeleton):
-        diagram.passive(place[point], shade, 1.4 * width)
+    if free := [place[point] for point in _passive(skeleton)]:
+        diagram.passive(free, shade, 1.4 * width)
     for name, joint in skeleton.joints.items():
         if joint.kind == "revolute":
             _, way = (along or {}).get(name, (None, None))

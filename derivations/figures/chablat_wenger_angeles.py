@@ -416,7 +416,7 @@ def conditioning(robot: ModuleType) -> Any:
     """Figure 15: curves of equal condition number for two working modes."""
     panels = new_panels(2, 1, size=(5.6, 5.6))
     params = robot.Parameters()
-    y, away = np.linspace(-6.5, 13.5, GRID // 2), np.linspace(0.02, 13, GRID // 2)
+    y, away = np.linspace(-6.5, 13.5, GRID // 3), np.linspace(0.02, 13, GRID // 3)
     x = section(y, away[:, None])
     levels = [0.2, 0.4, 0.6, 0.8]
     shades = ["#f3f7fb", "#dbe7f3", "#bcd4e9", "#93bbdb", "#5a95c4"]

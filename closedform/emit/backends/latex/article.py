@@ -261,7 +261,7 @@ class Page(Sheet):
 def column(cells: Sequence[Any]) -> str:
     """The type of a column of a table: long sentences are broken into lines."""
     longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
-    return r"L{0.66\linewidth}" if longest > SENTENCE else "l"
+    return r"L{0.56\linewidth}" if longest > SENTENCE else "l"
 
 
 def indexed(title: str) -> str:

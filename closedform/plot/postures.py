@@ -226,7 +226,7 @@ def way_through(place: Mapping[str, Array], link: Sequence[str], about: str) -> 
         if angle < 1e-6 or angle > np.pi - 1e-6:
             parts.append([b])
             continue
-        s = np.linspace(0, 1, max(3, int(angle * 24)))[1:, None]
+        s = np.linspace(0, 1, max(3, int(angle * 18)))[1:, None]
         arc = (np.sin((1 - s) * angle) * u + np.sin(s * angle) * v) / np.sin(angle)
         parts.append(list(centre + arc))
     return np.vstack(parts)

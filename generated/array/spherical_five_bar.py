@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 99 compare and select, 75 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
-#   skeleton: 107 compare and select, 78 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 110 compare and select, 84 add, 16 divide, 114 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 96 compare and select, 84 add, 16 divide, 126 multiply, 7 sincos, 7 sqrt
-#   jacobian: 105 compare and select, 102 add, 28 divide, 164 multiply, 7 sincos, 7 sqrt
-#   singularities: 98 compare and select, 84 add, 16 divide, 128 multiply, 7 sincos, 7 sqrt
-#   condition_number: 105 compare and select, 128 add, 24 divide, 173 multiply, 7 sincos, 11 sqrt
+#   fk: 100 compare and select, 75 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
+#   skeleton: 108 compare and select, 78 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 111 compare and select, 84 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 97 compare and select, 84 add, 16 divide, 128 multiply, 7 sincos, 7 sqrt
+#   jacobian: 106 compare and select, 102 add, 28 divide, 166 multiply, 7 sincos, 7 sqrt
+#   singularities: 99 compare and select, 84 add, 16 divide, 130 multiply, 7 sincos, 7 sqrt
+#   condition_number: 106 compare and select, 128 add, 24 divide, 175 multiply, 7 sincos, 11 sqrt
 #   ik: 137 compare and select, 103 add, 4 atan2, 11 divide, 129 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -181,85 +181,87 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    unreachable = ops.opposite(t46 & (-t22 <= t47))
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    unreachable = ops.opposite(t48 & (-t22 <= t49))
     failed = invalid | unreachable
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t34
-    t53 = over_2 * t32
-    w_x = ops.select(in_line, -(t28 * side), t23 * t52 - t28 * t53)
-    t54 = ops.opposite(all_same)
-    t55 = t48 & t54
-    length_a_2 = ops.sqrt(ops.select(t48 | (t55 & t54), mu, 1.0))
-    t56 = over_2 * t30
-    nu_2 = t56 * t56 + t53 * t53 + t52 * t52
-    t57 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t34
+    t55 = over_2 * t32
+    w_x = ops.select(in_line, -(side * t39), t23 * t54 - t28 * t55)
+    t56 = ops.opposite(all_same)
+    t57 = t50 & t56
+    length_a_2 = ops.sqrt(ops.select(t50 | (t57 & t56), mu, 1.0))
+    t58 = over_2 * t30
+    nu_2 = t58 * t58 + t55 * t55 + t54 * t54
+    t59 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t59)
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t63))
     over_a = length_n_2 * part
-    t62 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t62 * 0.5)
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    t65 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t65)
-    t66 = w_x * h
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
+    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    t67 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t67)
+    t68 = w_x * h
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
     X = over_a * along
-    t67 = t56 * Y - (c1_x - t24 * X)
-    w_y = ops.select(in_line, -t28, a_x * t52 + t28 * t56)
-    t68 = w_y * h
-    t69 = t53 * Y - (c1_y - t23 * X)
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t56))
-    t70 = w_z * h
-    t71 = t52 * Y - (c1_z - t28 * X)
-    t72 = ops.status(invalid, unreachable, in_line)
+    t69 = t58 * Y - (c1_x - t24 * X)
+    w_y = ops.select(in_line, -t39, a_x * t54 + t28 * t58)
+    t70 = w_y * h
+    t71 = t55 * Y - (c1_y - t23 * X)
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t58))
+    t72 = w_z * h
+    t73 = t54 * Y - (c1_z - t28 * X)
+    t74 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t66 - t67),
         ops.select(failed, ops.nan, t68 - t69),
         ops.select(failed, ops.nan, t70 - t71),
-        ops.select(failed, ops.nan, -(t67 + t66)),
+        ops.select(failed, ops.nan, t72 - t73),
         ops.select(failed, ops.nan, -(t69 + t68)),
         ops.select(failed, ops.nan, -(t71 + t70)),
-        t72,
-        t72,
+        ops.select(failed, ops.nan, -(t73 + t72)),
+        t74,
+        t74,
     )
 
 
@@ -270,6 +272,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -385,126 +388,128 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t34 * t34 + t36 * t36 + t38 * t38
     t39 = ops.select(same, r_2 * r_2, t15)
     in_line = nu <= t16
+    t40 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t26 * a_x))
-    t40 = t26 - a_x * side
-    t41 = 2.0 * (t31 * t31) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t29 - t26 * t28 - t31 * t32
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t41 = t40 * (t26 - a_x * side)
+    t42 = t31 * t40
+    t43 = t41 * t41 + 2.0 * (t42 * t42)
+    length_n = ops.sqrt(ops.select(in_line, over * t43, nu))
+    t44 = a_x * t29 - t26 * t28 - t31 * t32
+    t45 = length_n * (1.0 / (length_a * length_n)) * t44
     outer = ops.max(t22, 0.0)
     inner = ops.max(t23, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t20, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t18 + t21))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t39 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (-t25 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (-t25 <= t50))
-    t51 = ops.select(failed, ops.nan, 0.0)
-    t52 = ops.select(failed, ops.nan, c1_x)
-    t53 = ops.select(failed, ops.nan, c1_y)
-    t54 = ops.select(failed, ops.nan, c1_z)
-    t55 = ops.select(failed, ops.nan, t8)
-    t56 = ops.select(failed, ops.nan, t12)
-    t57 = ops.select(failed, ops.nan, -t9)
-    t58 = ops.select(failed, ops.nan, c2_y)
-    t59 = ops.select(failed, ops.nan, c2_z)
-    t60 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t24)
-    t61 = flat | in_line
-    t62 = t60 & ops.opposite(t61)
-    t63 = t60 | (t62 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t63, mu, 1.0)
-    t64 = over_2 * t33
-    t65 = over_2 * t35
-    t66 = over_2 * t37
-    nu_2 = t64 * t64 + t65 * t65 + t66 * t66
-    t67 = ops.select(t63, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t67)
-    t68 = ops.opposite(all_same)
-    t69 = t60 & t68
-    length_a_2 = ops.sqrt(ops.select(t60 | (t69 & t68), mu, 1.0))
-    t70 = ops.select(t60, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t70
+    t46 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t47 = t45 + ops.select(all_same, 0.0, t46)
+    t48 = ops.sqrt(outer * inner * slack * (t18 + t21))
+    rho = ops.select(all_same, r_1, share * t48)
+    left = nu - t39 + t47 * t47 + rho * rho
+    t49 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t50 = left + t49
+    t51 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (-t25 <= t50)
+    t52 = t49 - left
+    failed = invalid | ops.opposite(t51 & (-t25 <= t52))
+    t53 = ops.select(failed, ops.nan, 0.0)
+    t54 = ops.select(failed, ops.nan, c1_x)
+    t55 = ops.select(failed, ops.nan, c1_y)
+    t56 = ops.select(failed, ops.nan, c1_z)
+    t57 = ops.select(failed, ops.nan, t8)
+    t58 = ops.select(failed, ops.nan, t12)
+    t59 = ops.select(failed, ops.nan, -t9)
+    t60 = ops.select(failed, ops.nan, c2_y)
+    t61 = ops.select(failed, ops.nan, c2_z)
+    t62 = ops.opposite(failed)
+    flat = ops.max(t50, 0.0) + ops.max(t52, 0.0) <= ops.vanishing * (r * t24)
+    t63 = flat | in_line
+    t64 = t62 & ops.opposite(t63)
+    t65 = t62 | (t64 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t65, mu, 1.0)
+    t66 = over_2 * t33
+    t67 = over_2 * t35
+    t68 = over_2 * t37
+    nu_2 = t66 * t66 + t67 * t67 + t68 * t68
+    t69 = ops.select(t65, ops.select(in_line, over_2 * t43, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t69)
+    t70 = ops.opposite(all_same)
+    t71 = t62 & t70
+    length_a_2 = ops.sqrt(ops.select(t62 | (t71 & t70), mu, 1.0))
+    t72 = ops.select(t62, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t72
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t71 = r_1 + D_2
-    outer_2 = ops.max(t71 - t18, 0.0)
-    t72 = r_1 - D_2
-    inner_2 = ops.max(t18 - t72, 0.0)
-    share_2 = 1.0 / ops.select(t69, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t18 + t72, 0.0)
-    t73 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t73 * 0.5)
+    t73 = r_1 + D_2
+    outer_2 = ops.max(t73 - t18, 0.0)
+    t74 = r_1 - D_2
+    inner_2 = ops.max(t18 - t74, 0.0)
+    share_2 = 1.0 / ops.select(t71, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t18 + t74, 0.0)
+    t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
     X = over_a * along
-    t74 = ops.select(t69, outer_2 * inner_2 * slack_2 * (t18 + t71), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t74))
-    t75 = over_a * t42 + along
-    left_2 = nu_2 - t39 + t75 * t75 + rho_2 * rho_2
-    t76 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t76, 0.0)
-    lower = ops.max(t76 - left_2, 0.0)
-    half = rho_2 / ops.select(t62, upper + lower, 1.0)
-    Y = ops.select(t61, 0.0, length_a_2 * part * half * (upper - lower))
-    t77 = t27 * X + t64 * Y
-    w_x = ops.select(in_line, -(t31 * side), t26 * t66 - t31 * t65)
-    t78 = ops.sqrt(ops.select(t62, upper * lower, 1.0))
-    h = part * ops.select(t61, rho_2, 2.0 * half * t78)
-    t79 = w_x * h
-    t80 = ops.select(failed, ops.nan, c1_x - (t77 - t79))
-    t81 = t26 * X + t65 * Y
-    w_y = ops.select(in_line, -t31, a_x * t66 + t31 * t64)
-    t82 = w_y * h
-    t83 = ops.select(failed, ops.nan, c1_y - (t81 - t82))
-    t84 = t31 * X + t66 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t65 + t26 * t64))
-    t85 = w_z * h
-    t86 = ops.select(failed, ops.nan, c1_z - (t84 - t85))
-    t87 = ops.select(failed, ops.nan, c1_x - (t77 + t79))
-    t88 = ops.select(failed, ops.nan, c1_y - (t81 + t82))
-    t89 = ops.select(failed, ops.nan, c1_z - (t84 + t85))
+    t76 = ops.select(t71, outer_2 * inner_2 * slack_2 * (t18 + t73), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t76))
+    t77 = over_a * t44 + along
+    left_2 = nu_2 - t39 + t77 * t77 + rho_2 * rho_2
+    t78 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t78, 0.0)
+    lower = ops.max(t78 - left_2, 0.0)
+    half = rho_2 / ops.select(t64, upper + lower, 1.0)
+    Y = ops.select(t63, 0.0, length_a_2 * part * half * (upper - lower))
+    t79 = t27 * X + t66 * Y
+    w_x = ops.select(in_line, -(side * t42), t26 * t68 - t31 * t67)
+    t80 = ops.sqrt(ops.select(t64, upper * lower, 1.0))
+    h = part * ops.select(t63, rho_2, 2.0 * half * t80)
+    t81 = w_x * h
+    t82 = ops.select(failed, ops.nan, c1_x - (t79 - t81))
+    t83 = t26 * X + t67 * Y
+    w_y = ops.select(in_line, -t42, a_x * t68 + t31 * t66)
+    t84 = w_y * h
+    t85 = ops.select(failed, ops.nan, c1_y - (t83 - t84))
+    t86 = t31 * X + t68 * Y
+    w_z = ops.select(in_line, t41, -(a_x * t67 + t26 * t66))
+    t87 = w_z * h
+    t88 = ops.select(failed, ops.nan, c1_z - (t86 - t87))
+    t89 = ops.select(failed, ops.nan, c1_x - (t79 + t81))
+    t90 = ops.select(failed, ops.nan, c1_y - (t83 + t84))
+    t91 = ops.select(failed, ops.nan, c1_z - (t86 + t87))
     return (
-        t51,
-        t51,
-        t51,
-        t52,
-        t51,
-        t51,
-        t52,
+        t53,
+        t53,
+        t53,
+        t54,
+        t53,
         t53,
         t54,
         t55,
         t56,
-        t51,
         t57,
         t58,
-        t59,
-        t80,
-        t83,
-        t86,
-        t51,
-        t51,
-        t51,
-        t52,
-        t51,
-        t51,
-        t52,
         t53,
-        t54,
-        t55,
-        t56,
-        t51,
-        t57,
-        t58,
         t59,
-        t87,
+        t60,
+        t61,
+        t82,
+        t85,
         t88,
+        t53,
+        t53,
+        t53,
+        t54,
+        t53,
+        t53,
+        t54,
+        t55,
+        t56,
+        t57,
+        t58,
+        t53,
+        t59,
+        t60,
+        t61,
         t89,
+        t90,
+        t91,
     )
 
 
@@ -515,6 +520,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 8),
 )
 
 
@@ -617,99 +623,101 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t30
-    t53 = over_2 * t32
-    t54 = over_2 * t34
-    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
-    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t55)
-    t56 = ops.opposite(all_same)
-    t57 = t48 & t56
-    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (-t22 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t30
+    t55 = over_2 * t32
+    t56 = over_2 * t34
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
-    t65 = t24 * X + t52 * Y
-    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
-    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
-    t67 = w_x * h
-    t68 = t65 - t67
-    t69 = t23 * X + t53 * Y
-    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
-    t70 = w_y * h
-    t71 = t69 - t70
-    t72 = t28 * X + t54 * Y
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
-    t73 = w_z * h
-    t74 = t72 - t73
-    t75 = t65 + t67
-    t76 = t69 + t70
-    t77 = t72 + t73
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t54 * Y
+    w_x = ops.select(in_line, -(side * t39), t23 * t56 - t28 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    t71 = t23 * X + t55 * Y
+    w_y = ops.select(in_line, -t39, a_x * t56 + t28 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    t74 = t28 * X + t56 * Y
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    t77 = t67 + t69
+    t78 = t71 + t72
+    t79 = t74 + t75
     return (
-        ops.select(failed, ops.nan, c1_x - t68),
-        ops.select(failed, ops.nan, c1_y - t71),
-        ops.select(failed, ops.nan, c1_z - t74),
-        ops.select(failed, ops.nan, -t68),
-        ops.select(failed, ops.nan, -t71),
-        ops.select(failed, ops.nan, -t74),
-        ops.select(failed, ops.nan, t8 - t68),
-        ops.select(failed, ops.nan, t10 - t71),
-        ops.select(failed, ops.nan, t11 - t74),
-        ops.select(failed, ops.nan, c1_x - t75),
-        ops.select(failed, ops.nan, c1_y - t76),
-        ops.select(failed, ops.nan, c1_z - t77),
-        ops.select(failed, ops.nan, -t75),
+        ops.select(failed, ops.nan, c1_x - t70),
+        ops.select(failed, ops.nan, c1_y - t73),
+        ops.select(failed, ops.nan, c1_z - t76),
+        ops.select(failed, ops.nan, -t70),
+        ops.select(failed, ops.nan, -t73),
         ops.select(failed, ops.nan, -t76),
+        ops.select(failed, ops.nan, t8 - t70),
+        ops.select(failed, ops.nan, t10 - t73),
+        ops.select(failed, ops.nan, t11 - t76),
+        ops.select(failed, ops.nan, c1_x - t77),
+        ops.select(failed, ops.nan, c1_y - t78),
+        ops.select(failed, ops.nan, c1_z - t79),
         ops.select(failed, ops.nan, -t77),
-        ops.select(failed, ops.nan, t8 - t75),
-        ops.select(failed, ops.nan, t10 - t76),
-        ops.select(failed, ops.nan, t11 - t77),
+        ops.select(failed, ops.nan, -t78),
+        ops.select(failed, ops.nan, -t79),
+        ops.select(failed, ops.nan, t8 - t77),
+        ops.select(failed, ops.nan, t10 - t78),
+        ops.select(failed, ops.nan, t11 - t79),
     )
 
 
@@ -720,6 +728,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
 )
 
 
@@ -823,88 +832,90 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t30
-    t53 = over_2 * t32
-    t54 = over_2 * t34
-    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
-    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t55)
-    t56 = ops.opposite(all_same)
-    t57 = t48 & t56
-    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (-t22 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t30
+    t55 = over_2 * t32
+    t56 = over_2 * t34
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
-    t65 = t23 * X + t53 * Y
-    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
-    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
-    t67 = w_y * h
-    t68 = t65 - t67
-    t69 = t28 * X + t54 * Y
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
-    t70 = w_z * h
-    t71 = t69 - t70
-    t72 = ops.select(failed, ops.nan, c1_z * t68 - c1_y * t71)
-    t73 = s_gamma * c2_z
-    t74 = t24 * X + t52 * Y
-    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
-    t75 = w_x * h
-    t76 = c_gamma * c2_z
-    B_22 = t73 * (t8 - (t74 - t75)) - t76 * (t10 - t68) - t6 * (t11 + t71)
-    t77 = t65 + t67
-    t78 = t69 + t70
-    t79 = ops.select(failed, ops.nan, c1_z * t77 - c1_y * t78)
-    B_22_below = t73 * (t8 - (t74 + t75)) - t76 * (t10 - t77) - t6 * (t11 + t78)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t23 * X + t55 * Y
+    w_y = ops.select(in_line, -t39, a_x * t56 + t28 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t28 * X + t56 * Y
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t24 * X + t54 * Y
+    w_x = ops.select(in_line, -(side * t39), t23 * t56 - t28 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t72,
+        t74,
         ops.select(failed, ops.nan, B_22),
-        t79,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -916,6 +927,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 8),
 )
 
 
@@ -1019,125 +1031,127 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t30
-    t53 = over_2 * t32
-    t54 = over_2 * t34
-    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
-    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t55)
-    t56 = ops.opposite(all_same)
-    t57 = t48 & t56
-    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (-t22 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t30
+    t55 = over_2 * t32
+    t56 = over_2 * t34
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
-    t65 = t23 * X + t53 * Y
-    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
-    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
-    t67 = w_y * h
-    t68 = t65 - t67
-    t69 = t28 * X + t54 * Y
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
-    t70 = w_z * h
-    t71 = t69 - t70
-    B_11 = c1_z * t68 - c1_y * t71
-    A_02 = c1_y - t68
-    t72 = t11 + t71
-    A_03 = c1_z - t71
-    A_22 = t10 - t68
-    t73 = ops.select(t48, mu * nu_2 * h, 1.0)
-    t74 = ops.select(failed, ops.nan, B_11 * (A_02 * t72 + A_03 * A_22) / t73)
-    t75 = s_gamma * c2_z
-    t76 = t24 * X + t52 * Y
-    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
-    t77 = w_x * h
-    t78 = t76 - t77
-    A_21 = t8 - t78
-    t79 = c_gamma * c2_z
-    B_22 = t75 * A_21 - t79 * A_22 - t6 * t72
-    t80 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_02 - t68 * A_03) / t73))
-    A_01 = c1_x - t78
-    t81 = ops.select(failed, ops.nan, -(B_11 * (t72 * A_01 + A_03 * A_21) / t73))
-    t82 = ops.select(failed, ops.nan, B_22 * (t71 * A_01 - A_03 * t78) / t73)
-    t83 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t73))
-    t84 = ops.select(failed, ops.nan, -(B_22 * (t68 * A_01 - A_02 * t78) / t73))
-    t85 = t65 + t67
-    t86 = t69 + t70
-    B_11_below = c1_z * t85 - c1_y * t86
-    A_02_below = c1_y - t85
-    t87 = t11 + t86
-    A_03_below = c1_z - t86
-    A_22_below = t10 - t85
-    t88 = B_11_below * (A_02_below * t87 + A_03_below * A_22_below)
-    t89 = t76 + t77
-    A_21_below = t8 - t89
-    B_22_below = t75 * A_21_below - t79 * A_22_below - t6 * t87
-    t90 = B_22_below * (t86 * A_02_below - t85 * A_03_below)
-    A_01_below = c1_x - t89
-    t91 = B_11_below * (t87 * A_01_below + A_03_below * A_21_below)
-    t92 = B_22_below * (t86 * A_01_below - A_03_below * t89)
-    t93 = A_22_below * A_01_below - A_02_below * A_21_below
-    t94 = ops.select(failed, ops.nan, B_11_below * t93 / t73)
-    t95 = B_22_below * (t85 * A_01_below - A_02_below * t89)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t23 * X + t55 * Y
+    w_y = ops.select(in_line, -t39, a_x * t56 + t28 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t28 * X + t56 * Y
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    B_11 = c1_z * t70 - c1_y * t73
+    A_02 = c1_y - t70
+    t74 = t11 + t73
+    A_03 = c1_z - t73
+    A_22 = t10 - t70
+    t75 = ops.select(t50, mu * nu_2 * h, 1.0)
+    t76 = ops.select(failed, ops.nan, B_11 * (A_02 * t74 + A_03 * A_22) / t75)
+    t77 = s_gamma * c2_z
+    t78 = t24 * X + t54 * Y
+    w_x = ops.select(in_line, -(side * t39), t23 * t56 - t28 * t55)
+    t79 = w_x * h
+    t80 = t78 - t79
+    A_21 = t8 - t80
+    t81 = c_gamma * c2_z
+    B_22 = t77 * A_21 - t81 * A_22 - t6 * t74
+    t82 = ops.select(failed, ops.nan, -(B_22 * (t73 * A_02 - t70 * A_03) / t75))
+    A_01 = c1_x - t80
+    t83 = ops.select(failed, ops.nan, -(B_11 * (t74 * A_01 + A_03 * A_21) / t75))
+    t84 = ops.select(failed, ops.nan, B_22 * (t73 * A_01 - A_03 * t80) / t75)
+    t85 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t75))
+    t86 = ops.select(failed, ops.nan, -(B_22 * (t70 * A_01 - A_02 * t80) / t75))
+    t87 = t67 + t69
+    t88 = t71 + t72
+    B_11_below = c1_z * t87 - c1_y * t88
+    A_02_below = c1_y - t87
+    t89 = t11 + t88
+    A_03_below = c1_z - t88
+    A_22_below = t10 - t87
+    t90 = B_11_below * (A_02_below * t89 + A_03_below * A_22_below)
+    t91 = t78 + t79
+    A_21_below = t8 - t91
+    B_22_below = t77 * A_21_below - t81 * A_22_below - t6 * t89
+    t92 = B_22_below * (t88 * A_02_below - t87 * A_03_below)
+    A_01_below = c1_x - t91
+    t93 = B_11_below * (t89 * A_01_below + A_03_below * A_21_below)
+    t94 = B_22_below * (t88 * A_01_below - A_03_below * t91)
+    t95 = A_22_below * A_01_below - A_02_below * A_21_below
+    t96 = ops.select(failed, ops.nan, B_11_below * t95 / t75)
+    t97 = B_22_below * (t87 * A_01_below - A_02_below * t91)
     return (
-        t74,
-        t80,
-        t81,
+        t76,
         t82,
         t83,
         t84,
-        ops.select(failed, ops.nan, -(t88 / t73)),
-        ops.select(failed, ops.nan, t90 / t73),
-        ops.select(failed, ops.nan, t91 / t73),
-        ops.select(failed, ops.nan, -(t92 / t73)),
-        t94,
-        ops.select(failed, ops.nan, t95 / t73),
+        t85,
+        t86,
+        ops.select(failed, ops.nan, -(t90 / t75)),
+        ops.select(failed, ops.nan, t92 / t75),
+        ops.select(failed, ops.nan, t93 / t75),
+        ops.select(failed, ops.nan, -(t94 / t75)),
+        t96,
+        ops.select(failed, ops.nan, t97 / t75),
     )
 
 
@@ -1148,6 +1162,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 8),
 )
 
 
@@ -1252,90 +1267,92 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t30
-    t53 = over_2 * t32
-    t54 = over_2 * t34
-    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
-    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t55)
-    t56 = ops.opposite(all_same)
-    t57 = t48 & t56
-    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (-t22 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t30
+    t55 = over_2 * t32
+    t56 = over_2 * t34
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
-    t65 = t23 * X + t53 * Y
-    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
-    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
-    t67 = w_y * h
-    t68 = t65 - t67
-    t69 = t28 * X + t54 * Y
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
-    t70 = w_z * h
-    t71 = t69 - t70
-    t72 = ops.select(failed, ops.nan, c1_z * t68 - c1_y * t71)
-    t73 = s_gamma * c2_z
-    t74 = t24 * X + t52 * Y
-    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
-    t75 = w_x * h
-    t76 = c_gamma * c2_z
-    B_22 = t73 * (t8 - (t74 - t75)) - t76 * (t10 - t68) - t6 * (t11 + t71)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t23 * X + t55 * Y
+    w_y = ops.select(in_line, -t39, a_x * t56 + t28 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t28 * X + t56 * Y
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t24 * X + t54 * Y
+    w_x = ops.select(in_line, -(side * t39), t23 * t56 - t28 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
     Delta = mu * nu_2 * h
-    t77 = t65 + t67
-    t78 = t69 + t70
-    t79 = ops.select(failed, ops.nan, c1_z * t77 - c1_y * t78)
-    B_22_below = t73 * (t8 - (t74 + t75)) - t76 * (t10 - t77) - t6 * (t11 + t78)
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t72,
+        t74,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t79,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1348,6 +1365,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 8),
 )
 
 
@@ -1450,141 +1468,143 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
+    t37 = ops.select(all_same, 1.0, r)
     side = ops.sign(-(t23 * a_x))
-    t37 = t23 - a_x * side
-    t38 = 2.0 * (t28 * t28) + t37 * t37
-    length_n = ops.sqrt(ops.select(in_line, over * t38, nu))
-    t39 = a_x * t26 - t23 * t25 - t28 * t29
-    t40 = length_n * (1.0 / (length_a * length_n)) * t39
+    t38 = t37 * (t23 - a_x * side)
+    t39 = t28 * t37
+    t40 = t38 * t38 + 2.0 * (t39 * t39)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t26 - t23 * t25 - t28 * t29
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = nu - t36 + t42 * t42 + rho * rho
-    t44 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t45 = left + t44
-    t46 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t45)
-    t47 = t44 - left
-    failed = invalid | ops.opposite(t46 & (-t22 <= t47))
-    t48 = ops.opposite(failed)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t21)
-    t49 = flat | in_line
-    t50 = t48 & ops.opposite(t49)
-    t51 = t48 | (t50 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t51, mu, 1.0)
-    t52 = over_2 * t30
-    t53 = over_2 * t32
-    t54 = over_2 * t34
-    nu_2 = t52 * t52 + t53 * t53 + t54 * t54
-    t55 = ops.select(t51, ops.select(in_line, over_2 * t38, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t55)
-    t56 = ops.opposite(all_same)
-    t57 = t48 & t56
-    length_a_2 = ops.sqrt(ops.select(t48 | (t57 & t56), mu, 1.0))
-    t58 = ops.select(t48, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t58
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t36 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (-t22 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t30
+    t55 = over_2 * t32
+    t56 = over_2 * t34
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t59 = D_2 + r_1
-    outer_2 = ops.max(t59 - t15, 0.0)
-    t60 = D_2 - r_1
-    inner_2 = ops.max(t15 + t60, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t60, 0.0)
-    t61 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t61 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t62 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t59), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    t63 = over_a * t39 + along
-    left_2 = nu_2 - t36 + t63 * t63 + rho_2 * rho_2
-    t64 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t64, 0.0)
-    lower = ops.max(t64 - left_2, 0.0)
-    half = rho_2 / ops.select(t50, upper + lower, 1.0)
-    Y = ops.select(t49, 0.0, length_a_2 * part * half * (upper - lower))
-    t65 = t24 * X + t52 * Y
-    w_x = ops.select(in_line, -(t28 * side), t23 * t54 - t28 * t53)
-    t66 = ops.sqrt(ops.select(t50, upper * lower, 1.0))
-    h = part * ops.select(t49, rho_2, 2.0 * half * t66)
-    t67 = w_x * h
-    t68 = t65 - t67
-    A_01 = c1_x - t68
-    t69 = t23 * X + t53 * Y
-    w_y = ops.select(in_line, -t28, a_x * t54 + t28 * t52)
-    t70 = w_y * h
-    t71 = t69 - t70
-    A_02 = c1_y - t71
-    t72 = t28 * X + t54 * Y
-    w_z = ops.select(in_line, t37, -(a_x * t53 + t23 * t52))
-    t73 = w_z * h
-    t74 = t72 - t73
-    A_03 = c1_z - t74
-    t75 = ops.select(t48, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t75)
-    t76 = ops.select(t48, strut, 1.0)
-    radial_x = A_01 / t76
-    radial_y = A_02 / t76
-    radial_z = A_03 / t76
-    t77 = t68 * radial_x + t71 * radial_y + t74 * radial_z
-    t78 = t68 - radial_x * t77
-    t79 = t71 - radial_y * t77
-    t80 = t74 - radial_z * t77
-    square1 = t78 * t78 + t79 * t79 + t80 * t80
-    A_21 = t8 - t68
-    A_22 = t10 - t71
-    A_23 = t11 - t74
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t54 * Y
+    w_x = ops.select(in_line, -(side * t39), t23 * t56 - t28 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    A_01 = c1_x - t70
+    t71 = t23 * X + t55 * Y
+    w_y = ops.select(in_line, -t39, a_x * t56 + t28 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    A_02 = c1_y - t73
+    t74 = t28 * X + t56 * Y
+    w_z = ops.select(in_line, t38, -(a_x * t55 + t23 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    A_03 = c1_z - t76
+    t77 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t77)
+    t78 = ops.select(t50, strut, 1.0)
+    radial_x = A_01 / t78
+    radial_y = A_02 / t78
+    radial_z = A_03 / t78
+    t79 = t70 * radial_x + t73 * radial_y + t76 * radial_z
+    t80 = t70 - radial_x * t79
+    t81 = t73 - radial_y * t79
+    t82 = t76 - radial_z * t79
+    square1 = t80 * t80 + t81 * t81 + t82 * t82
+    A_21 = t8 - t70
+    A_22 = t10 - t73
+    A_23 = t11 - t76
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
     t2_z = A_23 - radial_z * off2
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t81 = square1 - square2
-    t82 = t78 * t2_x + t79 * t2_y + t80 * t2_z
-    t83 = ops.select(t48, t81 * t81, 1.0) + 4.0 * ops.select(t48, t82 * t82, 1.0)
-    t84 = square1 + square2 + ops.sqrt(ops.select(t48, t83, 1.0))
-    t85 = ops.select(t48, 2.0 * (mu * nu_2 * h), 1.0)
-    t86 = ops.select(failed, ops.nan, strut * t84 / t85)
-    t87 = t65 + t67
-    A_01_below = c1_x - t87
-    t88 = t69 + t70
-    A_02_below = c1_y - t88
-    t89 = A_01_below * A_01_below + A_02_below * A_02_below
-    t90 = t72 + t73
-    A_03_below = c1_z - t90
-    t91 = ops.select(t48, t89 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t91)
-    t92 = ops.select(t48, strut_below, 1.0)
-    radial_x_below = A_01_below / t92
-    radial_y_below = A_02_below / t92
-    radial_z_below = A_03_below / t92
-    t93 = t87 * radial_x_below + t88 * radial_y_below + t90 * radial_z_below
-    t94 = t87 - radial_x_below * t93
-    t95 = t88 - radial_y_below * t93
-    t96 = t90 - radial_z_below * t93
-    square1_below = t94 * t94 + t95 * t95 + t96 * t96
-    A_21_below = t8 - t87
-    A_22_below = t10 - t88
-    t97 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t90
-    off2_below = t97 + radial_z_below * A_23_below
+    t83 = square1 - square2
+    t84 = t80 * t2_x + t81 * t2_y + t82 * t2_z
+    t85 = ops.select(t50, t83 * t83, 1.0) + 4.0 * ops.select(t50, t84 * t84, 1.0)
+    t86 = square1 + square2 + ops.sqrt(ops.select(t50, t85, 1.0))
+    t87 = ops.select(t50, 2.0 * (mu * nu_2 * h), 1.0)
+    t88 = ops.select(failed, ops.nan, strut * t86 / t87)
+    t89 = t67 + t69
+    A_01_below = c1_x - t89
+    t90 = t71 + t72
+    A_02_below = c1_y - t90
+    t91 = A_01_below * A_01_below + A_02_below * A_02_below
+    t92 = t74 + t75
+    A_03_below = c1_z - t92
+    t93 = ops.select(t50, t91 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t93)
+    t94 = ops.select(t50, strut_below, 1.0)
+    radial_x_below = A_01_below / t94
+    radial_y_below = A_02_below / t94
+    radial_z_below = A_03_below / t94
+    t95 = t89 * radial_x_below + t90 * radial_y_below + t92 * radial_z_below
+    t96 = t89 - radial_x_below * t95
+    t97 = t90 - radial_y_below * t95
+    t98 = t92 - radial_z_below * t95
+    square1_below = t96 * t96 + t97 * t97 + t98 * t98
+    A_21_below = t8 - t89
+    A_22_below = t10 - t90
+    t99 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t92
+    off2_below = t99 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t98 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t100 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t98 + t2_z_below * t2_z_below
-    t99 = square1_below - square2_below
-    t100 = t94 * t2_x_below + t95 * t2_y_below + t96 * t2_z_below
-    t101 = ops.select(t48, t99 * t99, 1.0) + 4.0 * ops.select(t48, t100 * t100, 1.0)
-    t102 = square1_below + square2_below + ops.sqrt(ops.select(t48, t101, 1.0))
-    t103 = ops.select(failed, ops.nan, strut_below * t102 / t85)
+    square2_below = t100 + t2_z_below * t2_z_below
+    t101 = square1_below - square2_below
+    t102 = t96 * t2_x_below + t97 * t2_y_below + t98 * t2_z_below
+    t103 = ops.select(t50, t101 * t101, 1.0) + 4.0 * ops.select(t50, t102 * t102, 1.0)
+    t104 = square1_below + square2_below + ops.sqrt(ops.select(t50, t103, 1.0))
+    t105 = ops.select(failed, ops.nan, strut_below * t104 / t87)
     return (
-        t86,
-        t103,
+        t88,
+        t105,
     )
 
 

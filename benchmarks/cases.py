@@ -104,8 +104,8 @@ class Case:
         q = random.uniform(-3, 3, (n, len(module.JOINTS)))
         joints = [j for j in self.derivation.joints if j.name in module.JOINTS]
         for k, joint in enumerate(joints):
-            if joint.beside is not None:  # close to the joint of the other arm
-                q[:, k] = q[:, module.JOINTS.index(joint.beside.name)] + q[:, k] / 32
+            if joint.twin_of is not None:  # close to the joint of the other arm
+                q[:, k] = q[:, module.JOINTS.index(joint.twin_of.name)] + q[:, k] / 32
         if not self.inverse:
             return q
         x = module.fk(q)

@@ -30,6 +30,10 @@ Monomial: TypeAlias = tuple[int, ...]
 Method: TypeAlias = Literal["generic", "specialised"]
 
 
+class NotRationalError(ValueError):
+    """An equation contains a root, which the count of its solutions cannot take."""
+
+
 class InfinitelyManyError(ValueError):
     """The system has infinitely many solutions for generic parameters."""
 
@@ -266,8 +270,8 @@ def _function_field(parameters: Sequence[Symbol]) -> Any:
 def _element(ring: PolyRing, e: Expr) -> PolyElement:
     try:
         polynomial = sp.Poly(e, *ring.symbols, domain=ring.domain)
-    except sp.PolynomialError as reason:
-        raise ValueError(
+    except (sp.PolynomialError, sp.CoercionFailed) as reason:
+        raise NotRationalError(
             f"{e} is not rational: make each root an unknown, with an equation for its square"
         ) from reason
     element: PolyElement = ring.from_dict(polynomial.rep.to_dict())

@@ -74,7 +74,7 @@ class Correction:
         }
         slides = {j: value + step[j] for j, value in self.slides.items()}
         left = tuple(
-            choose(loose, let(f"left_{k}", after), before)
+            choose(loose, let(f"remaining_{k}", after), before)
             for k, (after, before) in enumerate(
                 zip(self._missed(named, slides), missed, strict=True)
             )

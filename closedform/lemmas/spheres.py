@@ -269,9 +269,9 @@ def _beside(p: Program, e: sp.Matrix, scale: sp.Expr) -> tuple[tuple[sp.Expr, ..
     x y.  So it is not short, and its degree in lengths is that of a product.
     """
     x, y, z = e
-    side = p.let("side", sign_of(x * y))
-    up = p.let("up", scale * z)
-    last = p.let("last", scale * (y + side * x))
+    side = p.let("s_w", sign_of(x * y))
+    up = p.let("g_1", scale * z)
+    last = p.let("g_2", scale * (y + side * x))
     return (side * up, up, -last), last**2 + 2 * up**2
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 import closedform
+from closedform.algebra.solutions import NotRationalError
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import Serial
 from closedform.model.derivation import Derivation
@@ -28,10 +29,15 @@ def solved(d: Derivation, arm: Serial, lines: str) -> Chain:
 
 
 def fault(d: Derivation, arm: Serial, lines: str) -> str:
-    """A clause on why the proof of a proposed chain fails; empty if it does not."""
+    """A clause on why the proof of a proposed chain fails; empty if it does not.
+
+    Where it cannot be carried out, because a length is a root such as sqrt(401), nothing is known.
+    """
     try:
         solved(d, arm, lines)
         prove_inverse(d, d.inverses[-1])
+    except NotRationalError:
+        return ""
     except (ValueError, TypeError, ArithmeticError, NotImplementedError) as error:
         return str(error).removeprefix(f"{d.name}.ik: ").partition(". ")[0]
     return ""

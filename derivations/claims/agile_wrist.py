@@ -21,12 +21,14 @@ def state(
     claim = partial(d.claim, where=ABSTRACT)
     R = dict(zip(given, rotation_parametrisation(), strict=True))
 
-    def orthogonal() -> Check:
+    def orthogonal(cosine: int) -> Check:
         """The first two by themselves, the last two where the loop is closed."""
         return Every(
             {
-                "first and middle axis": Identity([u.dot(w) for u, w, _, _ in axes], [0, 0, 0]),
-                "middle and last axis": Identity([w.dot(v) for _, w, _, v in axes], loop),
+                "first and middle axis": Identity([u.dot(w) for u, w, _, _ in axes], [cosine] * 3),
+                "middle and last axis": Identity(
+                    [w.dot(v) for _, w, _, v in axes], [e + cosine for e in loop]
+                ),
             }
         )
 
@@ -41,7 +43,13 @@ def state(
         rigid = [square[i, j] for i in range(3) for j in range(i, 3)]
         return Count([*rigid, V.det() - 1, rest * y[0] - 1], [*x, *y, rest], number)
 
-    claim("axes", "“all pairs of adjacent joint axes are orthogonal”", orthogonal)
+    claim(
+        "axes",
+        "“{all} pairs of adjacent joint axes are {orthogonal}”",
+        orthogonal,
+        phrases=[{"orthogonal": 0, "parallel": 1}],
+        opposites={"all": "not all"},
+    )
     claim(
         "assembly modes",
         "“the {four} solutions to the direct kinematics of the Agile Eye (assembly modes)”",

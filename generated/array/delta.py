@@ -207,10 +207,10 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 2.0
     t30 = l * l
-    side = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * side)
-    up = size * d_z
-    t32 = t31 * t31 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t15 * a_x)
+    t31 = size * (t15 + a_x * s_w)
+    t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -233,13 +233,13 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
     t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
     t46 = d_x * 0.5 - (t5 - t43 * t45)
-    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t44)
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t44)
     t47 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
     t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t48))
     t49 = w_x * h
     t50 = t15 * 0.5 - (t8 + t44 * t45)
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t43))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t43))
     t51 = h * w_y
     t52 = d_z * 0.5 - (t3 + n_z_2 * t45)
     w_z = ops.select(in_line, -t31, a_x * t44 + t15 * t43)
@@ -389,10 +389,10 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t49 = l * size * 2.0
     t50 = l * l
     t51 = mu * t47
-    side = ops.sign(t35 * a_x)
-    t52 = size * (t35 + a_x * side)
-    up = size * d_z
-    t53 = t52 * t52 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t35 * a_x)
+    t52 = size * (t35 + a_x * s_w)
+    t53 = 2.0 * (g_1 * g_1) + t52 * t52
     part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
     t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
     t55 = mu * 0.25
@@ -421,7 +421,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     part_2 = ops.select(in_line, 1.0 / ops.select(t68 & in_line, t53, 1.0), 1.0 / ops.select(t69, mu * nu_2, 1.0))
     t72 = ops.select(in_line, 0.0, t51 * part_2 * 0.5)
     t73 = t70 * t72 + d_x * 0.5
-    w_x = ops.select(in_line, side * up, t35 * n_z_2 - d_z * t71)
+    w_x = ops.select(in_line, g_1 * s_w, t35 * n_z_2 - d_z * t71)
     t74 = ops.select(all_same, 0.0, nu_2 * (t72 * t72) + t55)
     t75 = ops.select(t65, part_2 * ops.max(t50 - t74, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t75))
@@ -429,7 +429,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t77 = t9 - (t73 - t76)
     t78 = t5 - t77
     t79 = t71 * t72 - t35 * 0.5
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t70))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t70))
     t80 = h * w_y
     t81 = t18 + (t79 + t80)
     t82 = t15 - t81
@@ -716,10 +716,10 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 2.0
     t30 = l * l
-    side = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * side)
-    up = size * d_z
-    t32 = t31 * t31 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t15 * a_x)
+    t31 = size * (t15 + a_x * s_w)
+    t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -737,7 +737,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
     n_z_2 = over_2 * t26
     t43 = over_2 * t24
-    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t43)
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
     t44 = over_2 * t21
     nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
@@ -748,7 +748,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t48 = w_x * h
     t49 = t44 * t45 + d_x * 0.5
     t50 = t48 - t49
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
     t51 = h * w_y
     t52 = t43 * t45 - t15 * 0.5
     t53 = t51 + t52
@@ -888,10 +888,10 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 2.0
     t32 = l * l
-    side = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * side)
-    up = size * d_z
-    t34 = t33 * t33 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t17 * a_x)
+    t33 = size * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -910,7 +910,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, mu * nu_2, 1.0))
@@ -922,7 +922,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t52 = t47 * t48 + d_x * 0.5
     t53 = t51 - t52
     t54 = s_alpha1 * t3
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
     t55 = h * w_y
     t56 = t46 * t48 - t17 * 0.5
     t57 = t55 + t56
@@ -1058,10 +1058,10 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 2.0
     t32 = l * l
-    side = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * side)
-    up = size * d_z
-    t34 = t33 * t33 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t17 * a_x)
+    t33 = size * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1080,7 +1080,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1093,7 +1093,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1271,10 +1271,10 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 2.0
     t32 = l * l
-    side = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * side)
-    up = size * d_z
-    t34 = t33 * t33 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t17 * a_x)
+    t33 = size * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1293,7 +1293,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1306,7 +1306,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1438,10 +1438,10 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 2.0
     t32 = l * l
-    side = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * side)
-    up = size * d_z
-    t34 = t33 * t33 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t17 * a_x)
+    t33 = size * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
     t36 = mu * 0.25
@@ -1460,7 +1460,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
     n_z_2 = over_2 * t28
     t46 = over_2 * t26
-    w_x = ops.select(in_line, side * up, t17 * n_z_2 - d_z * t46)
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
     t47 = over_2 * t23
     nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
     t48 = mu * nu_2
@@ -1473,7 +1473,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t53 = t47 * t49 + d_x * 0.5
     t54 = t52 - t53
     t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t47))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
     t56 = h * w_y
     t57 = t46 * t49 - t17 * 0.5
     t58 = t56 + t57
@@ -1610,10 +1610,10 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 2.0
     t30 = l * l
-    side = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * side)
-    up = size * d_z
-    t32 = t31 * t31 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t15 * a_x)
+    t31 = size * (t15 + a_x * s_w)
+    t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -1631,7 +1631,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
     n_z_2 = over_2 * t26
     t43 = over_2 * t24
-    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t43)
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
     t44 = over_2 * t21
     nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
     t45 = mu * nu_2
@@ -1643,7 +1643,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t49 = w_x * h
     t50 = t44 * t46 + d_x * 0.5
     t51 = t49 - t50
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
     t52 = h * w_y
     t53 = t43 * t46 - t15 * 0.5
     t54 = t52 + t53
@@ -1804,10 +1804,10 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 2.0
     t30 = l * l
-    side = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * side)
-    up = size * d_z
-    t32 = t31 * t31 + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(t15 * a_x)
+    t31 = size * (t15 + a_x * s_w)
+    t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
     t34 = mu * 0.25
@@ -1840,13 +1840,13 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t52 = s_alpha3 * t51
     t53 = t37 * t52
     t54 = u_z + t51
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t44))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
     t55 = h * w_y
     t56 = t45 * t46 - t15 * 0.5
     t57 = t55 + t56
     t58 = t54 * (t12 + t57)
     t59 = c_alpha3 * t37
-    w_x = ops.select(in_line, side * up, t15 * n_z_2 - d_z * t45)
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t45)
     t60 = w_x * h
     t61 = t44 * t46 + d_x * 0.5
     t62 = t60 - t61

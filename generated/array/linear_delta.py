@@ -175,10 +175,10 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -196,7 +196,7 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
     t34 = over_2 * t16
     n_y_2 = over_2 * t15
-    t35 = ops.select(in_line, side * t22, d_y * t34 - t10 * n_y_2)
+    t35 = ops.select(in_line, t22 * s_w, d_y * t34 - t10 * n_y_2)
     t36 = over_2 * t12
     nu_2 = t36 * t36 + n_y_2 * n_y_2 + t34 * t34
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
@@ -210,7 +210,7 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     w_y = ops.select(in_line, -t22, a_x * t34 + t10 * t36)
     t43 = h * w_y
     t44 = t10 * 0.5 - (rho1 + t34 * t37)
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t36)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t36)
     t45 = h * w_z
     t46 = ops.status(invalid, unreachable, in_line)
     return (
@@ -321,10 +321,10 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t25 = l * size * 2.0
     t26 = l * l
     t27 = mu * t23
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t28 = size * t15
-    t29 = last * last + 2.0 * (t28 * t28)
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t29 = 2.0 * (t28 * t28) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t29, 1.0 / (mu * nu))
     t30 = ops.select(in_line, 0.0, t27 * part * 0.5)
     t31 = mu * 0.25
@@ -351,7 +351,7 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t29, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
     t46 = ops.select(in_line, 0.0, t27 * part_2 * 0.5)
     t47 = t6 * 0.5 - t44 * t46
-    t48 = ops.select(in_line, side * t28, d_y * t45 - t15 * n_y_2)
+    t48 = ops.select(in_line, t28 * s_w, d_y * t45 - t15 * n_y_2)
     t49 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t31)
     t50 = ops.select(t39, part_2 * ops.max(t26 - t49, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t50))
@@ -364,7 +364,7 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t56 = t54 + t55
     t57 = ops.select(failed, ops.nan, -t56)
     t58 = t45 * t46 - t15 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t44)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t44)
     t59 = h * w_z
     t60 = ops.select(failed, ops.nan, rho1 + (t58 - t59))
     t61 = ops.select(failed, ops.nan, t4)
@@ -616,10 +616,10 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -642,7 +642,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
     t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t37 = t4 * 0.5 - t34 * t36
-    t38 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t38 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
     t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
     t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t40))
@@ -653,7 +653,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t44 = h * w_y
     t45 = t43 + t44
     t46 = t35 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
     t47 = h * w_z
     A_13 = t46 - t47
     t48 = ops.select(failed, ops.nan, t4 - t42)
@@ -762,9 +762,9 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = size * (d_y + a_x * ops.sign(a_x * d_y))
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -787,7 +787,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
     t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t37 = t34 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
     t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
     t39 = ops.select(t29, part_2 * ops.max(t21 - t38, 0.0), 1.0)
     t40 = w_z * ops.select(touching, 0.0, ops.sqrt(t39))
@@ -882,10 +882,10 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    side = ops.sign(a_x * d_y)
-    last = size * (d_y + a_x * side)
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    s_w = ops.sign(a_x * d_y)
+    g_2 = size * (d_y + a_x * s_w)
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -909,7 +909,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
     t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
     t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
     t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t40))
@@ -928,7 +928,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t48 = ops.select(failed, ops.nan, -(A_23 * (t44 * A_33 - A_13 * t45) / t46))
     t49 = ops.select(failed, ops.nan, A_33 * (t44 * A_23 + A_13 * A_22) / t46)
     t50 = t4 * 0.5 - t35 * t37
-    t51 = ops.select(in_line, side * t22, d_y * t34 - t10 * n_y_2)
+    t51 = ops.select(in_line, t22 * s_w, d_y * t34 - t10 * n_y_2)
     t52 = h * t51
     t53 = t50 - t52
     A_21 = t4 - t53
@@ -1062,9 +1062,9 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = size * (d_y + a_x * ops.sign(a_x * d_y))
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -1088,7 +1088,7 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
     t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
     t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
     t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t40))
@@ -1183,9 +1183,9 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    last = size * (d_y + a_x * ops.sign(a_x * d_y))
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -1209,7 +1209,7 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
     t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t35)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
     t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
     t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t40))
@@ -1308,10 +1308,10 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -1335,7 +1335,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
     t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t38 = t4 * 0.5 - t34 * t37
-    t39 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t39 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
     t40 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
     t41 = ops.select(t29, part_2 * ops.max(t21 - t40, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t41))
@@ -1346,7 +1346,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t45 = h * w_y
     t46 = t44 + t45
     t47 = t35 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
     t48 = h * w_z
     A_13 = t47 - t48
     A_21 = t4 - t43
@@ -1485,10 +1485,10 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 2.0
     t21 = l * l
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t22 = size * t10
-    t23 = last * last + 2.0 * (t22 * t22)
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
     t25 = mu * 0.25
@@ -1511,14 +1511,14 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
     t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
     t37 = t4 * 0.5 - t34 * t36
-    t38 = ops.select(in_line, side * t22, d_y * t35 - t10 * n_y_2)
+    t38 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
     t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
     t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
     h = ops.select(touching, 0.0, ops.sqrt(t40))
     t41 = t38 * h
     t42 = t37 - t41
     t43 = t35 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t34)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
     t44 = h * w_z
     A_13 = t43 - t44
     A_23 = t3 + A_13

@@ -159,10 +159,10 @@ def _fk(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -180,7 +180,7 @@ def _fk(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -190,10 +190,10 @@ def _fk(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t30))
     t31 = w_x * h
     t32 = rho1 * 0.5 - (rho1 + t27 * t28)
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t35 = w_z * h
     t36 = n_z_2 * t28 - d_z * 0.5
     t37 = ops.status(invalid, unreachable, in_line)
@@ -293,10 +293,10 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -319,7 +319,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t28 | t31, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t32 = over_2 * t8
     nu_2 = t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t30 & in_line, t16, 1.0), 1.0 / ops.select(t31, mu * nu_2, 1.0))
@@ -331,11 +331,11 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t37 = t32 * t33 - rho1 * 0.5
     t38 = rho1 + (t36 + t37)
     t39 = ops.select(failed, ops.nan, t38)
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t32))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t32))
     t40 = w_y * h
     t41 = n_y_2 * t33 - d_y * 0.5
     A_12 = t40 - t41
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t32)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t32)
     t42 = w_z * h
     t43 = n_z_2 * t33 - d_z * 0.5
     A_13 = t42 - t43
@@ -542,10 +542,10 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -563,7 +563,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -574,12 +574,12 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t31 = w_x * h
     t32 = t27 * t28 - rho1 * 0.5
     A_11 = t31 + t32
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
     A_12 = t33 - t34
     t35 = ops.select(failed, ops.nan, A_12)
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t36 = w_z * h
     t37 = n_z_2 * t28 - d_z * 0.5
     A_13 = t36 - t37
@@ -687,10 +687,10 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -708,7 +708,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -718,11 +718,11 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t30))
     t31 = w_x * h
     t32 = t27 * t28 - rho1 * 0.5
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t33 = w_y * h
     t34 = n_y_2 * t28 - d_y * 0.5
     t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t36 = w_z * h
     t37 = n_z_2 * t28 - d_z * 0.5
     t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
@@ -812,10 +812,10 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -833,7 +833,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -845,11 +845,11 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
     A_11 = t32 + t33
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = t34 - t35
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t37 = w_z * h
     t38 = n_z_2 * t29 - d_z * 0.5
     t39 = t37 - t38
@@ -984,10 +984,10 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1005,7 +1005,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1016,10 +1016,10 @@ def _determinant(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t31))
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t36 = w_z * h
     t37 = n_z_2 * t29 - d_z * 0.5
     t38 = (t32 + t33) * (rho2 - (t34 - t35)) * (rho3 - (t36 - t37))
@@ -1105,10 +1105,10 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1126,7 +1126,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1137,11 +1137,11 @@ def _singularities(ops, rho1, rho2, rho3, L):
     h = ops.select(touching, 0.0, ops.sqrt(t31))
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = ops.select(failed, ops.nan, t34 - t35 - rho2)
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t37 = w_z * h
     t38 = n_z_2 * t29 - d_z * 0.5
     t39 = ops.select(failed, ops.nan, t37 - t38 - rho3)
@@ -1234,10 +1234,10 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1255,7 +1255,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t27 = over_2 * t8
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     t28 = mu * nu_2
@@ -1267,12 +1267,12 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t32 = w_x * h
     t33 = t27 * t29 - rho1 * 0.5
     A_11 = t32 + t33
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     t34 = w_y * h
     t35 = n_y_2 * t29 - d_y * 0.5
     t36 = t34 - t35
     t37 = t36 * t36
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t38 = w_z * h
     t39 = n_z_2 * t29 - d_z * 0.5
     t40 = t38 - t39
@@ -1406,10 +1406,10 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 2.0
     t15 = L * L
-    side = ops.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
-    t16 = last * last + 2.0 * (up * up)
+    g_1 = size * d_z
+    s_w = ops.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
     t18 = mu * 0.25
@@ -1427,7 +1427,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
     n_z_2 = over_2 * t11
     t27 = over_2 * t8
-    w_y = ops.select(in_line, up, -(a_x * n_z_2 + d_z * t27))
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
     n_y_2 = over_2 * t10
     nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
     part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
@@ -1438,11 +1438,11 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t31 = w_y * h
     t32 = n_y_2 * t28 - d_y * 0.5
     t33 = t31 - t32
-    w_z = ops.select(in_line, -last, a_x * n_y_2 + d_y * t27)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
     t34 = w_z * h
     t35 = n_z_2 * t28 - d_z * 0.5
     t36 = t34 - t35
-    w_x = ops.select(in_line, side * up, d_y * n_z_2 - d_z * n_y_2)
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
     t37 = w_x * h
     t38 = t27 * t28 - rho1 * 0.5
     A_11 = t37 + t38

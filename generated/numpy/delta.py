@@ -208,17 +208,17 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t9
     del t9
-    side = _runtime.sign(t13 * a_x)
-    t22 = size * (t13 + a_x * side)
-    up = size * d_z
-    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / (mu * nu))
+    g_1 = size * d_z
+    s_w = _runtime.sign(t13 * a_x)
+    t22 = size * (t13 + a_x * s_w)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
     t25 = d_x * 0.5 - (t3 - t19 * t24)
     del d_x, t3
-    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
-    del side
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    del s_w
     t26 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
     del all_same, mu, nu
     t27 = l * l - t26
@@ -243,8 +243,8 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = _runtime.poison(invalid | unreachable)
     t35 = t13 * 0.5 - (t6 + t21 * t24)
     del t6
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
     t36 = h * w_y
     del w_y
     t37 = d_z * 0.5 - (t1 + n_z * t24)
@@ -412,11 +412,11 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
     del t34
     t47 = l * size * 2.0
-    side = _runtime.sign(t36 * a_x)
-    t48 = size * (t36 + a_x * side)
-    up = size * d_z
+    g_1 = size * d_z
+    s_w = _runtime.sign(t36 * a_x)
+    t48 = size * (t36 + a_x * s_w)
     del size
-    part = _runtime.select(in_line, 1.0 / (t48 * t48 + 2.0 * (up * up)), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t48 * t48), 1.0 / (mu * nu))
     t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
     del t45
     t50 = _runtime.select(all_same, 0.0, nu * (t49 * t49) + mu * 0.25)
@@ -437,8 +437,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t58 = -t5 + t52
     t59 = t42 * t49 + d_x * 0.5
     del d_x
-    w_x = _runtime.select(in_line, side * up, t36 * n_z - d_z * t44)
-    del side
+    w_x = _runtime.select(in_line, g_1 * s_w, t36 * n_z - d_z * t44)
+    del s_w
     slack = np.maximum(t51, 0.0)
     del t51
     h = _runtime.select(slack <= _runtime.VANISHING * t47, 0.0, np.sqrt(part * slack))
@@ -448,8 +448,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t61 = t10 - (t59 - t60)
     t62 = t7 - t61
     t63 = t44 * t49 - t36 * 0.5
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t42))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t42))
+    del g_1
     t64 = h * w_y
     del w_y
     t65 = t19 + (t63 + t64)
@@ -764,12 +764,12 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t12
     del t12
-    side = _runtime.sign(t13 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
-    t22 = size * (t13 + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / (mu * nu))
+    g_1 = size * d_z
+    s_w = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    t22 = size * (t13 + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
@@ -797,8 +797,8 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del t26, t27, t34
     t35 = _runtime.poison(np.logical_not(t32 & t33) | unreachable)
     del t32, t33, unreachable
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
     t36 = h * w_y
     del w_y
     t37 = t21 * t24 - t13 * 0.5
@@ -942,12 +942,12 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    side = _runtime.sign(t16 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / (mu * nu))
+    g_1 = size * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / (mu * nu))
     t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t27 = _runtime.select(in_line, 0.0, mu * part * t26 * 0.5)
@@ -967,8 +967,8 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t33 = t31 - t32
     t34 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
     t35 = h * w_y
     del w_y
     t36 = t24 * t27 - t16 * 0.5
@@ -1125,13 +1125,13 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    side = _runtime.sign(t16 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * side)
-    del side
+    g_1 = size * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * s_w)
+    del s_w
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1151,8 +1151,8 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1361,13 +1361,13 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    side = _runtime.sign(t16 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * side)
-    del side
+    g_1 = size * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * s_w)
+    del s_w
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1387,8 +1387,8 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1548,13 +1548,13 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    side = _runtime.sign(t16 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * side)
-    del side
+    g_1 = size * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = size * (t16 + a_x * s_w)
+    del s_w
     t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (t25 * t25 + 2.0 * (up * up)), 1.0 / t26)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
     t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1574,8 +1574,8 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = t32 - t33
     t35 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t22))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
     t36 = h * w_y
     del w_y
     t37 = t24 * t28 - t16 * 0.5
@@ -1736,13 +1736,13 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t12
     del t12
-    side = _runtime.sign(t13 * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, t13 * n_z - d_z * t21)
-    t22 = size * (t13 + a_x * side)
-    del side
+    g_1 = size * d_z
+    s_w = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    t22 = size * (t13 + a_x * s_w)
+    del s_w
     t23 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (t22 * t22 + 2.0 * (up * up)), 1.0 / t23)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / t23)
     t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
     t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
@@ -1760,8 +1760,8 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t30 = t19 * t25 + d_x * 0.5
     del d_x
     t31 = t29 - t30
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t19))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
     t32 = h * w_y
     del w_y
     t33 = t21 * t25 - t13 * 0.5
@@ -1961,10 +1961,10 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t20 * t20 + t22 * t22 + n_z * n_z
     in_line = nu <= t13
     del t13
-    side = _runtime.sign(t14 * a_x)
-    t23 = size * (t14 + a_x * side)
-    up = size * d_z
-    part = _runtime.select(in_line, 1.0 / (t23 * t23 + 2.0 * (up * up)), 1.0 / (mu * nu))
+    g_1 = size * d_z
+    s_w = _runtime.sign(t14 * a_x)
+    t23 = size * (t14 + a_x * s_w)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t23 * t23), 1.0 / (mu * nu))
     t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
     del t15, t16, t18
     t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
@@ -1986,7 +1986,7 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = s_alpha3 * t31
     t33 = t1 * t32
     t34 = u_z + t31
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t20))
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t20))
     del a_x
     t35 = h * w_y
     del w_y
@@ -1994,8 +1994,8 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t37 = t35 + t36
     t38 = t34 * (t11 + t37)
     t39 = c_alpha3 * t1
-    w_x = _runtime.select(in_line, side * up, t14 * n_z - d_z * t22)
-    del d_z, n_z, side, t14, t22, up
+    w_x = _runtime.select(in_line, g_1 * s_w, t14 * n_z - d_z * t22)
+    del d_z, g_1, n_z, s_w, t14, t22
     t40 = w_x * h
     del h, w_x
     t41 = t20 * t25 + d_x * 0.5

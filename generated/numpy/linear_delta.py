@@ -173,12 +173,12 @@ def _fk(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    side = _runtime.sign(d_y * a_x)
     t13 = size * t8
-    t14 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
-    last = size * (d_y + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    t14 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
     t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
@@ -213,8 +213,8 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del w_y
     t29 = t8 * 0.5 - (rho1 + t12 * t16)
     del t12, t16, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
-    del a_x, d_y, last, n_y, t10
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
+    del a_x, d_y, g_2, n_y, t10
     t30 = h * w_z
     del h, w_z
     t31 = _runtime.status(invalid, unreachable, in_line)
@@ -408,11 +408,11 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
     del t13
     t23 = l * size * 2.0
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t24 = size * t16
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
     del size
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t24 * t24)), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t24 * t24) + g_2 * g_2), 1.0 / (mu * nu))
     t25 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
     del t21
     t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
@@ -429,8 +429,8 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t32 = e + c1_x
     t33 = t7 * 0.5 - t18 * t25
     del t7
-    t34 = _runtime.select(in_line, side * t24, d_y * t20 - t16 * n_y)
-    del side
+    t34 = _runtime.select(in_line, t24 * s_w, d_y * t20 - t16 * n_y)
+    del s_w
     slack = np.maximum(t27, 0.0)
     del t27
     h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
@@ -448,8 +448,8 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t41 = -t40 + t28
     t42 = t20 * t25 - t16 * 0.5
     del t16, t20, t25
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t18)
-    del a_x, d_y, in_line, last, n_y, t18
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t18)
+    del a_x, d_y, g_2, in_line, n_y, t18
     t43 = h * w_z
     del h, w_z
     t44 = rho1 + (t42 - t43) + t28
@@ -714,16 +714,16 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t13 = size * t8
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
     t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
     t16 = t1 * 0.5 - t10 * t15
-    t17 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
-    del side
+    t17 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
+    del s_w
     t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
     del all_same, mu, nu
     t19 = l * l - t18
@@ -754,8 +754,8 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t30 = t28 + t29
     t31 = t12 * t15 - t8 * 0.5
     del t12, t15, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
-    del a_x, d_y, in_line, last, n_y, t10
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
+    del a_x, d_y, g_2, in_line, n_y, t10
     t32 = h * w_z
     del h, w_z
     A_13 = t31 - t32
@@ -869,17 +869,17 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
     t13 = size * t8
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     del t13
     t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
     t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
     t16 = t11 * t15 - t8 * 0.5
     del t11, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
-    del a_x, d_y, last, n_y, t12
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
+    del a_x, d_y, g_2, n_y, t12
     t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
     del all_same, mu, nu, t15
     t18 = l * l - t17
@@ -1054,17 +1054,17 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    side = _runtime.sign(a_x * d_y)
-    last = size * (d_y + a_x * side)
     t13 = size * t8
+    s_w = _runtime.sign(a_x * d_y)
+    g_2 = size * (d_y + a_x * s_w)
     t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
     t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
     t17 = t11 * t16 - t8 * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
-    del last
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
+    del g_2
     t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu
     t19 = l * l - t18
@@ -1104,8 +1104,8 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t33 = A_33 * (t24 * A_23 + A_13 * A_22) / Delta + t30
     t34 = t2 * 0.5 - t12 * t16
     del t12, t16
-    t35 = _runtime.select(in_line, side * t13, d_y * t11 - t8 * n_y)
-    del d_y, in_line, n_y, side, t11, t13, t8
+    t35 = _runtime.select(in_line, t13 * s_w, d_y * t11 - t8 * n_y)
+    del d_y, in_line, n_y, s_w, t11, t13, t8
     t36 = h * t35
     del h, t35
     t37 = t34 - t36
@@ -1248,18 +1248,18 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
     t13 = size * t8
+    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
     t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     del t13
     t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
     t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
     t17 = t11 * t16 - t8 * 0.5
     del t11, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
-    del a_x, d_y, last, n_y, t12
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
+    del a_x, d_y, g_2, n_y, t12
     t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu, t16
     t19 = l * l - t18
@@ -1375,18 +1375,18 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    last = size * (d_y + a_x * _runtime.sign(a_x * d_y))
     t13 = size * t8
+    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
     t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     del t13
     t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
     del t7, t9
     t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
     t17 = t11 * t16 - t8 * 0.5
     del t11, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t12)
-    del a_x, d_y, last, n_y, t12
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
+    del a_x, d_y, g_2, n_y, t12
     t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu, t16
     t19 = l * l - t18
@@ -1503,17 +1503,17 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t13 = size * t8
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
     t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / t14)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
     t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
     t17 = t1 * 0.5 - t10 * t16
-    t18 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
-    del side
+    t18 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
+    del s_w
     t19 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
     del all_same, mu, nu
     t20 = l * l - t19
@@ -1534,8 +1534,8 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t26 = t24 + t25
     t27 = t12 * t16 - t8 * 0.5
     del t12, t16, t8
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
-    del a_x, d_y, last, n_y, t10
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
+    del a_x, d_y, g_2, n_y, t10
     t28 = h * w_z
     del w_z
     A_13 = t27 - t28
@@ -1705,16 +1705,16 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
     t13 = size * t8
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (t13 * t13)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
     t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
     t16 = t1 * 0.5 - t10 * t15
-    t17 = _runtime.select(in_line, side * t13, d_y * t12 - t8 * n_y)
-    del side
+    t17 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
+    del s_w
     t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
     del all_same, mu, nu
     t19 = l * l - t18
@@ -1728,8 +1728,8 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     del t17
     t22 = t16 - t21
     t23 = t12 * t15 - t8 * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t10)
-    del last
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
+    del g_2
     t24 = h * w_z
     del w_z
     A_13 = t23 - t24

@@ -169,12 +169,12 @@ def _fk(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -198,13 +198,13 @@ def _fk(rho1, rho2, rho3, L):
     unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, n_y, t7
     t20 = w_z * h
     del h, w_z
     t21 = n_z * t9 - d_z * 0.5
@@ -373,11 +373,11 @@ def _skeleton(rho1, rho2, rho3, L):
     t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
     del t3
     t11 = L * size * 2.0
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    up = size * d_z
+    g_1 = size * d_z
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
     del size
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t12 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
     del t9
     t13 = _runtime.select(all_same, 0.0, nu * (t12 * t12) + mu * 0.25)
@@ -393,8 +393,8 @@ def _skeleton(rho1, rho2, rho3, L):
     t18 = L * 0.0625
     t19 = t18 + t15
     t20 = -t18 + t15
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    del side
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    del s_w
     slack = np.maximum(t14, 0.0)
     del t14
     h = _runtime.select(slack <= _runtime.VANISHING * t11, 0.0, np.sqrt(part * slack))
@@ -404,14 +404,14 @@ def _skeleton(rho1, rho2, rho3, L):
     t22 = t8 * t12 - rho1 * 0.5
     t23 = rho1 + (t21 + t22)
     t24 = t23 + t15
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t8))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t8))
+    del g_1
     t25 = w_y * h
     del w_y
     t26 = n_y * t12 - d_y * 0.5
     A_12 = t25 - t26
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t8)
-    del a_x, d_y, in_line, last, n_y, t8
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t8)
+    del a_x, d_y, g_2, in_line, n_y, t8
     t27 = w_z * h
     del h, w_z
     t28 = n_z * t12 - d_z * 0.5
@@ -807,12 +807,12 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -838,15 +838,15 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
     A_12 = t18 - t19
     t20 = A_12 + t17
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, in_line, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, in_line, n_y, t7
     t21 = w_z * h
     del h, w_z
     t22 = n_z * t9 - d_z * 0.5
@@ -1039,12 +1039,12 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -1069,13 +1069,13 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     del t11, t12, t16
     t17 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t18 = w_y * h
     del w_y
     t19 = n_y * t9 - d_y * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, in_line, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, in_line, n_y, t7
     t20 = w_z * h
     del h, w_z
     t21 = n_z * t9 - d_z * 0.5
@@ -1217,13 +1217,13 @@ def _jacobian(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1240,14 +1240,14 @@ def _jacobian(rho1, rho2, rho3, L):
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
     A_11 = t14 + t15
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
     t18 = t16 - t17
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, n_y, t7
     t19 = w_z * h
     del w_z
     t20 = n_z * t10 - d_z * 0.5
@@ -1473,13 +1473,13 @@ def _determinant(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1495,13 +1495,13 @@ def _determinant(rho1, rho2, rho3, L):
     t14 = w_x * h
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, n_y, t7
     t18 = w_z * h
     del w_z
     t19 = n_z * t10 - d_z * 0.5
@@ -1656,13 +1656,13 @@ def _singularities(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1687,13 +1687,13 @@ def _singularities(rho1, rho2, rho3, L):
     del t12, t13, t17
     t18 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t19 = w_y * h
     del w_y
     t20 = n_y * t10 - d_y * 0.5
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, in_line, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, in_line, n_y, t7
     t21 = w_z * h
     del w_z
     t22 = n_z * t10 - d_z * 0.5
@@ -1844,13 +1844,13 @@ def _condition_number(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    side = _runtime.sign(d_y * a_x)
-    up = size * d_z
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    last = size * (d_y + a_x * side)
-    del side
+    s_w = _runtime.sign(d_y * a_x)
+    g_1 = size * d_z
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    g_2 = size * (d_y + a_x * s_w)
+    del s_w
     t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / t8)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
@@ -1867,15 +1867,15 @@ def _condition_number(rho1, rho2, rho3, L):
     del w_x
     t15 = t7 * t10 - rho1 * 0.5
     A_11 = t14 + t15
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    del up
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    del g_1
     t16 = w_y * h
     del w_y
     t17 = n_y * t10 - d_y * 0.5
     t18 = t16 - t17
     t19 = t18 * t18
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, d_y, last, n_y, t7
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, d_y, g_2, n_y, t7
     t20 = w_z * h
     del w_z
     t21 = n_z * t10 - d_z * 0.5
@@ -2164,11 +2164,11 @@ def _constraint(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    up = size * d_z
-    w_y = _runtime.select(in_line, up, -(a_x * n_z + d_z * t7))
-    side = _runtime.sign(d_y * a_x)
-    last = size * (d_y + a_x * side)
-    part = _runtime.select(in_line, 1.0 / (last * last + 2.0 * (up * up)), 1.0 / (mu * nu))
+    g_1 = size * d_z
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = size * (d_y + a_x * s_w)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
     t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
@@ -2185,14 +2185,14 @@ def _constraint(rho1, rho2, rho3, L):
     del w_y
     t14 = n_y * t9 - d_y * 0.5
     t15 = t13 - t14
-    w_z = _runtime.select(in_line, -last, a_x * n_y + d_y * t7)
-    del a_x, last
+    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
+    del a_x, g_2
     t16 = w_z * h
     del w_z
     t17 = n_z * t9 - d_z * 0.5
     t18 = t16 - t17
-    w_x = _runtime.select(in_line, side * up, d_y * n_z - d_z * n_y)
-    del d_y, d_z, n_y, n_z, side, up
+    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    del d_y, d_z, g_1, n_y, n_z, s_w
     t19 = w_x * h
     del h, w_x
     t20 = t7 * t9 - rho1 * 0.5

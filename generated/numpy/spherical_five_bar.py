@@ -170,15 +170,15 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    side = _runtime.sign(-(t10 * a_x))
     t20 = _runtime.select(all_same, 1.0, r)
     t21 = t15 * t20
-    w_x = _runtime.select(in_line, -(side * t21), t10 * t19 - t15 * t18)
+    s_w = _runtime.sign(-(t10 * a_x))
+    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
     length_a = np.sqrt(mu)
     del mu
-    t22 = t20 * (t10 - a_x * side)
-    del side, t20
-    nu_w = _runtime.select(in_line, over * (t22 * t22 + 2.0 * (t21 * t21)), nu)
+    t22 = t20 * (t10 - a_x * s_w)
+    del s_w, t20
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -426,11 +426,11 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t17
     del t17
     t37 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t27 * a_x))
-    t38 = t37 * (t27 - a_x * side)
-    t39 = t32 * t37
+    t38 = t32 * t37
+    s_w = _runtime.sign(-(t27 * a_x))
+    t39 = t37 * (t27 - a_x * s_w)
     del t37
-    nu_w = _runtime.select(in_line, over * (t38 * t38 + 2.0 * (t39 * t39)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t38 * t38) + t39 * t39), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -496,8 +496,8 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del length_a
     t60 = t28 * X + t34 * Y
     del t28
-    w_x = _runtime.select(in_line, -(side * t39), t27 * t36 - t32 * t35)
-    del side
+    w_x = _runtime.select(in_line, -(t38 * s_w), t27 * t36 - t32 * t35)
+    del s_w
     t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t59, upper
     h = part * t61
@@ -505,14 +505,14 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t62 = w_x * h
     del w_x
     t63 = t27 * X + t35 * Y
-    w_y = _runtime.select(in_line, -t39, a_x * t36 + t32 * t34)
-    del t39
+    w_y = _runtime.select(in_line, -t38, a_x * t36 + t32 * t34)
+    del t38
     t64 = w_y * h
     del w_y
     t65 = t32 * X + t36 * Y
     del X, Y, t32, t36
-    w_z = _runtime.select(in_line, t38, -(a_x * t35 + t27 * t34))
-    del a_x, in_line, t27, t34, t35, t38
+    w_z = _runtime.select(in_line, t39, -(a_x * t35 + t27 * t34))
+    del a_x, in_line, t27, t34, t35, t39
     t66 = w_z * h
     del h, w_z
     return (
@@ -654,11 +654,11 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     t20 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t11 * a_x))
-    t21 = t20 * (t11 - a_x * side)
-    t22 = t15 * t20
+    t21 = t15 * t20
+    s_w = _runtime.sign(-(t11 * a_x))
+    t22 = t20 * (t11 - a_x * s_w)
     del t20
-    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -717,8 +717,8 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del length_a
     t40 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(side * t22), t11 * t19 - t15 * t18)
-    del side
+    w_x = _runtime.select(in_line, -(t21 * s_w), t11 * t19 - t15 * t18)
+    del s_w
     t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t39, upper
     h = part * t41
@@ -743,15 +743,15 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t51 = _runtime.poison(failed)
     del failed
     t52 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
-    del t22
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
+    del t21
     t53 = w_y * h
     del w_y
     t54 = t52 - t53
     t55 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t21
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t22
     t56 = w_z * h
     del h, w_z
     t57 = t55 - t56
@@ -884,11 +884,11 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     t20 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t10 * a_x))
-    t21 = t20 * (t10 - a_x * side)
-    t22 = t15 * t20
+    t21 = t15 * t20
+    s_w = _runtime.sign(-(t10 * a_x))
+    t22 = t20 * (t10 - a_x * s_w)
     del t20
-    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -946,7 +946,7 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
     t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
     t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t39, upper
     h = part * t41
@@ -955,8 +955,8 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del w_y
     t43 = t40 - t42
     t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
+    del a_x, t22
     t45 = w_z * h
     del w_z
     t46 = t44 - t45
@@ -980,8 +980,8 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s_gamma
     t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19, t22
+    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t21
     t57 = w_x * h
     del h, w_x
     t58 = c_gamma * c2_z
@@ -1101,11 +1101,11 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     t20 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t10 * a_x))
-    t21 = t20 * (t10 - a_x * side)
-    t22 = t15 * t20
+    t21 = t15 * t20
+    s_w = _runtime.sign(-(t10 * a_x))
+    t22 = t20 * (t10 - a_x * s_w)
     del t20
-    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1162,7 +1162,7 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
     t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
     t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t39, upper
     h = part * t41
@@ -1171,8 +1171,8 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del w_y
     t43 = t40 - t42
     t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
+    del a_x, t22
     t45 = w_z * h
     del w_z
     t46 = t44 - t45
@@ -1204,8 +1204,8 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s_gamma
     t58 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19, t22
+    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t21
     t59 = w_x * h
     del h, w_x
     t60 = t58 - t59
@@ -1372,11 +1372,11 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     t20 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t10 * a_x))
-    t21 = t20 * (t10 - a_x * side)
-    t22 = t15 * t20
+    t21 = t15 * t20
+    s_w = _runtime.sign(-(t10 * a_x))
+    t22 = t20 * (t10 - a_x * s_w)
     del t20
-    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1433,7 +1433,7 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
     del length_a
     t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
     t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t39, upper
     h = part * t41
@@ -1442,8 +1442,8 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del w_y
     t43 = t40 - t42
     t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
+    del a_x, t22
     t45 = w_z * h
     del w_z
     t46 = t44 - t45
@@ -1467,8 +1467,8 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s_gamma
     t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(side * t22), t10 * t19 - t15 * t18)
-    del in_line, side, t10, t15, t18, t19, t22
+    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t21
     t57 = w_x * h
     del w_x
     t58 = c_gamma * c2_z
@@ -1591,11 +1591,11 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     in_line = nu <= t9
     del t9
     t20 = _runtime.select(all_same, 1.0, r)
-    side = _runtime.sign(-(t11 * a_x))
-    t21 = t20 * (t11 - a_x * side)
-    t22 = t15 * t20
+    t21 = t15 * t20
+    s_w = _runtime.sign(-(t11 * a_x))
+    t22 = t20 * (t11 - a_x * s_w)
     del t20
-    nu_w = _runtime.select(in_line, over * (t21 * t21 + 2.0 * (t22 * t22)), nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1653,8 +1653,8 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del length_a
     t40 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(side * t22), t11 * t19 - t15 * t18)
-    del side
+    w_x = _runtime.select(in_line, -(t21 * s_w), t11 * t19 - t15 * t18)
+    del s_w
     t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
     del half, lower, rho, t39, upper
     h = part * t41
@@ -1664,16 +1664,16 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t43 = t40 - t42
     A_01 = c1_x - t43
     t44 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t22, a_x * t19 + t15 * t17)
-    del t22
+    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
+    del t21
     t45 = w_y * h
     del w_y
     t46 = t44 - t45
     A_02 = c1_y - t46
     t47 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t21
+    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t22
     t48 = w_z * h
     del w_z
     t49 = t47 - t48

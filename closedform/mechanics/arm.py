@@ -181,6 +181,7 @@ class Serial:
         space = linkwise.space_jacobian(d.program(), links, q)
         body = linkwise.body_jacobian(d.program(), links, q)
         spelled = max(sp.count_ops(self.space), sp.count_ops(self.body)) <= SPELLED
+        twists = [] if spelled else from_geometric(self.pose, self.geometric, self.space, self.body)
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
@@ -196,11 +197,7 @@ class Serial:
                 "column of J_b." + ("" if spelled else "  Both follow from J as stated.")
             ),
             equal=[
-                *(
-                    []
-                    if spelled
-                    else from_geometric(self.pose, self.geometric, self.space, self.body)
-                ),
+                *twists,
                 (self.geometric[:3, :], self.position.jacobian(q)),
                 (self.geometric[3:, :], self.space[3:, :]),
                 (geometric.explicit, self.geometric),

@@ -5,14 +5,16 @@ from typing import Any
 
 import sympy as sp
 
+import closedform
 from closedform.check.runners.python import module
 from closedform.emit.backend import Mechanism
 from closedform.emit.backends import numpy
-from closedform.mechanics.arm import from_dh
+from closedform.lemmas.chain import Chain
+from closedform.mechanics.arm import Serial, from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof
-from closedform.scaffold.trial import solved
+from closedform.scaffold.tables import CHAIN, IMPORTED, LINKED
 
 
 def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tuple:
@@ -25,6 +27,21 @@ def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tupl
         q = d.joint(name, "prismatic" if len(row) == 4 else "revolute")
         table.append((*row[:2], q, row[3]) if len(row) == 4 else (*row, q))
     return d, from_dh(d, table)
+
+
+def solved(d: Derivation, arm: Serial, lines: str) -> Chain:
+    """The chain that the lines build in a derivation, as a script that contains them does."""
+    task = arm.coordinates()
+    if task is not None:
+        d.task = list(task.names)
+    angles = ["yaw"] if task is not None and "yaw" in task.names else []
+    ik = Chain(d, arm.pose if task is None else task.values, angles=angles)
+    known = {name: getattr(sp, name) for name in IMPORTED}
+    known |= {name: getattr(closedform, name) for name in (*CHAIN, *LINKED)}
+    known |= {symbol.name: symbol for symbol in (*ik.joints, *(p.symbol for p in d.parameters))}
+    exec(lines, known | {"ik": ik})
+    ik.finish("All solutions of the inverse kinematics.")
+    return ik
 
 
 def printed(d: Derivation, folder: Path) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from closedform.cli.commands import main
-from closedform.scaffold import new
+from closedform.pipeline import trial
 from closedform.scaffold.known import KnownMaker
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
@@ -350,7 +350,7 @@ def test_if_the_proof_of_a_chain_fails_the_next_one_is_tried(
 def test_no_chain_is_written_whose_proof_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(new, "fault", lambda *_: "it is made to fail")
+    monkeypatch.setattr(trial, "fault", lambda *_: "it is made to fail")
     (tmp_path / "table.csv").write_text(PUMA, "utf-8")
     command = ["new", "bent", "--from", "dh", str(tmp_path / "table.csv"), "-o", str(tmp_path)]
     assert main(command) == 0

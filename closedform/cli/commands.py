@@ -275,6 +275,7 @@ def new_command(options: argparse.Namespace) -> None:
     if (options.base or options.tool or options.ignore) and kind not in ("urdf", "mjcf"):
         raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
     _require_extra()
+    from closedform.pipeline import trial
     from closedform.scaffold.new import Search, check_name, new
     from closedform.scaffold.tree import Choice
 
@@ -284,7 +285,7 @@ def new_command(options: argparse.Namespace) -> None:
         if os.path.lexists(target):
             raise CommandError(f"{target} already exists")
         with Progress() as progress:
-            search = Search(options.given, options.timeout, options.explain)
+            search = Search(options.given, options.timeout, options.explain, fault=trial.fault)
             search.say = partial(progress, options.name)
             script = new(
                 options.name,

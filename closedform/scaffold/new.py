@@ -43,7 +43,6 @@ from closedform.scaffold.tables import (
     read_screws,
 )
 from closedform.scaffold.tree import DEFAULT, Choice
-from closedform.scaffold.trial import fault
 from closedform.scaffold.urdf import read_urdf
 
 LINE = 100
@@ -82,13 +81,16 @@ class Script:
 class Search:
     """How to search for an inverse: the joint that is ``given``, and a limit of time in seconds.
 
-    ``say`` is called with a description of each step.
+    ``say`` is called with a description of each step.  ``fault`` is called with the name and the
+    text of a script; it returns a clause on why the inverse in it is not proved, or an empty
+    string.  After a clause the next chain is tried.  By default no proof is tried.
     """
 
     given: str = ""
     timeout: float = TIMEOUT
     explain: bool = False
     say: Callable[[str], None] = lambda _: None
+    fault: Callable[[str, str], str] = lambda *_: ""
     doing: str = "reading the table"
 
     def progress(self, what: str) -> None:
@@ -151,7 +153,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     origin = file_name(origin)
     negative = _negative(table)
 
-    def made(told: Search) -> tuple[Derivation, Serial]:
+    def made(told: Search) -> Serial:
         told.progress("deriving the forward map")
         d = Derivation(name, name, Paper("own", "own", ()), "")
         for symbol in table.parameters:
@@ -159,14 +161,27 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         for joint, kind in table.joints.items():
             d.joint(joint, kind)  # type: ignore[arg-type]
         known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
-        return d, _arm(d, table, known)
+        return _arm(d, table, known)
 
+    head = _head(name, table, origin, negative)
     try:
-        inverse = _searched(name, made, search)
+        inverse = _searched(name, made, head, search)
     except LimitError:
         reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
         inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
-    advice = f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else ""
+    return Script(
+        _script(head, inverse),
+        inverse.outcome,
+        tuple(table.notes),
+        tuple(inverse.explained),
+        f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else "",
+        inverse.structure,
+        inverse.lemmas,
+    )
+
+
+def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list[str]:
+    """The lines up to the inverse; one says where the imports belong."""
     title = name.replace("_", " ").capitalize()
     lines = [
         f'"""{title}: a derivation from {origin}."""',
@@ -200,17 +215,18 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
             least, most = (f'Rational("{value}")' for value in table.limits[joint])
             argument += f", limits=({least}, {most})"
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
-    lines += ["", *_table_lines(table), "forward = arm.export(d)", *_motor_lines(table, origin), ""]
-    text = "\n".join([*lines, *inverse.lines]) + "\n"
-    return Script(
-        text.replace("IMPORTS", _imports(text)),
-        inverse.outcome,
-        tuple(table.notes),
-        tuple(inverse.explained),
-        advice,
-        inverse.structure,
-        inverse.lemmas,
-    )
+    return [
+        *lines,
+        "",
+        *_table_lines(table),
+        "forward = arm.export(d)",
+        *_motor_lines(table, origin),
+    ]
+
+
+def _script(head: Sequence[str], inverse: _Inverse) -> str:
+    text = "\n".join([*head, "", *inverse.lines]) + "\n"
+    return text.replace("IMPORTS", _imports(text), 1)
 
 
 def _negative(table: Table) -> list[str]:
@@ -319,36 +335,33 @@ class _Inverse:
     structure: str = ""
     lemmas: tuple[str, ...] = ()
     name: str = ""
-    chain: str = ""
-    """The name of the chain that was taken, and the lines that solve it."""
+    """The name of the chain that was taken."""
 
 
 def _searched(
-    name: str, made: Callable[[Search], tuple[Derivation, Serial]], search: Search
+    name: str, made: Callable[[Search], Serial], head: Sequence[str], search: Search
 ) -> _Inverse:
     """The lines of the first chain that is proved; it counts too if the time ends the proof."""
     refused: list[Tried] = []
 
     def proposed(say: Callable[[str], None]) -> _Inverse:
         told = replace(search, say=say)
-        arm = made(told)[1]
+        arm = made(told)
         told.progress("looking for a regular posture")
         arm.require_regular(name)
         told.progress("looking for an inverse")
         return _inverse_lines(arm, told, refused)
 
-    def fault_of(chain: str, say: Callable[[str], None]) -> str:
-        told = replace(search, say=say)
-        d, arm = made(told)
-        told.progress("proving the inverse")
-        return fault(d, arm, chain)
+    def fault_of(inverse: _Inverse, say: Callable[[str], None]) -> str:
+        say("proving the inverse")
+        return search.fault(name, _script(head, inverse))
 
     while True:
         inverse = bounded(search.timeout, proposed, search.progress)
         if not inverse.structure:
             return inverse
         try:
-            wrong = bounded(search.timeout, partial(fault_of, inverse.chain), search.progress)
+            wrong = bounded(search.timeout, partial(fault_of, inverse), search.progress)
         except LimitError:
             return inverse
         if not wrong:
@@ -378,9 +391,7 @@ def _inverse_lines(arm: Serial, search: Search, refused: Sequence[Tried]) -> _In
         'ik.finish("All solutions of the inverse kinematics.")',
     ]
     outcome = f"an inverse with {count} is proposed ({found.structure})"
-    return _Inverse(
-        lines, outcome, explained, "", found.structure, found.lemmas, found.name, found.source
-    )
+    return _Inverse(lines, outcome, explained, "", found.structure, found.lemmas, found.name)
 
 
 def _without_inverse(

@@ -1,0 +1,33 @@
+"""Tries the script of a derivation before it is written: runs it, and proves its inverse."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from closedform.algebra.solutions import NotRationalError
+from closedform.pipeline.run import DerivationError, Source, load
+from closedform.proof.inverse import prove_inverse
+
+
+def fault(name: str, script: str) -> str:
+    """A clause on why the inverse in a script is not proved; empty if it is.
+
+    Where the proof cannot be carried out, because a length is a root such as sqrt(401), nothing is
+    known.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.py"
+        path.write_text(script, "utf-8")
+        try:
+            d = load(Source(name, path))
+            prove_inverse(d, d.inverses[-1])
+        except (DerivationError, ValueError, TypeError, ArithmeticError, NotImplementedError) as e:
+            error = e.__cause__ if isinstance(e, DerivationError) and e.__cause__ else e
+            if isinstance(error, NotRationalError):
+                return ""
+            return str(error).removeprefix(f"{name}.ik: ").partition(". ")[0]
+    return ""
+
+
+__all__ = ["fault"]

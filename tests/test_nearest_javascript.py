@@ -117,3 +117,16 @@ def test_rounding_of_a_singular_target_does_not_turn_the_wrist() -> None:
     found = answers([case(arm, x, seed, np.ones(6)) for x, seed in zip(arm.fk(q), q, strict=True)])
     assert {one["status"] for one in found} == {0, 2}
     assert np.abs(np.array([one["q"] for one in found]) - q).max() < 1e-5
+
+
+@pytest.mark.parametrize("name", ["puma560", "ur_arm"])
+def test_a_seed_close_by_does_not_hide_a_nearer_posture(name: str) -> None:
+    """Rounding of the target hides that the wrist is aligned, and the seed is near all the same."""
+    arm, random = robot(name), np.random.default_rng(4)
+    q = random.uniform(-1.5, 1.5, (60, 6))
+    q[:, 4] = 10 ** random.uniform(-15, -13, 60)
+    x, seeds = arm.fk(q), q + random.uniform(-2e-3, 2e-3, (60, 6))
+    found = answers([case(arm, *each, np.ones(6)) for each in zip(x, seeds, strict=True)])
+    distances = np.linalg.norm(np.array([one["q"] for one in found]) - seeds, axis=1)
+    assert (distances < arm.nearest(x, seeds).distance + 1e-6).all()
+    assert sum(one["status"] == 0 for one in found) > 5

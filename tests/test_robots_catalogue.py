@@ -175,5 +175,8 @@ def test_the_command_lists_the_robots(capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["list", "--robots"]) == 0
     listed = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in listed] == robots.names()
+    families = [robots.entries()[line.split()[0]]["family"] for line in listed]
+    columns = {line.index(f" {family} ") for line, family in zip(listed, families, strict=True)}
+    assert len(columns) == 1
     assert main(["list", "--robots", "--sources"]) == 0
     assert capsys.readouterr().out.count("    parameters: ") == len(listed)

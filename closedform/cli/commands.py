@@ -120,9 +120,11 @@ def parser() -> argparse.ArgumentParser:
 
 def robots_listed(sources: bool) -> str:
     """A line for each ready robot, and below it the sources of its numbers."""
-    lines = []
-    for name, entry in robots.entries().items():
-        lines.append(f"{name:<13} {entry['family']:<13} {entry['title']}")
+    entries, lines = robots.entries(), []
+    width = max(map(len, entries))
+    families = max(len(entry["family"]) for entry in entries.values())
+    for name, entry in entries.items():
+        lines.append(f"{name:<{width}}  {entry['family']:<{families}}  {entry['title']}")
         if sources:
             lines.append(f"    parameters: {entry['source']}")
             parts = [part for part in ("limits", "zero", "base", "tool") if part in entry]

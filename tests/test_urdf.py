@@ -12,6 +12,7 @@ from closedform.cli.commands import main
 from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.scaffold.new import new
+from closedform.scaffold.recognise import recognised
 from closedform.scaffold.tables import Table, TableError
 from closedform.scaffold.tree import Choice, meant_angle
 from closedform.scaffold.urdf import read_urdf
@@ -97,6 +98,9 @@ def forward(text: str, q: np.ndarray) -> np.ndarray:
 def arm_of(path: Path, read: Callable[..., Table] = read_urdf, *choice: Choice) -> Serial:
     table = read(path, *choice)
     d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
+    for name, given in table.parameters.items():
+        value = sp.Rational(given["value"])
+        d.parameter(name, value=value, unit="rad", meaning="an angle", nonnegative=False)
     for name, kind in table.joints.items():
         d.joint(name, kind)  # type: ignore[arg-type]
     return from_screws(d, table.axes, table.home, base=table.base)
@@ -124,6 +128,40 @@ def test_joints_in_any_direction_and_slides(tmp_path: Path) -> None:
     unit = text.replace("0 0 2", "0 0 1")  # the axis is a direction; a slide moves by its unit
     for q in np.random.default_rng(1).uniform(-2, 2, (10, 2)):
         np.testing.assert_allclose(pose(*q), forward(unit, q), atol=1e-12)
+
+
+# A Piper by AgileX: frames of links are turned about their own axes, by 0.1359 and -1.7939.
+PIPER = """<robot name="piper">
+  <joint name="joint1" type="revolute"><parent link="a"/><child link="b"/>
+    <origin xyz="0 0 0.123" rpy="0 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="joint2" type="revolute"><parent link="b"/><child link="c"/>
+    <origin xyz="0 0 0" rpy="1.5707963267948966 -0.1359 -3.141592653589793"/>
+    <axis xyz="0 0 1"/></joint>
+  <joint name="joint3" type="revolute"><parent link="c"/><child link="d"/>
+    <origin xyz="0.28503 0 0" rpy="0 0 -1.7939"/><axis xyz="0 0 1"/></joint>
+  <joint name="joint4" type="revolute"><parent link="d"/><child link="e"/>
+    <origin xyz="-0.021984 -0.25075 0" rpy="1.5707963267948966 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="joint5" type="revolute"><parent link="e"/><child link="f"/>
+    <origin xyz="0 0 0" rpy="-1.5707963267948966 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="joint6" type="revolute"><parent link="f"/><child link="g"/>
+    <origin xyz="0 -0.091 0" rpy="1.5707963267948966 0 0"/><axis xyz="0 0 1"/></joint>
+</robot>"""
+
+
+def test_frames_turned_by_any_angle_keep_their_axes(tmp_path: Path) -> None:
+    """Sines of an angle are not rounded decimals; turns about parallel axes are one turn."""
+    path = tmp_path / "piper.urdf"
+    path.write_text(PIPER, "utf-8")
+    table = read_urdf(path)
+    assert not any("rounded" in note for note in table.notes)
+    values = {name: float(sp.Rational(given["value"])) for name, given in table.parameters.items()}
+    assert sorted(values.values()) == [0.1359, 1.658]
+    arm = arm_of(path)
+    assert "axes 4, 5 and 6 meet in a point" in recognised(arm)
+    pose = arm.pose.subs({s: values[str(s)] for s in arm.pose.free_symbols if str(s) in values})
+    moved = sp.lambdify(arm.joints, pose, "numpy")
+    for q in np.random.default_rng(2).uniform(-3, 3, (10, 6)):
+        np.testing.assert_allclose(moved(*q), forward(PIPER, q), atol=1e-12)
 
 
 def test_what_an_exporter_added_to_lengths_and_axes_is_dropped(ur5: Path) -> None:

@@ -13,6 +13,7 @@ from itertools import combinations, product
 from math import hypot
 
 import sympy as sp
+from sympy.simplify.fu import TR8
 
 from closedform.model.functions import real
 from closedform.model.tolerances import UNIT_LENGTH
@@ -29,6 +30,31 @@ SIMPLE: tuple[sp.Expr, ...] = (
 )
 """Absolute values that coordinates of unit vectors often have."""
 AXES = tuple(sp.eye(3)[:, i] for i in range(3))
+
+
+def orthonormal(given: sp.Matrix) -> bool:
+    """Whether the columns are exactly unit vectors, normal to each other.
+
+    Sines and cosines, as of a turn by 0.1359, are exact; this must hold for all of their angles.
+    """
+    unit: sp.Matrix = sp.eye(given.cols)
+    return bool((given.T * given).applyfunc(_without_squares) == unit)
+
+
+def _without_squares(value: sp.Expr) -> sp.Expr:
+    """A polynomial in sines and cosines, with cosines for squares of sines."""
+    found = sp.expand(value).replace(
+        lambda e: e.is_Pow and isinstance(e.base, sp.sin) and e.exp.is_Integer and e.exp > 1,
+        lambda e: (1 - sp.cos(e.base.args[0]) ** 2) ** (e.exp // 2) * e.base ** (e.exp % 2),
+    )
+    return sp.expand(found)
+
+
+def turned_on(first: sp.Matrix, then: sp.Matrix) -> sp.Matrix:
+    """The product of two rotations, in which turns about parallel axes are one turn."""
+    found = (first * then).applyfunc(sp.expand)
+    joined = found.applyfunc(lambda e: sp.expand(TR8(e)))
+    return joined if orthonormal(joined) else found
 
 
 def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
@@ -178,4 +204,4 @@ def decimal(value: sp.Expr) -> str:
     return str(value) if value.is_Rational else str(value.evalf(20))
 
 
-__all__ = ["Angles", "decimal", "rotation", "unit_vector"]
+__all__ = ["Angles", "decimal", "orthonormal", "rotation", "turned_on", "unit_vector"]

@@ -451,7 +451,7 @@ def use_exact(table: Table, file: str) -> None:
     directions: list[sp.Matrix] = []
     for i, (joint, direction, point) in enumerate(table.axes, 1):
         given = sp.Matrix(direction)
-        if not given.free_symbols and sp.expand(given.dot(given)) != 1:
+        if not given.free_symbols and not exact.orthonormal(given):
             unit = exact.unit_vector(given, directions)
             if unit is not None and unit != given:
                 table.notes.append(
@@ -462,7 +462,7 @@ def use_exact(table: Table, file: str) -> None:
         directions.append(given)
         axes.append((joint, list(given), point))
     R = table.home[:3, :3]
-    if not R.free_symbols and (R.T * R).applyfunc(sp.expand) != sp.eye(3):
+    if not R.free_symbols and not exact.orthonormal(R):
         turned = exact.rotation(R, directions)
         if turned is not None and turned != R:
             table.home[:3, :3] = turned

@@ -16,6 +16,7 @@ import sympy as sp
 
 from closedform.mechanics.frames import homogeneous, rotation
 from closedform.model.functions import real
+from closedform.scaffold.exact import turned_on
 from closedform.scaffold.tables import (
     JOINTS,
     NUMBERED,
@@ -336,7 +337,8 @@ def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
 
 
 def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
-    return (a * b).applyfunc(sp.expand)
+    shifted = a[:3, :3] * b[:3, 3] + a[:3, 3]
+    return homogeneous(turned_on(a[:3, :3], b[:3, :3]), tuple(shifted.applyfunc(sp.expand)))
 
 
 def _symbol(name: str) -> str:

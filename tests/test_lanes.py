@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from closedform.generated.c import delta as compiled
 
+from closedform.emit.backends.c.kernel import Emission
 from closedform.emit.backends.c.lanes import packed
 from closedform.emit.backends.c.packs import Packing
 from closedform.lower import Lowered, lower
@@ -78,3 +79,13 @@ def test_one_posture_has_the_statuses_of_a_batch() -> None:
     assert (np.array([s.status for s in alone]) == status).all()
     assert set(np.unique(status)) == {0, 1, 2, 3}
     np.testing.assert_allclose(np.array([s.q for s in alone]), q, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("function", ["ik", "skeleton"])
+def test_an_answer_that_does_not_exist_is_selected_without_a_jump(function: str) -> None:
+    """A jump between two loops over lanes would keep their vectors apart."""
+    d = importlib.import_module("closedform.derivations.delta").d
+    printed = Emission(d, d[function], lower(d[function], d), "delta").emit()
+    poisons = [line for line in printed.lanes_lines if "cf_poison" in line]
+    assert poisons
+    assert all("cf_poison(0, " in line for line in poisons)

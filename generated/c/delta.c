@@ -657,7 +657,7 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t t57 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t56 * t56) + mu * CLOSEDFORM_C(0.25));
     const real_t t58 = l * l - t57;
     const int t59 = t52 & (-(CLOSEDFORM_FEASIBILITY * t7) <= t58);
-    const real_t t60 = cf_poison(1, (!(t3 & t4)) | (!t59));
+    const real_t t60 = cf_poison(0, (!(t3 & t4)) | (!t59));
     const real_t t61 = CLOSEDFORM_C(0.0) + t60;
     const real_t t62 = t47 * t56 + d_x * CLOSEDFORM_C(0.5);
     const real_t w_x = cf_rarely(1, in_line, g_1 * s_w, t41 * n_z - d_z * t49);
@@ -2942,7 +2942,7 @@ CF_INLINE void delta_ik_lanes(const real_t one, const delta_params *params,
     }
     const int t51 = (t13_lanes[0] != 0) & (t13_lanes[1] != 0) & (t13_lanes[2] != 0);
     const int unreachable = !t51;
-    const real_t t52 = cf_poison(1, invalid | unreachable);
+    const real_t t52 = cf_poison(0, invalid | unreachable);
     const int t53 = (t12_lanes[0] != 0) | (met_1_lanes[1] != 0) | (met_1_lanes[2] != 0);
     real_t t54_lanes[4], t55_lanes[4];
     const real_t t56_of[4] = { t15_lanes[1], t15_lanes[1], t16_lanes[1], t16_lanes[1] };

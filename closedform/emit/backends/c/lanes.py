@@ -217,7 +217,8 @@ class LanesPrinter(CPrinter):
         return super().select(node, condition, a, b)
 
     def poison(self, node: Node, failed: Text) -> Text:
-        return Text(f"cf_poison({0 if self._in_loop else 1}, {failed.code})")
+        """A selection also outside of loops: a jump would divide the vectors around it."""
+        return Text(f"cf_poison(0, {failed.code})")
 
     def status(self, node: Node, invalid: Text, unreachable: Text, singular: Text) -> Text:
         single = 0 if self._in_loop else 1

@@ -36,12 +36,17 @@ def solved(d: Derivation, arm: Serial, lines: str) -> Chain:
         d.task = list(task.names)
     angles = ["yaw"] if task is not None and "yaw" in task.names else []
     ik = Chain(d, arm.pose if task is None else task.values, angles=angles)
-    known = {name: getattr(sp, name) for name in IMPORTED}
-    known |= {name: getattr(closedform, name) for name in (*CHAIN, *LINKED)}
-    known |= {symbol.name: symbol for symbol in (*ik.joints, *(p.symbol for p in d.parameters))}
-    exec(lines, known | {"ik": ik})
+    run(lines, ik)
     ik.finish("All solutions of the inverse kinematics.")
     return ik
+
+
+def run(lines: str, ik: Chain) -> None:
+    """Run the lines of a chain with the names that a script imports, joints and parameters."""
+    known = {name: getattr(sp, name) for name in IMPORTED}
+    known |= {name: getattr(closedform, name) for name in (*CHAIN, *LINKED)}
+    known |= {symbol.name: symbol for symbol in (*ik.joints, *(p.symbol for p in ik.d.parameters))}
+    exec(lines, known | {"ik": ik})
 
 
 def printed(d: Derivation, folder: Path) -> Any:
@@ -51,4 +56,4 @@ def printed(d: Derivation, folder: Path) -> Any:
     return module(folder / "numpy", d.name)
 
 
-__all__ = ["arm", "printed", "solved"]
+__all__ = ["arm", "printed", "run", "solved"]

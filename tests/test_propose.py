@@ -6,27 +6,17 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
+from chains import run
 from sympy import pi
 
-import closedform
-from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
 from closedform.lower.program import lower
 from closedform.mechanics.arm import Serial, from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, Proposal, propose
+from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.tables import NUMBERED, TAKEN
-
-
-def run(proposal: Proposal, ik: Chain) -> None:
-    """Run the lines as the script that holds them does."""
-    names = {s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)}
-    exec("from sympy import *", known := {})
-    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
-    exec(proposal.source, known | names | {"ik": ik})
-
 
 LENGTHS = ("a", "b", "c", "e", "f", "g")
 
@@ -114,7 +104,7 @@ def test_the_proof_accepts_the_proposal(structure: str) -> None:
     assert found.structure == structure
     forward = serial.export(d)
     ik = Chain(d, forward, angles=["yaw"] if "yaw" in d.task else [])
-    run(found, ik)
+    run(found.source, ik)
     ik.finish("Inverse.")
     (inverse,) = prove(d).inverses
     assert inverse.branches == branches == inverse.solutions == found.branches
@@ -138,7 +128,7 @@ def test_the_proposal_for_a_puma_costs_what_the_example_does() -> None:
     joints, _, rows = KNOWN["turret and two parallel joints, with a spherical wrist"]
     d, serial = arm(joints, rows)
     ik = Chain(d, serial.pose)
-    run(propose(serial), ik)
+    run(propose(serial).source, ik)
     ik.finish("Inverse.")
     operations = lower(d["ik"], d).operations()
     assert operations["atan2"] == 20
@@ -176,7 +166,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
     found = propose(serial)
     assert found.structure == "turret and two parallel joints"
     ik = Chain(d, serial.export(d))
-    run(found, ik)
+    run(found.source, ik)
     ik.finish("Inverse.")
     assert prove(d).inverses[0].branches == 4
 
@@ -230,7 +220,7 @@ def test_the_proof_decides_and_not_the_proposal() -> None:
     wrong = replace(found, lines=tuple(line.replace("-p[1]", "p[1]") for line in found.lines))
     assert wrong != found
     ik = Chain(d, serial.export(d))
-    run(wrong, ik)
+    run(wrong.source, ik)
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match="does not follow from the forward map"):
         prove(d)

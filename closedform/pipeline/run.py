@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 BACKENDS = backend_names()
 EXTRA = ("sympy", "flint", "jinja2")
 COMPILED = frozenset({".so", ".pyd", ".pyc"})
+NOT_PROVED = (ValueError, TypeError, ArithmeticError, NotImplementedError)
+"""What is raised if a proof fails or cannot be carried out."""
 
 Files = dict[Path, str]
 Report = Callable[[str, str], None]
@@ -246,7 +248,7 @@ def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
         with recording() as record:
             proof = prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
         return proof, record
-    except (ValueError, TypeError, ArithmeticError, NotImplementedError) as error:
+    except NOT_PROVED as error:
         message = str(error).removeprefix(derivation.name).lstrip(",.: ")
         raise DerivationError(derivation.name, f"not proved: {message}") from error
 

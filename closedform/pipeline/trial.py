@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from closedform.algebra.solutions import NotRationalError
-from closedform.pipeline.run import DerivationError, Source, load
+from closedform.pipeline.run import NOT_PROVED, DerivationError, Source, load
 from closedform.proof.inverse import prove_inverse
 
 
@@ -22,11 +22,11 @@ def fault(name: str, script: str) -> str:
         try:
             d = load(Source(name, path))
             prove_inverse(d, d.inverses[-1])
-        except (DerivationError, ValueError, TypeError, ArithmeticError, NotImplementedError) as e:
-            error = e.__cause__ if isinstance(e, DerivationError) and e.__cause__ else e
-            if isinstance(error, NotRationalError):
+        except (DerivationError, *NOT_PROVED) as error:
+            cause = error.__cause__ if isinstance(error, DerivationError) else error
+            if isinstance(cause, NotRationalError):
                 return ""
-            return str(error).removeprefix(f"{name}.ik: ").partition(". ")[0]
+            return str(cause or error).removeprefix(f"{name}.ik: ").partition(". ")[0]
     return ""
 
 

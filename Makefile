@@ -40,19 +40,19 @@ endef
 define INSTALL
 set -e
 for file in pyproject.toml setup.py; do
-    [ .venv/installed.stamp -nt $$file ] || stale=1
+    [ .venv/$$EXTRA.stamp -nt $$file ] || stale=1
 done
 [ "$$stale" ] || exit 0
 [ ! -e .venv/unfinished ] || rm -rf .venv
 mkdir -p .venv
 touch .venv/unfinished
-echo "installing what is needed into .venv"
+echo "installing what $$EXTRA needs into .venv"
 [ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
 status=0
-$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev]' || status=$$?
+$(BIN)/python -m pip install --quiet --no-compile --editable ".[$$EXTRA]" || status=$$?
 [ $$status -gt 128 ] || rm .venv/unfinished
 [ $$status = 0 ] || exit $$status
-touch .venv/installed.stamp
+touch .venv/$$EXTRA.stamp
 endef
 export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
@@ -64,12 +64,15 @@ LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
 	@cat build/derived.txt
 
-.venv/installed.stamp: pyproject.toml setup.py
+# make.stamp: what the build needs; dev.stamp: that and what tests, lint, figures and the site need.
+.venv/%.stamp: pyproject.toml setup.py
 	@test -n "$(PYTHON)" || { echo "closedform needs Python 3.11 or later: make PYTHON=..."; exit 1; }
-	@$(LOCKED) sh -c "$$INSTALL"
+	@$(LOCKED) env EXTRA=$* sh -c "$$INSTALL"
+
+.venv/dev.stamp: | .venv/make.stamp
 
 # The list of what was proved. Only files in generated/ that change are written.
-build/derived.txt: .venv/installed.stamp $(DERIVING) $(PRINTED)
+build/derived.txt: .venv/make.stamp $(DERIVING) $(PRINTED)
 	@$(LOCKED) sh -c '$(BIN)/closedform derive > $@.new && mv $@.new $@'
 
 # setup.py compares contents, so nothing is compiled twice; the check takes less than a second.
@@ -77,7 +80,7 @@ native: build/derived.txt
 	@$(LOCKED) $(BIN)/python setup.py --quiet build_ext --inplace
 
 # One process more than there are cores: tests of the site, of Dask and of several builds wait.
-test: all  ## run the tests on all cores; ARGS="-k NAME" selects some
+test: all .venv/dev.stamp  ## run the tests on all cores; ARGS="-k NAME" selects some
 	$(BIN)/python -m pytest -n $$(($$(getconf _NPROCESSORS_ONLN) + 1)) --dist worksteal $(ARGS)
 
 verify: all  ## check the certificates of all proofs, without the prover
@@ -86,15 +89,15 @@ verify: all  ## check the certificates of all proofs, without the prover
 # Nothing here may depend on all: it would overwrite the differences that check has to find.
 check: lint types regenerated warnings  ## lint, types, C warnings; whether generated/ is up to date
 
-lint: .venv/installed.stamp
+lint: .venv/dev.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports --no-logo
 
-types: .venv/installed.stamp
+types: .venv/dev.stamp
 	$(BIN)/mypy
 
-regenerated: .venv/installed.stamp
+regenerated: .venv/dev.stamp
 	$(BIN)/closedform check
 
 warnings: $(COMPILERS)
@@ -132,11 +135,11 @@ analysed:  ## run cppcheck and clang-tidy on the C, if installed; ANALYSED="FILE
 portability: all  ## try installed compilers, processor emulators and Pythons; ARGS=--all
 	$(BIN)/python tests/portability/run.py $(ARGS)
 
-format: .venv/installed.stamp  ## format the Python that is written by hand
+format: .venv/dev.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-figures: native  ## draw every figure: PDF in build/figures, what the pages show in docs
+figures: native .venv/dev.stamp  ## draw every figure: PDF in build/figures, what the pages show in docs
 	$(BIN)/closedform figures -o build/figures --docs docs
 
 pdf: $(PDFS)  ## compile the derivations to PDF, one for each mechanism, in build/pdf
@@ -169,16 +172,16 @@ book: figures build/derived.txt  ## compile the book of all mechanisms, build/bo
 	@mkdir -p build/book && mv build/pdf/unfinished/closedform.pdf build/book/closedform.pdf
 	@echo build/book/closedform.pdf
 
-notebooks: native  ## write the guides in Python as notebooks, with their output, to build/notebooks
+notebooks: native .venv/dev.stamp  ## write the guides in Python as notebooks, with their output, to build/notebooks
 	@$(BIN)/python -m closedform.site.notebooks $(ARGS)
 
-site: native  ## build the site, build/site/index.html: derivations, explorers, guides; needs Node
+site: native .venv/dev.stamp  ## build the site, build/site/index.html: derivations, explorers, guides; needs Node
 	@$(BIN)/closedform site -o build/site $(ARGS)
 
 bench: all  ## time the generated code and the installed peers; writes benchmarks/RESULTS.md
 	$(BIN)/python -m benchmarks $(ARGS)
 
-fuzz: all  ## attack with random input; make test repeats failures; ARGS="--seconds 600 --seed 2"
+fuzz: all .venv/dev.stamp  ## attack with random input; make test repeats failures; ARGS="--seconds 600 --seed 2"
 	PYTHONPATH=tests $(BIN)/python -m fuzz $(ARGS)
 
 accuracy: all  ## compare a billion sines, cosines and arctangents with libm; ARGS="--samples N"

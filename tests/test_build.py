@@ -153,11 +153,11 @@ def test_two_builds_at_once(toy: Path) -> None:
 
 # A whole tree, with make
 
-PYTHON = """#!/bin/sh
+PYTHON = r"""#!/bin/sh
 # Makes an environment whose pip kills itself where it is told so.
 case "$*" in
     "-m venv .venv") mkdir -p .venv/bin; cp "$0" .venv/bin/python; echo venv >> LOG ;;
-    "-m pip"*) echo pip >> LOG; [ ! -e kill-pip ] || kill -9 $$; [ ! -e fail-pip ] ;;
+    "-m pip"*.\[make\]) echo pip >> LOG; [ ! -e kill-pip ] || kill -9 $$; [ ! -e fail-pip ] ;;
     *) exec REAL "$@" ;;
 esac
 """
@@ -188,7 +188,7 @@ needs_make = pytest.mark.skipif(shutil.which("make") is None, reason="there is n
 
 @needs_make
 def test_an_environment_in_which_pip_was_killed_is_made_anew(tree: Path) -> None:
-    stamp, log = ".venv/installed.stamp", tree / "LOG"
+    stamp, log = ".venv/make.stamp", tree / "LOG"
     (tree / "kill-pip").touch()
     assert make(tree, stamp).returncode != 0
     assert not (tree / stamp).exists()
@@ -204,16 +204,22 @@ def test_an_environment_in_which_pip_was_killed_is_made_anew(tree: Path) -> None
 @needs_make
 def test_an_environment_in_which_pip_failed_is_kept(tree: Path) -> None:
     (tree / "fail-pip").touch()
-    assert make(tree, ".venv/installed.stamp").returncode != 0
+    assert make(tree, ".venv/make.stamp").returncode != 0
     (tree / "fail-pip").unlink()
     (tree / ".venv" / "kept").touch()
-    assert make(tree, ".venv/installed.stamp").returncode == 0
+    assert make(tree, ".venv/make.stamp").returncode == 0
     assert (tree / ".venv" / "kept").exists()
 
 
 @needs_make
+def test_make_alone_does_not_install_what_only_tests_need(tree: Path) -> None:
+    assert ".venv/dev.stamp" not in make(tree, "--dry-run", "--debug=basic", "all").stdout
+    assert ".venv/dev.stamp" in make(tree, "--dry-run", "--debug=basic", "test").stdout
+
+
+@needs_make
 def test_two_makes_take_turns(tree: Path) -> None:
-    assert make(tree, ".venv/installed.stamp").returncode == 0
+    assert make(tree, ".venv/make.stamp").returncode == 0
     closedform = tree / ".venv" / "bin" / "closedform"
     closedform.write_text("#!/bin/sh\necho begin >> LOG\nsleep 0.5\necho end >> LOG\necho robot\n")
     closedform.chmod(0o755)
@@ -242,7 +248,8 @@ def test_bytecode_is_kept_in_the_build_where_it_may_not_stand_beside_the_sources
 @needs_make
 def test_check_does_not_first_mend_what_it_should_find(tree: Path) -> None:
     (tree / ".venv").mkdir()
-    (tree / ".venv" / "installed.stamp").touch()
+    for name in ("make", "dev"):
+        (tree / ".venv" / f"{name}.stamp").touch()
     planned = make(tree, "--dry-run", "check").stdout
     assert "closedform check" in planned
     assert "derive" not in planned and "build_ext" not in planned
@@ -285,7 +292,8 @@ def test_a_committed_edit_of_what_is_generated_fails_the_check(tmp_path: Path) -
     text = CLOSEDFORM.replace("PYTHON", sys.executable)
     program.write_text(text.replace("OLD", repr(str(ROOT))).replace("NEW", repr(str(tmp_path))))
     program.chmod(0o755)
-    (tmp_path / ".venv" / "installed.stamp").touch()
+    for name in ("make", "dev"):
+        (tmp_path / ".venv" / f"{name}.stamp").touch()
     shutil.copy(shutil.which("true") or "", tmp_path / "python")
     subprocess.run([program, "derive"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
     for name in ("numpy/planar_2r.py", "errata.md"):

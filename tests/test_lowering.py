@@ -14,7 +14,7 @@ from closedform.lower import Lowered, lower
 from closedform.lower.graph import Graph, hardly_ever, reachable
 from closedform.mechanics.frames import exponential
 from closedform.model.derivation import Derivation, Paper
-from closedform.model.functions import Function, Program, array, choose, real
+from closedform.model.functions import Function, Program, array, choose, real, sign_of
 from closedform.model.tolerances import DOUBLE
 
 x, y, z = (real(n) for n in "xyz")
@@ -267,3 +267,12 @@ def test_an_angle_behind_a_name_is_wrapped() -> None:
                 assert -math.pi < found <= math.pi * (1 + 1e-15)
                 assert math.sin(found - exact) == pytest.approx(0, abs=1e-12)
                 assert math.cos(found - exact) == pytest.approx(1)
+
+
+def test_a_condition_on_what_was_chosen_is_refused_before_sympy_drops_a_part_of_it() -> None:
+    chosen = choose(sp.Symbol("flag"), x, y)
+    assert not sp.Piecewise((1, chosen >= 0), (-1, True)).has(y)  # what SymPy does
+    for refused in (lambda: choose(chosen >= 0, 1, 2), lambda: sign_of(chosen)):
+        with pytest.raises(ValueError, match="name what is compared before you choose by it"):
+            refused()
+    assert sign_of(sp.Integer(3)) == 1 and sign_of(sp.Integer(-3)) == -1

@@ -493,13 +493,18 @@ class Program:
 
 
 def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
-    """``when_true`` if a flag, or a condition on flags, holds; else ``otherwise``."""
+    """``when_true`` if a flag, or a condition on flags, holds; else ``otherwise``.
+
+    SymPy would drop a part of a condition that itself compares what was chosen: ``ValueError``.
+    """
+    if flag.has(sp.Piecewise):
+        raise ValueError(f"name what is compared before you choose by it: {flag}")
     return sp.Piecewise((when_true, flag), (otherwise, True))
 
 
 def sign_of(value: Number) -> sp.Expr:
     """1 if ``value`` is not negative, else -1."""
-    return sp.Piecewise((1, value >= 0), (-1, True))
+    return choose(sp.sympify(value) >= 0, 1, -1)
 
 
 def used_up(margin: Number) -> sp.Expr:

@@ -1,7 +1,7 @@
 """Mechanisms that tests derive from a file of bodies and joints, or from a script."""
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -50,3 +50,8 @@ def newton(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray |
         step = np.linalg.lstsq(rates, here)[0]
         x = x - step / max(1.0, np.abs(step).max())
     return None
+
+
+def apart(a: np.ndarray, b: np.ndarray, turns: Sequence[bool] | np.ndarray) -> np.ndarray:
+    """The largest difference of each row of ``a`` from ``b``; what turns, up to whole turns."""
+    return np.abs(np.where(turns, np.angle(np.exp(1j * (a - b))), a - b)).max(axis=-1)

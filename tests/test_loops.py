@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from loop_files import newton, read_script, script_of
+from loop_files import apart, newton, read_script, script_of
 
 from closedform import (
     Crank,
@@ -97,10 +97,6 @@ def turn(axis: str, angle: float) -> np.ndarray:
     R[[i, j], [i, j]] = np.cos(angle)
     R[j, i], R[i, j] = np.sin(angle), -np.sin(angle)
     return R
-
-
-def apart(a: np.ndarray, b: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    return np.abs(np.where(turns, np.angle(np.exp(1j * (a - b))), a - b)).max(axis=-1)
 
 
 @pytest.mark.parametrize("name", HANDS)

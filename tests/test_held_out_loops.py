@@ -1,0 +1,92 @@
+"""Closed loops from the literature that are not among the mechanisms of the project.
+
+Each is described in a short file, proved and tried: Newton's method on the lengths of the rods,
+which are written here from the drawings, finds no posture that the closed form lacks.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from loop_files import apart, derived, newton, script_of
+
+FOLDER = Path(__file__).parent / "held_out" / "loops"
+OK, STARTS, LINES = 0, 30, 40
+
+
+def norm(*v: float) -> float:
+    return float(np.linalg.norm(v))
+
+
+def prrrp(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    left = norm(p[0] + v.w, p[1] - q[0]) - v.l1
+    return [left, norm(p[0] - v.w, p[1] - q[1]) - v.l2]
+
+
+def rssr(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    A = np.array([v.a * np.cos(q[0]), v.a * np.sin(q[0]), v.s])
+    axis, arm = np.array([0, -np.sqrt(0.75), 0.5]), np.array([v.c, 0, 0])  # Rodrigues' formula
+    B = [v.f, 0, 0] + arm * np.cos(p[0]) + np.cross(axis, arm) * np.sin(p[0])
+    return [norm(*(A - B)) - v.b]
+
+
+def three_slides(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    starts = np.array([[q[0], v.g, 0], [q[1], -v.g, 0], [q[2], 0, v.h]])
+    ends = p + np.array([[0, v.e, 0], [0, -v.e, 0], [0, 0, v.e]])
+    return [norm(*row) - v.l for row in starts - ends]
+
+
+MISSES: dict[str, tuple[Callable, int]] = {
+    "prrrp": (prrrp, 4),
+    "rssr": (rssr, 2),
+    "three_slides": (three_slides, 8),
+}
+
+
+@pytest.fixture(scope="module", params=MISSES)
+def loop(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    text = (FOLDER / f"{request.param}.toml").read_text("utf-8")
+    assert len(text.splitlines()) < LINES
+    folder = tmp_path_factory.mktemp("loops")
+    name = f"{request.param}_held_out"
+    return derived(name, script_of(name, text, folder), folder)
+
+
+def name_of(loop: ModuleType) -> str:
+    return loop.__name__.split(".")[-1].removesuffix("_held_out")
+
+
+def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) -> None:
+    misses, modes = MISSES[name_of(loop)]
+    v, rng = loop.Parameters(), np.random.default_rng(3)
+    turns = [loop.SKELETON.joints[name].kind == "revolute" for name in loop.JOINTS]
+    assert len(loop.BRANCHES) == modes
+    found = {"fk": 0, "ik": 0}
+    for q in rng.uniform(0, 0.5, (20, len(turns))) * np.where(turns, 12, 1):
+        forward = loop.fk(q)
+        for start in rng.uniform(-1, 1, (STARTS, forward.p.shape[-1])):
+            p = newton(lambda p: np.array(misses(v, q, p)), start)  # noqa: B023
+            if p is None:
+                continue
+            found["fk"] += 1
+            assert np.nanmin(apart(forward.p, p, [loop.TASK == ("phi",)])) < 1e-6
+            joints = newton(lambda q: np.array(misses(v, q, p)), q + rng.normal(0, 1, len(q)))  # noqa: B023
+            if joints is not None:
+                found["ik"] += 1
+                assert np.nanmin(apart(loop.ik(p).q, joints, turns)) < 1e-5
+    assert min(found.values()) > 50
+
+
+def test_all_postures_close_the_loop(loop: ModuleType) -> None:
+    misses, _ = MISSES[name_of(loop)]
+    v, rng = loop.Parameters(), np.random.default_rng(4)
+    q = rng.uniform(0, 0.5, (200, len(loop.JOINTS)))
+    p, status = loop.fk(q)
+    assert (status == OK).any()
+    for target in p[status == OK]:
+        answers = loop.ik(target)
+        assert (answers.status == OK).any()
+        for joints in answers.q[answers.status == OK]:
+            assert np.abs(misses(v, joints, target)).max() < 1e-12

@@ -23,7 +23,7 @@ from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.lemmas.tangent import Anywhere, Goal, Offset, Tangency, Turned
+from closedform.lemmas.tangent import ROUNDING, Anywhere, Goal, Offset, Tangency, Turned
 from closedform.lemmas.triangle import Triangle
 from closedform.lemmas.zyz import zyz_angles, zyz_lemma
 from closedform.model.functions import Let, choose, real
@@ -126,14 +126,15 @@ def turn(
         chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
     )
     # half: what is clamped stays well within the round trip that is promised
-    missed_by = (lambda _: chain.size / 2) if scale is None else (lambda _: scale)
-    at = Amplitude.of(p, x, (a, b, c), sigma, scale=missed_by, suffix=tag)
+    missed_by = chain.size / 2 if scale is None else scale
+    at = Amplitude.of(p, x, (a, b, c), sigma, scale=lambda _: missed_by, suffix=tag)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
         flag = p.vanishes(f"free{tag}", at.h, chain.size, f"the axis of {x.name} is met", free=(x,))
     root = p.let(f"root{tag}", at.root, nonnegative=True)
     width = p.let(f"width{tag}", at.below + at.above, nonnegative=True)
-    found = toward.reached(Tangency(chain, at, root, width, tag, flag))
+    play = 2 * missed_by * ROUNDING
+    found = toward.reached(Tangency(chain, at, root, width, play, tag, flag))
     pair, means = named(chain, x, found.pair)
     across = a * pair.c - b * pair.s if found.root is None else -sigma * found.root
     ahead = p.let(f"ahead{tag}", across)

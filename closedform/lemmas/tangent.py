@@ -65,13 +65,15 @@ class Within:
 class Turn:
     """A turn that may be changed: its pair in names that end in ``name``.
 
-    It moves the target by the ``lever`` times its angle and ``beside`` times half the square.
+    It moves the target by the ``lever`` times its angle and ``beside`` times half the square, which
+    may add up to ``play``.
     """
 
     chain: Chain
     pair: Pair
     lever: sp.Expr
     beside: sp.Expr
+    play: sp.Expr
     name: str
 
     def let(self, name: str, value: sp.Expr) -> sp.Symbol:
@@ -84,6 +86,7 @@ class Turn:
             Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
             self.lever,
             self.beside,
+            self.play,
             name,
         )
 
@@ -108,8 +111,7 @@ class Turn:
         small = sine**2 / (1 + sp.Abs(cosine))
         versine = self.let("versine", sp.Piecewise((small, cosine > 0), (1 - cosine, True)))
         cost = self.let("cost", sp.Abs(self.lever * sine) + sp.Abs(self.beside) * versine)
-        size = self.let("whole", self.chain.size * ROUNDING)
-        allowed = cost <= size
+        allowed = cost <= self.let("whole", self.play)
         s, c = (
             self.let(n, sp.Piecewise((value, allowed), (sp.Integer(k), True)))
             for n, value, k in (("sine", sine, 0), ("cosine", cosine, 1))
@@ -148,6 +150,8 @@ class Tangency:
     at: Amplitude
     root: sp.Symbol
     width: sp.Symbol
+    play: sp.Expr
+    """What rounding may change the right side of the equation by."""
     suffix: str
     free: Any
     """The flag that the turn is free, or false; then its angle is 0."""
@@ -255,7 +259,7 @@ class Links:
         found = turn.pair(turn.root, turn.width)
         tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
         near = self.nearest(
-            Turn(chain, found, turn.root, at.c, suffix).renamed(found, f"{suffix}_1")
+            Turn(chain, found, turn.root, at.c, turn.play, suffix).renamed(found, f"{suffix}_1")
         )
         s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
         return Reached(Pair(s, c), None)
@@ -265,6 +269,11 @@ class Links:
         x, y = turn.linear("q", self.q)
         bend = y[0] ** 2 + y[1] ** 2
         return turn.least(Within(x, y, bend, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
+
+
+def coordinate_within(value: Callable[[Pair], sp.Expr], most: sp.Expr) -> Links:
+    """The goal that a coordinate, linear in the pair of a turn, is at most ``most`` in size."""
+    return Links(lambda pair: sp.Matrix([value(pair), 0]), most / 2, most / 2)
 
 
 @dataclass(frozen=True)

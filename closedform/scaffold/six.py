@@ -134,9 +134,12 @@ class SixMaker(SubproblemMaker):
         far = sp.Symbol("far")
         c = (far**2 + sp.simplify(s.dot(s) - t.dot(t))) / 2 - s[2] * p[2]
         size = sp.sqrt(sp.simplify(t.dot(t)))
-        first = self._turn(one, (*turning(s, p), c), scale=source(size / 2), by_size=True)
-        self.vector("seen", f"M.T * (turned({first}) * {source(s)} - p)")
+        seen = f"M.T * (turned({{}}) * {source(s)} - p)"
         v, g, w = point("seen"), five.end.T * Z, -(four.end.T * t).applyfunc(sp.simplify)
+        self.ahead_of_turn(seen.format("pair"), w, g[2])
+        sides = (*turning(s, p), c)
+        first = self._turn(one, sides, "seen_across", scale=source(size / 2), by_size=True)
+        self.vector("seen", seen.format(first))
         sixth = self._turn(six, (*turning(v, g), w[2] - g[2] * v[2]))
         self.vector("beyond", times(five.end, f"(turned({sixth}) * seen)"))
         because = (

@@ -311,11 +311,15 @@ class SubproblemMaker(WristMaker):
         self.add("far = ik.let('far', sqrt(p.dot(p)))")
         far = sp.Symbol("far")
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
-        third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
-        inside = times(two.end, f"(turned({third}) * {source(u)})")
-        self.vector("carried", f"{source(t)} + {inside}")
+        sides = turning(g, p)
+        carried = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
+        self.add(f"reach = ik.let('reach', {source(norm(sp.Matrix(sides)))})")
+        self.within_reach(carried.format("pair"), g[2] * p[2], "reach")
+        scale = "(far + ik.size/2**44)/2"
+        third = self._by_distance(three, e, u, c, scale, "seen_across")
+        self.vector("carried", carried.format(third))
         v = point("carried")
-        first = self._turn(one, (*turning(g, p), v[2] - g[2] * p[2]))
+        first = self._turn(one, (*sides, v[2] - g[2] * p[2]))
         self.vector("seen", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
             f"{{{self.unknowns[three.number]}: 2*ik.size, "
@@ -335,8 +339,10 @@ class SubproblemMaker(WristMaker):
         c = (far**2 + sp.simplify(t.dot(t) - u.dot(u))) / 2 - t[2] * p[2]
         size = sp.sqrt(sp.simplify(u.dot(u)))
         sides = (*turning(t, p), c)
-        first = self._turn(one, sides, scale=source(size / 2), by_size=True)
-        self.vector("seen", times(one.end.T, f"(turned({first}).T * p - {source(t)})"))
+        seen = times(one.end.T, f"(turned({{}}).T * p - {source(t)})")
+        self.ahead_of_turn(seen.format("pair"), u, g[2])
+        first = self._turn(one, sides, "seen_across", scale=source(size / 2), by_size=True)
+        self.vector("seen", seen.format(first))
         m = point("seen")
         second = self._turn(two, (*turning(g, m), u[2] - g[2] * m[2]))
         self.add(
@@ -356,10 +362,13 @@ class SubproblemMaker(WristMaker):
         s, t, u, p = one.shift, two.shift, three.shift, point("p")
         f = two.end.T * Z
         a, b = map(sp.simplify, turning(u, f))
-        third = self._turn(three, (a, b, p[2] - s[2] - t[2] - f[2] * u[2]))
-        inside = times(two.end, f"(turned({third}) * {source(u)})")
-        self.vector("carried", f"{source(t)} + {inside}")
+        carried = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
         self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
+        self.add(
+            f"links = Links(lambda pair: {carried.format('pair')}, {source(norm(s[:2, 0]))}, far)"
+        )
+        third = self._turn(three, (a, b, p[2] - s[2] - t[2] - f[2] * u[2]), "links")
+        self.vector("carried", carried.format(third))
         far, v = sp.Symbol("far"), point("carried")
         c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
         sides = (*turning(v, s), c)
@@ -433,7 +442,9 @@ class SubproblemMaker(WristMaker):
         self.solve("quartic", f"{arguments}, {square}, {LINE}, {SIDE}, on_circle", pair, 4)
         return pair
 
-    def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
+    def _by_distance(
+        self, joint: Single, e: Any, u: Any, c: Any, scale: str, toward: str = ""
+    ) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
         a, b = map(sp.simplify, turning(u, e))
         self.require(
@@ -441,7 +452,7 @@ class SubproblemMaker(WristMaker):
             f"the distance of its wrist does not depend on joint {joint.number}",
             "An elbow needs an axis beside the line of its ends.",
         )
-        return self._turn(joint, (a, b, c), scale=scale, by_size=True)
+        return self._turn(joint, (a, b, c), toward, scale=scale, by_size=True)
 
 
 LINE = "{+1: 'first', -1: 'second'}"

@@ -59,6 +59,20 @@ class WristMaker(Maker):
         self.levers.append(f"{pair}.lever/ik.size")
         return pair
 
+    def within_reach(self, vector: str, beside: Any, reach: str) -> None:
+        """Name the goal that a turn's third coordinate differs from ``beside`` by the reach."""
+        less = f" - ({source(beside)})" if beside != 0 else ""
+        self.add(f"seen_across = coordinate_within(lambda pair: ({vector})[2]{less}, {reach})")
+
+    def ahead_of_turn(self, vector: str, w: sp.Matrix, tilt: Any) -> None:
+        """Name the goal that two turns can bring a vector as long as ``w`` to it.
+
+        The axes of the turns meet at the angle whose cosine is ``tilt``.
+        """
+        lengths = ((1 - tilt**2), w[0] ** 2 + w[1] ** 2)
+        reach = sp.sqrt(sp.Mul(*map(sp.simplify, lengths)))
+        self.within_reach(vector, tilt * w[2], source(reach))
+
     def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
         name, pair = self.unknown(joint), f"pair{joint.number}"
         more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")

@@ -1,0 +1,89 @@
+"""Arms from tables where two of the things that make a posture singular happen at once.
+
+There a rounding turns the first joint by a multiple of it, and the next one, which is at the end of
+its range too, would seem to be out of reach.
+"""
+
+import itertools
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from chains import arm, printed, solved
+from test_six import CHAINS as SIX
+from test_subproblems import CHAINS as SUBPROBLEMS
+
+from closedform.scaffold.propose import propose
+
+TABLES = {**SUBPROBLEMS, **SIX}
+FACTORED = (
+    "spherical wrist, axes 1 and 2 meet",
+    "spherical wrist, axes 1 and 2 parallel",
+    "axes 2, 3 and 4 meet in a point, 5 and 6 meet",
+    "axes 2, 3 and 4 meet in a point, 5 and 6 are parallel",
+)
+"""Structures whose singular set has a factor for each joint that can reach the end of its range."""
+FRANKA = "spherical shoulder, axes 6 and 5 meet, with t7 given"
+OK, SINGULAR = 0, 2
+BASES, AROUND = 4, 400
+SIZE = 6
+"""About the sum of the lengths of each of these arms."""
+
+
+def zero_near(f: Callable[[np.ndarray], np.ndarray], q: np.ndarray) -> np.ndarray | None:
+    """The nearest posture where all ``f`` vanish, if the steps of Newton's method lead there."""
+    steps = 1e-6 * np.eye(len(q))
+    for _ in range(40):
+        rates = np.array([(f(q + s) - f(q - s)) / 2e-6 for s in steps]).T
+        step = np.linalg.lstsq(rates, f(q), rcond=1e-9)[0]
+        q = q - step / max(1.0, np.abs(step).max())
+    return q if np.abs(f(q)).max() < 1e-13 else None
+
+
+def around(bases: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Postures from the given ones up to a thousandth away, down to where rounding hides it."""
+    q = np.repeat(bases, AROUND, axis=0)
+    away = 10 ** rng.uniform(-17, -3, q.shape) * rng.choice((-1, 1), q.shape)
+    return q + away * (rng.random(q.shape) < 0.6)
+
+
+def check(robot: ModuleType, q: np.ndarray, *given: np.ndarray) -> None:
+    T = robot.fk(q)
+    found = robot.ik(T, *given)
+    ok = found.status == OK
+    assert (ok | (found.status == SINGULAR)).any(axis=-1).all()
+    miss = np.abs(robot.fk(found.q) - T[:, None]).max(axis=(-1, -2))
+    assert miss[ok].max() < 1e-12 * SIZE
+
+
+@pytest.mark.parametrize("structure", FACTORED)
+def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_path: Path) -> None:
+    d, serial = arm(TABLES[structure][0])
+    serial.export(d)
+    solved(d, serial, propose(serial).source)
+    robot, rng, tried = printed(d, tmp_path), np.random.default_rng(2), 0
+    for pair in itertools.combinations(range(len(robot.SINGULARITIES)), 2):
+        starts = rng.uniform(-np.pi, np.pi, (3 * BASES, 6))
+        found = [zero_near(lambda q: robot.singularities(q)[list(pair)], q) for q in starts]  # noqa: B023
+        bases = [q for q in found if q is not None][:BASES]
+        if bases:
+            tried += 1
+            check(robot, around(np.array(bases), rng))
+    assert tried >= 1
+
+
+def test_no_posture_is_lost_where_an_elbow_with_an_offset_is_stretched_and_axis_6_is_passed(
+    tmp_path: Path,
+) -> None:
+    """At t5 = +-pi/2, axis 6 is as far from the shoulder as the elbow allows."""
+    d, serial = arm(TABLES[FRANKA][0])
+    serial.export(d)
+    solved(d, serial, propose(serial, "t7").source)
+    robot, rng = printed(d, tmp_path), np.random.default_rng(2)
+    q = rng.uniform(-np.pi, np.pi, (8 * BASES, 7))
+    q[:, 3] = -np.arctan2(4, 3)  # both links are 2 long and 1 aside
+    q[:, 4] = rng.choice((-1, 1), len(q)) * np.pi / 2
+    q = around(q, rng)
+    check(robot, q, q[:, 6])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from closedform.robots.limits import Limits, nearest_turn
-from closedform.robots.mechanism import Array, Mechanism
+from closedform.robots.mechanism import Array
+from closedform.robots.search import Search
 from closedform.robots.selfmotion import SINGULAR, at_seed
 
 OK, UNREACHABLE, INVALID = 0, 1, 3
@@ -43,71 +45,62 @@ class Candidates(NamedTuple):
     distance: Array
 
 
-def nearest(
-    mechanism: Mechanism,
-    x: ArrayLike,
-    q_seed: ArrayLike,
-    limits: Limits,
-    weights: Any = None,
-    given: ArrayLike | None = None,
-) -> Nearest:
+def nearest(search: Search, x: ArrayLike, q_seed: ArrayLike) -> Nearest:
     """The solution with the least weighted distance from ``q_seed`` within the limits."""
+    mechanism, limits = search.mechanism, search.limits
     seed = mechanism.as_joints(q_seed, "q_seed")
-    single = _compiled(mechanism, x, seed, limits, weights)
+    single = _compiled(search, x, seed)
     if single is not None:
         return single
-    if given is None and mechanism.given is not None:
-        given = mechanism.given_at(seed)
-    found = mechanism.ik(x, given)
+    search = replace(search, given=search.given_at(seed))
+    found = mechanism.ik(x, search.given)
     lead = np.broadcast_shapes(
         found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
     )
     branches, n = found.q.shape[-2:]
     q, status = _over(found.q, lead, 2), _over(found.status, lead, 1)
     seed = _over(seed, lead, 1)
-    q = at_seed(mechanism, q, status, np.asarray(x, float), seed, limits, given)
-    sides = (limits.lower, limits.upper, weights_of(mechanism, weights))
-    rows = [q.reshape(-1, branches, n), status.reshape(-1, branches), seed.reshape(-1, n)]
-    rows += [_over(a, lead, 1).reshape(-1, n) for a in sides]
-    blocks = [
-        _of_block(mechanism, *(a[start : start + BLOCK] for a in rows))
-        for start in range(0, max(len(rows[0]), 1), BLOCK)
-    ]
+    q = at_seed(search, q, status, np.asarray(x, float), seed).reshape(-1, branches, n)
+    status, seed = status.reshape(-1, branches), seed.reshape(-1, n)
+    lower, upper, weights = (_over(a, lead, 1).reshape(-1, n) for a in (*limits, search.weights))
+    blocks = []
+    for start in range(0, max(len(q), 1), BLOCK):
+        rows = slice(start, start + BLOCK)
+        within = replace(search, limits=Limits(lower[rows], upper[rows]), weights=weights[rows])
+        blocks.append(_of_block(within, q[rows], status[rows], seed[rows]))
     every = blocks[0] if len(blocks) == 1 else map(np.concatenate, zip(*blocks, strict=True))
     return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in every))
 
 
-def _compiled(
-    mechanism: Mechanism, x: ArrayLike, seed: Array, limits: Limits, weights: Any
-) -> Nearest | None:
+def _compiled(search: Search, x: ArrayLike, seed: Array) -> Nearest | None:
     """One posture by the compiled module; None if it is not, or there is more to decide."""
+    mechanism, limits = search.mechanism, search.limits
     call = getattr(mechanism.module, "_nearest", None)
     axes = {seed.ndim, limits.lower.ndim, limits.upper.ndim}
     if call is None or axes != {1} or mechanism.one_by_one is None:
         return None
     if any(map(np.ndim, mechanism.parameters)):
         return None
-    target, weight = mechanism.inside(x), weights_of(mechanism, weights)
-    if np.shape(target) != mechanism.task_shape or weight.ndim > 1:
+    target = mechanism.inside(x)
+    if np.shape(target) != mechanism.task_shape or search.weights.ndim > 1:
         return None
-    options = weight, mechanism.parameters
     if mechanism.counts_as_model:
-        return _one(call, target, seed, np.array(limits), *options)
+        return _one(search, target, seed, np.array(limits))
     signs, offsets = mechanism.one_by_one
     start = signs * seed + offsets
     sides = np.sort(signs * limits + offsets, axis=0)
-    found = _one(call, target, start, sides, *options)
+    found = _one(search, target, start, sides)
     # of two turns the lower one is taken, which the opposite sign would exchange
     if found is None or (abs(abs(found.q - start) - np.pi) < TIE)[signs < 0].any():
         return None
     return found._replace(q=signs * (found.q - offsets))
 
 
-def _one(
-    call: Any, target: Any, seed: Array, limits: Array, weights: Array, parameters: Any
-) -> Nearest | None:
+def _one(search: Search, target: Any, seed: Array, limits: Array) -> Nearest | None:
     """The answer of the compiled module, in its joints; None if Python has to decide."""
-    q, status, branch, distance, outside = call(target, seed, limits, weights, params=parameters)
+    q, status, branch, distance, outside = search.mechanism.module._nearest(
+        target, seed, limits, search.weights, params=search.mechanism.parameters
+    )
     if status not in (OK, UNREACHABLE) or (status == OK and not distance < np.inf):
         return None
     return Nearest(q, status, np.array(branch, np.intp)[()], distance, outside)
@@ -119,16 +112,8 @@ def _over(a: NDArray[Any], lead: tuple[int, ...], core: int) -> NDArray[Any]:
     return a if a.shape == shape else np.broadcast_to(a, shape)
 
 
-def _of_block(
-    mechanism: Mechanism,
-    q: Array,
-    status: NDArray[np.uint8],
-    seed: Array,
-    lower: Array,
-    upper: Array,
-    weights: Array,
-) -> Nearest:
-    all_of = candidates(mechanism, q, status, seed, Limits(lower, upper), weights)
+def _of_block(search: Search, q: Array, status: NDArray[np.uint8], seed: Array) -> Nearest:
+    all_of = candidates(search, q, status, seed)
     branch = first_of_the_nearest(all_of.distance)
     rows = np.arange(len(q))
     distance = all_of.distance[rows, branch]
@@ -144,32 +129,14 @@ def _of_block(
     )
 
 
-def weights_of(mechanism: Mechanism, weights: Any) -> Array:
-    """The weights of the joints, 1 by default."""
-    n = len(mechanism.joints)
-    if weights is None:
-        return np.ones(n)
-    given = np.asarray(weights, dtype=float)
-    if given.shape[-1:] != (n,) or not (given >= 0).all():
-        raise ValueError(f"weights must be {n} numbers that are not negative, one for each joint")
-    return given
-
-
-def candidates(
-    mechanism: Mechanism,
-    q: Array,
-    status: NDArray[np.uint8],
-    seed: Array,
-    limits: Limits,
-    weights: Array,
-) -> Candidates:
+def candidates(search: Search, q: Array, status: NDArray[np.uint8], seed: Array) -> Candidates:
     """All branches at the turns nearest to the seed; the distance of one that fails is infinite."""
-    q, outside = nearest_turn(mechanism, q, seed[..., None, :], limits.at(1))
+    q, outside = nearest_turn(search.mechanism, q, seed[..., None, :], search.limits.at(1))
     solved = (status == OK) | (status == SINGULAR)
     usable = solved & ~outside.any(-1)
     with np.errstate(invalid="ignore"):
         gap = (q - seed[..., None, :]) ** 2
-        distance = np.sqrt((weights[..., None, :] * gap).sum(-1))
+        distance = np.sqrt((search.weights[..., None, :] * gap).sum(-1))
     known = usable & np.isfinite(distance)
     return Candidates(
         q, np.asarray(status), outside & solved[..., None], np.where(known, distance, np.inf)

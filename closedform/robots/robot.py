@@ -12,6 +12,7 @@ from closedform.robots import frames, nearest, track, velocity
 from closedform.robots.limits import Limits, nearest_turn
 from closedform.robots.mechanism import Array, Mechanism
 from closedform.robots.nearest import Nearest
+from closedform.robots.search import Search
 from closedform.robots.track import Path
 from closedform.robots.velocity import Rates
 
@@ -101,7 +102,7 @@ class Robot(Mechanism):
         An arm of seven joints keeps the arm angle, or the joint, that its inverse needs beside the
         target, at its value in the seed; ``given`` is another value, and broadcasts too.
         """
-        return nearest.nearest(self, x, q_seed, self._limits(limits), weights, given)
+        return nearest.nearest(Search.of(self, self._limits(limits), weights, given), x, q_seed)
 
     def track(
         self,
@@ -115,13 +116,28 @@ class Robot(Mechanism):
     ) -> Path:
         """The joints along the path ``xs``, from the posture nearest to ``q0``.
 
-        The branch is kept until it ends, leaves the limits, or would move a joint by more than
-        ``max_step`` (0.5 rad; slides: no bound) between two points; then the nearest posture is
-        taken.  A free joint keeps its value.  The result says where the branch changes and where a
-        joint jumps.  ``given`` is as of ``nearest``: one value, by default that of ``q0``, or one
-        for each point.
+        The branch is kept until it ends, leaves the limits, or would jump; then the nearest posture
+        is taken.  A free joint keeps its value.  The result says where the branch changes and where
+        a joint jumps.
+
+        Parameters
+        ----------
+        xs
+            the targets, along the first axis
+        q0
+            the joints before the path
+        weights
+            those of the joints in the distance, as of ``nearest``
+        limits
+            a pair (lower, upper), or None; by default those of the robot
+        max_step
+            the largest step of a joint between two points that is not a jump, by default 0.5 rad
+            for an angle, and without a bound for a slide
+        given
+            as of ``nearest``: one value, by default that of ``q0``, or one for each point
         """
-        return track.track(self, xs, q0, self._limits(limits), weights, max_step, given)
+        search = Search.of(self, self._limits(limits), weights, given)
+        return track.track(search, xs, q0, max_step)
 
     def outside(self, q: ArrayLike, limits: Any = _STORED) -> NDArray[np.bool_]:
         """Which joints of ``q``, of any leading axes, have no turn within their limits."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from closedform.robots.limits import Limits
 from closedform.robots.mechanism import NAMES_OF_ANGLES, TURN, Array, Mechanism
+from closedform.robots.search import Search
 
 NULL = 1e-6
 """Singular values of a Jacobian without units below this share of the largest count as zero."""
@@ -39,15 +39,7 @@ REACHED = 1e-12
 """The largest error of a posture that is returned, relative to the size of the mechanism."""
 
 
-def at_seed(
-    mechanism: Mechanism,
-    q: Array,
-    status: Array,
-    x: Array,
-    seed: Array,
-    limits: Limits,
-    given: ArrayLike | None = None,
-) -> Array:
+def at_seed(search: Search, q: Array, status: Array, x: Array, seed: Array) -> Array:
     """The branches of an inverse, with the free joint of a singular one at its value in the seed.
 
     ``q`` has the shape (..., branches, joints).  The joint that is free is the one that the inverse
@@ -60,6 +52,7 @@ def at_seed(
     Rounding of a target may hide that it is singular: the branch is OK then, with any value of the
     joint that is nearly free.  It is moved too, where that is a motion in a straight line.
     """
+    mechanism, limits, given = search.mechanism, search.limits, search.given
     loose = loose_branches(mechanism, q, status, x, given)
     if not loose.any():
         return q

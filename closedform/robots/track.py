@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from closedform.robots.limits import Limits, nearest_turn
-from closedform.robots.mechanism import TURN, Array, Mechanism
+from closedform.robots.limits import nearest_turn
+from closedform.robots.mechanism import TURN, Array
 from closedform.robots.nearest import (
     INVALID,
     OK,
     UNREACHABLE,
     candidates,
     first_of_the_nearest,
-    weights_of,
 )
+from closedform.robots.search import Search
 from closedform.robots.selfmotion import SINGULAR, at_seed, loose_branches
 
 MAX_STEP = 0.5
@@ -43,16 +44,9 @@ class Path(NamedTuple):
     outside: NDArray[np.bool_]
 
 
-def track(
-    mechanism: Mechanism,
-    xs: ArrayLike,
-    q0: ArrayLike,
-    limits: Limits,
-    weights: Any = None,
-    max_step: ArrayLike | None = None,
-    given: ArrayLike | None = None,
-) -> Path:
+def track(search: Search, xs: ArrayLike, q0: ArrayLike, max_step: ArrayLike | None = None) -> Path:
     """The joints along ``xs``, from the solution that is nearest to ``q0``."""
+    mechanism = search.mechanism
     targets = np.asarray(xs, dtype=float)
     if targets.ndim != mechanism.task_axes + 1:
         raise ValueError(f"xs has shape {targets.shape}, expected targets along one axis")
@@ -61,29 +55,20 @@ def track(
         raise ValueError(f"q0 has shape {seed.shape}, expected ({len(mechanism.joints)},)")
     if max_step is None:
         max_step = np.where(mechanism.revolute, MAX_STEP, np.inf)
-    if given is None and mechanism.given is not None:
-        given = mechanism.given_at(seed)
+    given = search.given_at(seed)
     if given is not None:
         given = np.broadcast_to(np.asarray(given, dtype=float), len(targets))
     steps = np.asarray(max_step, dtype=float)
-    return _Tracker(mechanism, targets, limits, weights, steps, given).run(seed)
+    return _Tracker(replace(search, given=given), targets, steps).run(seed)
 
 
 class _Tracker:
     """One path; loops over what happens on it, and computes the points between at once."""
 
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        xs: Array,
-        limits: Limits,
-        weights: Any,
-        max_step: Array,
-        given: Array | None,
-    ):
-        self.mechanism, self.xs, self.limits, self.given = mechanism, xs, limits, given
-        self.weights, self.max_step = weights_of(mechanism, weights), max_step
-        found = mechanism.ik(xs, given)
+    def __init__(self, search: Search, xs: Array, max_step: Array):
+        self.search, self.xs, self.max_step = search, xs, max_step
+        self.mechanism, self.limits = search.mechanism, search.limits
+        found = self.mechanism.ik(xs, search.given)
         self.q, self.statuses = np.array(found.q), np.asarray(found.status)
         self.solved = (self.statuses == OK) | (self.statuses == SINGULAR)
         points, _, joints = self.q.shape
@@ -95,7 +80,7 @@ class _Tracker:
 
     def run(self, seed: Array) -> Path:
         points = len(self.xs)
-        loose = loose_branches(self.mechanism, self.q, self.statuses, self.xs, self.given)
+        loose = loose_branches(self.mechanism, self.q, self.statuses, self.xs, self.search.given)
         singular = np.asarray(loose.any(-1))
         edges = np.flatnonzero(np.diff(singular)) + 1
         last, before = seed, -1
@@ -126,11 +111,12 @@ class _Tracker:
 
     def _release(self, start: int, end: int, seed: Array) -> None:
         """Keep the free joint, at all these points, at its value before them."""
-        part = self.mechanism.part((len(self.xs),), np.arange(start, end))
+        given = None if self.search.given is None else np.asarray(self.search.given)[start:end]
+        mechanism = self.mechanism.part((len(self.xs),), np.arange(start, end))
+        part = replace(self.search, mechanism=mechanism, given=given)
         seeds = np.broadcast_to(seed, (end - start, len(seed)))
         q, status = self.q[start:end], self.statuses[start:end]
-        given = None if self.given is None else self.given[start:end]
-        self.q[start:end] = at_seed(part, q, status, self.xs[start:end], seeds, self.limits, given)
+        self.q[start:end] = at_seed(part, q, status, self.xs[start:end], seeds)
         self.outside[start:end] = self._outside(start, end)
 
     def _follow(self, start: int, end: int, last: Array, before: int) -> tuple[Array, int]:
@@ -160,8 +146,7 @@ class _Tracker:
 
     def _choose(self, i: int, last: Array, before: int) -> tuple[int, Array]:
         """The branch before, if it goes on without a jump, or else the nearest one."""
-        part = self.mechanism
-        found = candidates(part, self.q[i], self.statuses[i], last, self.limits, self.weights)
+        found = candidates(self.search, self.q[i], self.statuses[i], last)
         if before >= 0 and np.isfinite(found.distance[before]):
             own = found.q[before]
             if (np.abs(own - last) <= self.max_step).all():

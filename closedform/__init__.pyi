@@ -26,7 +26,6 @@ from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch
 from closedform.lemmas.legs import Strut as Strut
-from closedform.lemmas.links import Reaching as Reaching
 from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar
 from closedform.lemmas.links import remainder as remainder
@@ -34,7 +33,6 @@ from closedform.lemmas.links import slide as slide
 from closedform.lemmas.links import turn as turn
 from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
-from closedform.lemmas.links import zyz as zyz
 from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
@@ -64,6 +62,8 @@ from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_besid
 from closedform.lemmas.two_sines import two_sines as two_sines
 from closedform.lemmas.wrist import spin as spin
 from closedform.lemmas.wrist import tilt as tilt
+from closedform.lemmas.zyz import Reaching as Reaching
+from closedform.lemmas.zyz import zyz as zyz
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws

@@ -112,7 +112,7 @@ wx, wy, wz = ik.vector("w", ik.p - d6 * ik.R[:, 2])
 f = ik.program.let("f", sqrt(a3**2 + d4**2), nonnegative=True)
 up = ik.let("up", wz - d1)
 facing = {-1: "facing", +1: "backward"}
-shoulder = ik.solve(turn, theta1, wx, -wy, 0, facing)
+shoulder = ik.solve(turn, theta1, (wx, -wy, 0), facing)
 d.step(
     "Inverse: the turret",
     "The centre of the wrist, which is d6 behind the tool, is in the plane of the arm.  Two turns "
@@ -125,7 +125,7 @@ lower = ik.angle("lower", theta2 - pi / 2)
 forearm = ik.direction("forearm", a3, d4)
 out = ik.let("out", shoulder.ahead - a1)
 lift, bend = ik.solve(
-    two_links, lower, angle, out, -up, a2, f, {-1: "up", +1: "down"}, mirrored=shoulder.side
+    two_links, (lower, angle), (out, -up), (a2, f), {-1: "up", +1: "down"}, mirrored=shoulder.side
 )
 d.step(
     "Inverse: the elbow",
@@ -136,7 +136,7 @@ d.step(
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))
 left = ik.matrix("R2", rotation("x", pi / 2) * both.T * in_plane)
-ik.solve(zyz, left, theta4, ik.angle("beta", -theta5), theta6, {-1: "noflip", +1: "flip"})
+ik.solve(zyz, left, (theta4, ik.angle("beta", -theta5), theta6), {-1: "noflip", +1: "flip"})
 R03 = rotation("z", theta1) * rotation("x", -pi / 2) * rotation("z", forearm_turn - pi / 2)
 R03 = R03 * rotation("x", -pi / 2)
 R36 = rotation("z", theta4) * rotation("y", -theta5) * rotation("z", theta6)

@@ -125,7 +125,7 @@ def from_shoulder(turret: Pair) -> sp.Matrix:
 
 
 links = Links(from_shoulder, c2, f)
-shoulder = ik.solve(turn, theta1, wx, -wy, -b, facing, toward=links)
+shoulder = ik.solve(turn, theta1, (wx, -wy, -b), facing, toward=links)
 d.step(
     "Inverse: the turret",
     "The centre of the wrist, which is c4 behind the tool, is in the plane of the arm.  Two turns "
@@ -138,7 +138,7 @@ lower = ik.angle("lower", theta2 - pi / 2)
 forearm = ik.direction("forearm", c3, a2)
 out = ik.let("out", shoulder.ahead - a1)
 lift, bend = ik.solve(
-    two_links, lower, angle, out, -up, c2, f, {-1: "up", +1: "down"}, mirrored=shoulder.side
+    two_links, (lower, angle), (out, -up), (c2, f), {-1: "up", +1: "down"}, mirrored=shoulder.side
 )
 d.step(
     "Inverse: the elbow",
@@ -150,7 +150,7 @@ in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))
 upright = rotation("x", -pi / 2) * rotation("z", -pi / 2)
 left = ik.matrix("R2", upright * both.T * in_plane)
-ik.solve(zyz, left, theta4, theta5, theta6, {+1: "noflip", -1: "flip"})
+ik.solve(zyz, left, (theta4, theta5, theta6), {+1: "noflip", -1: "flip"})
 R03 = rotation("z", theta1) * rotation("y", forearm_turn)
 R36 = rotation("z", theta4) * rotation("y", theta5) * rotation("z", theta6)
 wrist_step(d, arm.pose, R03, R36, (theta4, theta5, theta6))

@@ -116,7 +116,7 @@ px, py, pz = ik.p
 f = ik.program.let("f", sqrt(a3**2 + d4**2), nonnegative=True)
 ik.size = a2 + f + sp.Abs(d3)
 facing = {-1: "right", +1: "left"}
-shoulder = ik.solve(turn, theta1, px, -py, d3, facing, toward=LinksAtHeight(a2, f, pz))
+shoulder = ik.solve(turn, theta1, (px, -py, d3), facing, toward=LinksAtHeight(a2, f, pz))
 d.step(
     "Inverse: the shoulder",
     "The third row of A_1^{-1} T says that the wrist is d3 beside the plane of the arm.  The two "
@@ -132,12 +132,9 @@ angle = ik.angle("elbow", theta3 + atan2(d4, a3))
 forearm = ik.direction("forearm", a3, d4)
 lift, bend = ik.solve(
     two_links,
-    theta2,
-    angle,
-    shoulder.ahead,
-    pz,
-    a2,
-    f,
+    (theta2, angle),
+    (shoulder.ahead, pz),
+    (a2, f),
     {+1: "up", -1: "down"},
     mirrored=shoulder.side,
 )
@@ -156,7 +153,7 @@ d.step(
 in_plane = ik.matrix("R1", rotation("x", -pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))
 left = ik.matrix("R2", rotation("x", pi / 2) * both.T * in_plane)
-ik.solve(zyz, left, theta4, ik.angle("beta", -theta5), theta6, {-1: "noflip", +1: "flip"})
+ik.solve(zyz, left, (theta4, ik.angle("beta", -theta5), theta6), {-1: "noflip", +1: "flip"})
 R03 = rotation("z", theta1) * rotation("x", pi / 2) * rotation("z", theta2 + theta3)
 R03 = R03 * rotation("x", -pi / 2)
 R36 = rotation("z", theta4) * rotation("y", -theta5) * rotation("z", theta6)

@@ -75,8 +75,8 @@ X, Z = d3 * sin(theta2), d3 * cos(theta2)
 ik = Chain(d, forward)
 px, py, pz = ik.p
 ik.size = sqrt(px**2 + py**2 + pz**2) + sp.Abs(d2)
-shoulder = ik.solve(turn, theta1, -px, py, d2, {+1: "right", -1: "left"}, scale=ik.size)
-lift, _ = ik.solve(polar, theta2, d3, pz, -shoulder.ahead, {+1: "out", -1: "back"}, name="boom")
+shoulder = ik.solve(turn, theta1, (-px, py, d2), {+1: "right", -1: "left"}, scale=ik.size)
+lift, _ = ik.solve(polar, theta2, d3, (pz, -shoulder.ahead), {+1: "out", -1: "back"}, name="boom")
 d.step(
     "Inverse: the shoulder and the boom",
     "The wrist is d2 beside the plane of the boom: X forward and p_z up.  The arm faces the wrist "
@@ -93,7 +93,7 @@ R36 = rotation("z", theta4) * rotation("y", theta5) * rotation("z", theta6)
 in_plane = ik.matrix("R1", turned(shoulder).T * ik.R)
 upright = sp.Matrix([[lift.c, 0, -lift.s], [0, 1, 0], [lift.s, 0, lift.c]])
 ik.solve(
-    zyz, ik.matrix("R2", upright * in_plane), theta4, theta5, theta6, {+1: "noflip", -1: "flip"}
+    zyz, ik.matrix("R2", upright * in_plane), (theta4, theta5, theta6), {+1: "noflip", -1: "flip"}
 )
 wrist_step(d, arm.pose, R03, R36, (theta4, theta5, theta6))
 R06 = r"R_{36} = R_{03}^T R"

@@ -69,7 +69,7 @@ toward = LinksAndWrist(
     ahead=quarter_back,
 )
 beside = {+1: "left", -1: "right"}
-shoulder = ik.solve(turn, theta1, wrist[0], -wrist[1], d4, beside, toward=toward)
+shoulder = ik.solve(turn, theta1, (wrist[0], -wrist[1], d4), beside, toward=toward)
 for axis in "xyz":
     d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
 d.write("phi", meaning="what the three parallel axes turn together")
@@ -88,8 +88,10 @@ across = ik.let("across", shoulder.c * wrist[0] + shoulder.s * wrist[1])
 upward = ik.let("upward", wrist[2] - d1)
 lift = ik.angle("phi", theta2 + theta3 + theta4)
 beta = ik.angle("beta", -theta5)
-reaching = Reaching(ik, across, upward, d5, L2, L3, quarter_back, shoulder.lever)
-lifted = ik.solve(zyz, M, lift, beta, theta6, {+1: "noflip", -1: "flip"}, reaching=reaching)
+reaching = Reaching(
+    ik, (across, upward), (L2, L3), offset=d5, ahead=quarter_back, lever=shoulder.lever
+)
+lifted = ik.solve(zyz, M, (lift, beta, theta6), {+1: "noflip", -1: "flip"}, reaching=reaching)
 d.step(
     "Inverse: the wrist",
     "Seen from the plane of the arm, the tool is turned about z, y and z, by phi, -theta5 and "
@@ -100,7 +102,7 @@ d.step(
 )
 ex = ik.let("ex", d5 * lifted.s - across)
 ey = ik.let("ey", -d5 * lifted.c - upward)
-ik.solve(two_links, theta2, theta3, ex, ey, L2, L3, {+1: "up", -1: "down"})
+ik.solve(two_links, (theta2, theta3), (ex, ey), (L2, L3), {+1: "up", -1: "down"})
 d.step(
     "Inverse: the elbow",
     "What is left is a planar two-link arm of the lengths L2 and L3, and theta4 from the sum phi.",

@@ -7,9 +7,10 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError, coefficients
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.links import remainder, slide, turn, two_links, zyz
+from closedform.lemmas.links import remainder, slide, turn, two_links
 from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
 from closedform.lemmas.triangle import Triangle
+from closedform.lemmas.zyz import zyz
 from closedform.mechanics.arm import RowError, from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper, Solved
 from closedform.model.functions import Program, branches, real
@@ -145,7 +146,7 @@ def test_a_missing_branch_of_a_chain() -> None:
     d = derivation()
     ik = Chain(d, planar(d))
     l1, l2 = (p.symbol for p in d.parameters)
-    ik.solve(two_links, THETA1, THETA2, *ik.x, l1, l2, {-1: "down"})
+    ik.solve(two_links, (THETA1, THETA2), ik.x, (l1, l2), {-1: "down"})
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match=r"2 solutions together, but 1 .* theta2 = .* not covered"):
         prove(d)
@@ -156,7 +157,7 @@ def test_a_wrong_equation_of_a_chain() -> None:
     d = derivation()
     ik = Chain(d, planar(d))
     l1, l2 = (p.symbol for p in d.parameters)
-    ik.solve(two_links, THETA1, THETA2, ik.x[0], -ik.x[1], l1, l2, {1: "up", -1: "down"})
+    ik.solve(two_links, (THETA1, THETA2), (ik.x[0], -ik.x[1]), (l1, l2), {1: "up", -1: "down"})
     ik.finish("Inverse.")
     with pytest.raises(
         ProofError, match=r"does not follow from the forward map\. .* difference = "
@@ -171,7 +172,7 @@ def test_a_chain_that_does_not_use_the_whole_target() -> None:
     slider = d.joint("d3", "prismatic")
     ik = Chain(d, [*planar(d), slider])
     l1, l2 = (p.symbol for p in d.parameters)
-    ik.solve(two_links, THETA1, THETA2, *ik.x[:2], l1, l2, {1: "up", -1: "down"})
+    ik.solve(two_links, (THETA1, THETA2), ik.x[:2], (l1, l2), {1: "up", -1: "down"})
     with pytest.raises(ShapeError, match="no lemma solves for d3"):
         ik.finish("Inverse.")
     d.functions.clear()
@@ -186,7 +187,7 @@ def test_a_chain_that_leaves_the_target_undetermined() -> None:
     d.task = ["x", "y", "z"]
     ik = Chain(d, [*planar(d), sp.S.Zero + THETA1 * 0 + d.parameters[0].symbol])
     l1, l2 = (p.symbol for p in d.parameters)
-    ik.solve(two_links, THETA1, THETA2, *ik.x[:2], l1, l2, {1: "up", -1: "down"})
+    ik.solve(two_links, (THETA1, THETA2), ik.x[:2], (l1, l2), {1: "up", -1: "down"})
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match="leave 1 of the 3 coordinates of the target undetermined"):
         prove(d)
@@ -219,7 +220,7 @@ def test_a_lemma_before_its_time() -> None:
     ik = Chain(d, planar(d))
     x, y = ik.x
     with pytest.raises(ShapeError, match="theta2 stands in its coefficients, which no lemma has"):
-        ik.solve(turn, THETA1, x, y, d.parameters[1].symbol * sp.cos(THETA2), {1: "a", -1: "b"})
+        ik.solve(turn, THETA1, (x, y, d.parameters[1].symbol * sp.cos(THETA2)), {1: "a", -1: "b"})
     d = derivation()
     ik = Chain(d, planar(d))
     ik.solve(remainder, THETA1, ik.x[0])
@@ -235,7 +236,7 @@ def test_a_lemma_on_a_degenerate_equation() -> None:
     l1, l2 = (p.symbol for p in d.parameters)
     ik = Chain(d, [l1 + 0 * THETA1, l2 + 0 * THETA1])
     x, y = ik.x
-    ik.solve(turn, THETA1, ik.let("a", x - l1), ik.let("b", y - l2), sp.S.Zero, {1: "a", -1: "b"})
+    ik.solve(turn, THETA1, (ik.let("a", x - l1), ik.let("b", y - l2), 0), {1: "a", -1: "b"})
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match="degenerate at every posture: the axis of theta1 is met"):
         prove(d)
@@ -264,7 +265,7 @@ def test_a_zyz_lemma_on_what_is_no_such_rotation() -> None:
     q = [d.joint(f"theta{i}") for i in (1, 2, 3)]
     arm = from_dh(d, [(0, sp.pi / 2, 0, q[0]), (0, sp.pi / 2, 0, q[1]), (0, 0, 0, q[2])])
     ik = Chain(d, arm.pose)
-    ik.solve(zyz, ik.R, *q, {1: "noflip", -1: "flip"})
+    ik.solve(zyz, ik.R, q, {1: "noflip", -1: "flip"})
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match="'ZYZ angles' does not follow from the forward map"):
         prove(d)

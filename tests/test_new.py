@@ -331,7 +331,7 @@ def test_if_the_proof_of_a_chain_fails_the_next_one_is_tried(
     def wrong(maker: KnownMaker) -> str:
         found = whole(maker)
         maker.lines[:] = [
-            line.replace(", Rational(1, 2), ", ", -Rational(1, 2), ") for line in maker.lines
+            line.replace(", Rational(1, 2)), ", ", -Rational(1, 2)), ") for line in maker.lines
         ]
         return found
 

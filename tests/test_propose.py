@@ -1,7 +1,7 @@
 """Proposed inverses: the structure is recognised from the axes, and the proof accepts each."""
 
 import ast
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
@@ -13,82 +13,78 @@ from closedform.lemmas.chain import Chain
 from closedform.lower.program import lower
 from closedform.mechanics.arm import Serial, from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
+from closedform.model.functions import real
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.tables import NUMBERED, TAKEN
 
-LENGTHS = ("a", "b", "c", "e", "f", "g")
+LENGTHS = a, b, c, e, f, g = tuple(real(n, positive=True) for n in "abcefg")
+T = t1, t2, t3, t4, t5, t6 = tuple(real(f"t{i}") for i in range(1, 7))
+d1, d2, d3 = (real(f"d{i}") for i in range(1, 4))
+Rows = Sequence[tuple]
 
 
-def arm(joints: str, rows: Callable, *, modified: bool = False) -> tuple[Derivation, Serial]:
+def arm(joints: str, rows: Rows, *, modified: bool = False) -> tuple[Derivation, Serial]:
     d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
-    lengths = [d.parameter(n, value=1, unit="m", meaning=n) for n in LENGTHS]
-    q = [d.joint(n, "prismatic" if n.startswith("d") else "revolute") for n in joints.split()]
-    return d, from_dh(d, rows(*lengths, *q), modified=modified)
+    for length in LENGTHS:
+        d.parameter(length.name, value=1, unit="m", meaning=length.name)
+    for name in joints.split():
+        d.joint(name, "prismatic" if name.startswith("d") else "revolute")
+    return d, from_dh(d, rows, modified=modified)
 
 
 SIX = "t1 t2 t3 t4 t5 t6"
 KNOWN = {
     "planar arm of two links": (
         "t1 t2", 2,
-        lambda a, b, c, e, f, g, t1, t2: [(a, 0, c, t1), (b, 0, 0, t2)],
+        [(a, 0, c, t1), (b, 0, 0, t2)],
     ),
     "planar arm of two links and a yaw": (
         "t1 t2 t3", 2,
-        lambda a, b, c, e, f, g, t1, t2, t3: [(a, 0, 0, t1), (b, 0, e, t2), (c, 0, 0, t3)],
+        [(a, 0, 0, t1), (b, 0, e, t2), (c, 0, 0, t3)],
     ),
     "planar arm of two links and a yaw, with a slide (SCARA)": (
         "t1 t2 d3 t4", 2,
-        lambda a, b, c, e, f, g, t1, t2, d3, t4: [
-            (a, 0, c, t1), (b, pi, 0, t2), (0, 0, d3, 0), (0, 0, e, t4 + pi / 2),
-        ],
+        [(a, 0, c, t1), (b, pi, 0, t2), (0, 0, d3, 0), (0, 0, e, t4 + pi / 2)],
     ),
     "gantry": (
         "d1 d2 d3", 1,
-        lambda a, b, c, e, f, g, d1, d2, d3: [
-            (0, pi / 2, d1, pi / 2), (a, pi / 2, d2, pi / 2), (0, 0, d3 + b, 0),
-        ],
+        [(0, pi / 2, d1, pi / 2), (a, pi / 2, d2, pi / 2), (0, 0, d3 + b, 0)],
     ),
     "cylindrical arm": (
         "t1 d2 d3", 2,
-        lambda a, b, c, e, f, g, t1, d2, d3: [
-            (0, 0, a, t1), (0, -pi / 2, d2, 0), (0, 0, d3 + b, 0),
-        ],
+        [(0, 0, a, t1), (0, -pi / 2, d2, 0), (0, 0, d3 + b, 0)],
     ),
     "turret and two parallel joints": (
         "t1 t2 t3", 4,
-        lambda a, b, c, e, f, g, t1, t2, t3: [(a, pi / 2, b, t1), (c, 0, e, t2), (f, 0, 0, t3)],
+        [(a, pi / 2, b, t1), (c, 0, e, t2), (f, 0, 0, t3)],
     ),
     "axes 1, 2 and 3 neither meet nor are parallel": (
         "t1 t2 t3", 4,
-        lambda a, b, c, e, f, g, t1, t2, t3: [
-            (a, pi / 3, 0, t1), (b, pi / 3, e, t2), (c, 0, 0, t3),
-        ],
+        [(a, pi / 3, 0, t1), (b, pi / 3, e, t2), (c, 0, 0, t3)],
     ),
     "turret, a joint and a slide (polar arm)": (
         "t1 t2 d3", 4,
-        lambda a, b, c, e, f, g, t1, t2, d3: [
-            (0, -pi / 2, a, t1), (0, pi / 2, b, t2), (0, 0, d3, 0),
-        ],
+        [(0, -pi / 2, a, t1), (0, pi / 2, b, t2), (0, 0, d3, 0)],
     ),
     "turret and two parallel joints, with a spherical wrist": (
         SIX, 8,
-        lambda a, b, c, e, f, g, t1, t2, t3, t4, t5, t6: [
+        [
             (0, pi / 2, 0, t1), (a, 0, 0, t2), (b, -pi / 2, c, t3),
             (0, pi / 2, e, t4), (0, -pi / 2, 0, t5), (0, 0, g, t6),
         ],
     ),
     "turret, a joint and a slide (polar arm), with a spherical wrist": (
         "t1 t2 d3 t4 t5 t6", 8,
-        lambda a, b, c, e, f, g, t1, t2, d3, t4, t5, t6: [
+        [
             (0, -pi / 2, a, t1), (0, pi / 2, b, t2), (0, 0, d3, -pi / 2),
             (0, -pi / 2, 0, t4), (0, pi / 2, 0, t5), (0, 0, g, t6),
         ],
     ),
     "turret, three parallel joints and two more (UR)": (
         SIX, 8,
-        lambda a, b, c, e, f, g, t1, t2, t3, t4, t5, t6: [
+        [
             (0, pi / 2, a, t1), (-b, 0, 0, t2), (-c, 0, 0, t3),
             (0, pi / 2, e, t4), (0, -pi / 2, f, t5), (0, 0, g, t6),
         ],
@@ -149,12 +145,11 @@ def test_the_inverses_of_the_examples_are_proposed(robot: str) -> None:
 def test_a_modified_table_and_screws_are_recognised_alike() -> None:
     d, serial = arm(
         "t1 t2 t3",
-        lambda a, b, c, e, f, g, t1, t2, t3: [(0, 0, a, t1), (0, pi / 2, e, t2), (b, 0, 0, t3)],
+        [(0, 0, a, t1), (0, pi / 2, e, t2), (b, 0, 0, t3)],
         modified=True,
     )
     with pytest.raises(NoChainError, match=r"because link 2 of .* has no length"):
         propose(serial)  # the tool is on the last axis
-    a, b, c, e, *_ = (p.symbol for p in d.parameters)
     q = d.actuated
     axes = [
         (q[0], (0, 0, 1), (0, 0, 0)),
@@ -176,36 +171,36 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
     [
         (
             SIX,
-            lambda a, b, c, e, f, g, *t: [(a, pi / 2, 0, x) for x in t],
+            [(a, pi / 2, 0, x) for x in T],
             "axes 5 and 6 do not intersect",
         ),
         (
             SIX,
-            lambda a, b, c, e, f, g, *t: [
-                *((a, pi / 2, 0, x) for x in t[:3]),
-                (b, pi / 2, 0, t[3]),
-                (0, pi / 2, 0, t[4]),
-                (0, 0, g, t[5]),
+            [
+                *((a, pi / 2, 0, x) for x in T[:3]),
+                (b, pi / 2, 0, T[3]),
+                (0, pi / 2, 0, T[4]),
+                (0, 0, g, T[5]),
             ],
             "axes 4, 5 and 6 do not meet in a point",
         ),
         (
             SIX,
-            lambda a, b, c, e, f, g, *t: [
-                *((a, 0, 0, x) for x in t[:3]),
-                *((b, pi / 2, 0, x) for x in t[3:4]),
-                *((b, 0, 0, x) for x in t[4:]),
+            [
+                *((a, 0, 0, x) for x in T[:3]),
+                *((b, pi / 2, 0, x) for x in T[3:4]),
+                *((b, 0, 0, x) for x in T[4:]),
             ],
             "axes 5 and 6 are parallel",
         ),
         (
             "t1 t2 t3 t4 t5",
-            lambda a, b, c, e, f, g, *t: [(a, pi / 2, b, x) for x in t],
+            [(a, pi / 2, b, x) for x in T[:5]],
             "its 5 joints do not fit any task",
         ),
     ],
 )
-def test_it_says_plainly_when_it_knows_no_chain(joints: str, rows: Callable, why: str) -> None:
+def test_it_says_plainly_when_it_knows_no_chain(joints: str, rows: Rows, why: str) -> None:
     """The obstacle is stated as a fact of this arm, separate from what is needed."""
     with pytest.raises(NoChainError, match=f"no chain of lemmas is known.* because .*{why}") as e:
         propose(arm(joints, rows)[1])

@@ -126,7 +126,7 @@ def toy(shift: int = 0) -> tuple[Derivation, Chain]:
     # |c + long cos x + wide sin x|^2 = 10 + 5/2 + 3/2 cos 2x + 12 cos x + 2 sin x
     circle = OnCircle(lambda pair: c + long * pair.c + wide * pair.s, sp.sqrt(y))
     rest = sp.Rational(25, 2) + shift - y
-    ik.solve(quartic, x, (sp.Rational(3, 2), 0), (6, 1), rest, LINE, SIDE, circle)
+    ik.solve(quartic, x, (sp.Rational(3, 2), 0, 6, 1, rest), (LINE, SIDE), circle)
     ik.finish("All four.")
     return d, ik
 

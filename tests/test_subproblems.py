@@ -111,7 +111,7 @@ class Two:
 
     def solve(self, because: Callable) -> None:
         x, y = self.ik.x
-        second = self.ik.solve(turn, self.t2, 0, 6, self.far, {+1: "up", -1: "down"})
+        second = self.ik.solve(turn, self.t2, (0, 6, self.far), {+1: "up", -1: "down"})
         w = (3 + 2 * second.c, 2 * second.s)
         self.ik.solve(rotate, self.t1, w, (x, y), because=because(self))
         self.ik.finish("Both.")

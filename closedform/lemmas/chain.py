@@ -562,6 +562,8 @@ class Chain:
 
 
 def _exact(argument: Any) -> Any:
+    if type(argument) is tuple:
+        return tuple(map(_exact, argument))
     return sp.Integer(argument) if type(argument) is int else argument
 
 

@@ -41,8 +41,7 @@ stretched arm is returned.""",
 def law_of_cosines(
     chain: Chain,
     x: sp.Symbol,
-    l1: sp.Expr,
-    l2: sp.Expr,
+    lengths: tuple[sp.Expr, sp.Expr],
     r: sp.Expr,
     choice: Choice,
     *,
@@ -51,11 +50,26 @@ def law_of_cosines(
     """The elbow of two links whose ends are r apart: two solutions.
 
     It is free if a link has no length; 0 is returned then.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint or the auxiliary angle that is solved for
+    lengths
+        l1 and l2
+    r
+        the distance of the ends
+    choice
+        the names of the two elbows, by the sign of sin(x)
+    name
+        the name of the sign, and what other names end in
     """
     p = chain.program
     sigma = chain.sign(name, choice)
     l1, l2 = (
-        chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate((l1, l2), 1)
+        chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate(lengths, 1)
     )
     r = chain.named(f"r_{name}", r, nonnegative=True)
     # half: what is clamped stays well within the round trip that is promised

@@ -45,17 +45,30 @@ def within_tilt(
     chain: Chain,
     joints: Sequence[Carrying],
     p: sp.Matrix,
+    *,
     tool: sp.Matrix,
     limits: tuple[sp.Expr, sp.Expr],
     levers: Sequence[sp.Expr],
 ) -> list[Pair]:
     """The pairs of joints that carry a wrist to ``p``, turned so that it can point its last axis.
 
-    ``tool`` is the direction of the last axis.  Its component along the first axis of the wrist
-    must be between the ``limits``.  The joints are turned only if one of the ``levers``, in units
-    of its scale, is short, and only as far as the position does not tell.  First, all of them turn
-    together, in the direction that moves the wrist least; then one alone, whose axis is nearest
-    to it.
+    They are turned only as far as the position does not tell.  First, all of them turn together, in
+    the direction that moves the wrist least; then one alone, whose axis is nearest to it.
+
+    Parameters
+    ----------
+    chain
+        the chain, which has solved the joints
+    joints
+        those before the wrist
+    p
+        the position of the wrist
+    tool
+        the direction of its last axis
+    limits
+        the least and the greatest component of ``tool`` along the first axis of the wrist
+    levers
+        the joints are turned only if one of these, in units of its scale, is short
     """
     p, tool = chain.vector("wrist_at", p), chain.vector("tool_axis", tool)
     seen = _Carried(chain, tuple(joints), p, tool, limits, "tilt0")

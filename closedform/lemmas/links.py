@@ -11,34 +11,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.lemmas.tangent import ROUNDING, Anywhere, Goal, Offset, Tangency, Turned
+from closedform.lemmas.tangent import ROUNDING, Anywhere, Goal, Tangency, Turned
 from closedform.lemmas.triangle import Triangle
-from closedform.lemmas.zyz import zyz_angles, zyz_lemma
 from closedform.model.functions import Let, choose, real
 from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
 from closedform.model.tolerances import FLOAT
-
-_ROUNDINGS = 16
-"""How far a wrist may be from aligned to count as such, in units of the rounding of the target.
-
-This covers the rounding that an arm adds to the rotation of its wrist, and it turns the hand by
-3e-14 at most.  Of random postures of a Puma whose wrist is exactly aligned, 98 of 100 are
-recognised; in the others the returned angles are right as well.
-"""
 
 ANYWHERE = Anywhere()
 
@@ -105,9 +94,7 @@ class Facing(Turned):
 def turn(
     chain: Chain,
     x: sp.Symbol,
-    a: sp.Expr,
-    b: sp.Expr,
-    c: sp.Expr,
+    coefficients: Sequence[sp.Expr],
     choice: Choice,
     *,
     toward: Goal = ANYWHERE,
@@ -117,13 +104,28 @@ def turn(
     """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
 
     Where both solutions nearly meet, a rounding of the target turns x by a multiple of it.
-    ``toward`` says what later joints have to reach; there, x is turned such that they do.
-    ``scale`` is the scale of the error that is allowed in c, by default half the size of the arm.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint or the auxiliary angle that is solved for
+    coefficients
+        a, b and c
+    choice
+        the names of the two solutions, by the sign of the root
+    toward
+        what later joints have to reach; near a tangent, x is turned such that they do
+    scale
+        the scale of the error that is allowed in c, by default half the size of the arm
+    name
+        the name of the sign and what other names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)
     a, b, c = (
-        chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
+        chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", coefficients, strict=True)
     )
     # half: what is clamped stays well within the round trip that is promised
     missed_by = chain.size / 2 if scale is None else scale
@@ -180,12 +182,9 @@ free.  If a link has no length, $\varphi$ is free, and a stretched arm is return
 @chain_lemma("l1 u(x1) + l2 u(x1 + x2) = (x, y)", "both pairs")
 def two_links(
     chain: Chain,
-    first: sp.Symbol,
-    second: sp.Symbol,
-    x: sp.Expr,
-    y: sp.Expr,
-    l1: sp.Expr,
-    l2: sp.Expr,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    target: Sequence[sp.Expr],
+    lengths: tuple[sp.Expr, sp.Expr],
     choice: Choice,
     *,
     scale: sp.Expr | None = None,
@@ -198,14 +197,32 @@ def two_links(
 
         (cos, sin)(second) = (BC - SA, 2 sigma sqrt(SABC)) / (BC + SA),
 
-    and first is the direction of (x, y) minus the angle at the base of the triangle.  ``scale`` is
-    the size of the terms whose differences x and y are, by default that of the whole arm.
-    ``mirrored`` is a sign that multiplies that of the elbow, for example the side of an earlier
-    turn, which mirrors the plane.
+    and first is the direction of (x, y) minus the angle at the base of the triangle.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    unknowns
+        the angles that are solved for: first, and second, which is counted from the first link
+    target
+        x and y
+    lengths
+        l1 and l2
+    choice
+        the names of the two elbows, by the sign of sin(second)
+    scale
+        the size of the terms whose differences x and y are, by default that of the whole arm
+    mirrored
+        a sign that multiplies that of the elbow, for example the side of an earlier turn, which
+        mirrors the plane
+    name
+        the name of the sign, and what other names end in
     """
     p, scale = chain.program, chain.size if scale is None else scale
+    (first, second), (x, y), (l1, l2) = unknowns, target, lengths
     sigma = mirrored * chain.sign(name, choice)
-    for length in (l1, l2):
+    for length in lengths:
         if length.is_negative:
             raise ShapeError(
                 f"{chain.d.name}: the two-link arm for {first} and {second} has the length "
@@ -314,19 +331,33 @@ def polar(
     chain: Chain,
     angle: sp.Symbol,
     length: sp.Symbol,
-    x: sp.Expr,
-    y: sp.Expr,
+    target: Sequence[sp.Expr],
     choice: Choice | None,
     *,
     name: str = "side",
 ) -> Applied:
     """``length u(angle) = (x, y)``: the length has either sign, or with no ``choice`` is positive.
 
-    ``length`` is a prismatic joint or an auxiliary length.  The angle is free where it vanishes.
+    The angle is free where the length vanishes.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    angle
+        the joint or the auxiliary angle that is solved for
+    length
+        the prismatic joint or the auxiliary length that is solved for
+    target
+        x and y
+    choice
+        the names of the two solutions, by the sign of the length; None if it is positive
+    name
+        the name of the sign, and what other names end in
     """
     p = chain.program
     sigma = chain.sign(name, choice) if choice else sp.S.One
-    x, y = (chain.coefficient(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
+    x, y = (chain.coefficient(f"{n}_{name}", e) for n, e in zip("xy", target, strict=True))
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (x, y)):
@@ -396,171 +427,3 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
         1,
     )
     return Applied(lemma, total, {}, dict(chain.meaning))
-
-
-@chain_lemma("Rz(x1) Ry(x2) Rz(x3) = R", "the pair of x1")
-def zyz(
-    chain: Chain,
-    R: sp.Matrix,
-    first: sp.Symbol,
-    middle: sp.Symbol,
-    last: sp.Symbol,
-    choice: Choice,
-    *,
-    reaching: Reaching | None = None,
-    name: str = "wrist",
-) -> Applied:
-    """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
-
-    The second solution is the first with a half turn of both outer angles.  The last angle is read
-    from the rotation that the first leaves, which keeps the product exact near ``middle = 0``.
-    There only ``first + last`` or ``first - last`` is determined; first is 0, or what keeps the
-    rest of the arm within reach.
-    """
-    p = chain.program
-    sigma = chain.sign(name, choice)
-    free = next((a for a in (first, last) if a in chain.joints), None)
-    if free is None:
-        free = next(j for j in chain.joints if chain.defined[last].has(j))
-    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = {}
-    unit: dict[sp.Expr, sp.Expr] = {}
-    near: tuple[sp.Symbol, ...] = ()
-    if reaching is None:
-        angles = zyz_angles(
-            p, R, (first, middle, last), sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
-        )
-        lemma, aligned = angles.lemma, angles.aligned
-        halves = {first: (angles.first, angles.flip), last: (angles.last, angles.flip)}
-        halves[middle] = _tilt(R, angles.first, sigma), sp.S.Zero
-        s, c = (choose(aligned, e, sigma * e) for e in (angles.first.s, angles.first.c))
-        pair, means = named(chain, first, Pair(s, c))
-    else:
-        h = p.let(f"h_{name}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
-        aligned = p.vanishes(
-            f"aligned_{name}", h, _ROUNDINGS, "the first and the last axis are parallel", (free,)
-        )
-        found, near, unit = _within_reach(reaching, R, h, first, sigma, aligned)
-        pair, means = named(chain, first, found)
-        lemma, _ = zyz_lemma(R, (first, middle, last), pair)
-        halves[middle] = _tilt(R, pair, sp.S.One), sp.S.Zero
-    given = dict(zip(R, rotation_parametrisation(), strict=True))
-    cases = [
-        Degenerate(
-            flags,
-            dict(zip(R, turned, strict=True)) | unit,
-            free if flags == (aligned,) else None,
-            f"the first and the last axis of the {name} are parallel; {free} is free.",
-        )
-        for flags in filter(None, ((aligned,), near))
-        for turned in _aligned(real("psi"))
-    ]
-    return Applied(lemma, pair, means, given, tuple(cases), halves)
-
-
-def _tilt(R: sp.Matrix, first: Pair, side: sp.Expr) -> Pair:
-    """The pair of the middle angle, for sums that contain it; ``side`` is the sign of its sine."""
-    return Pair(side * (first.c * R[0, 2] + first.s * R[1, 2]), R[2, 2])
-
-
-def _within_reach(
-    reaching: Reaching,
-    R: sp.Matrix,
-    h: sp.Symbol,
-    first: sp.Symbol,
-    sigma: sp.Symbol,
-    aligned: sp.Symbol,
-) -> tuple[Pair, tuple[sp.Symbol, ...], dict[sp.Expr, sp.Expr]]:
-    """The first angle, in reach where the target does not determine it, or only up to rounding.
-
-    Also returns the flags of the latter case, and free choices as the sine and cosine of an angle.
-    """
-    p = reaching.chain.program
-    raw = Pair(
-        p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
-        p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
-    )
-    back = -reaching.ahead
-    start = reaching.middle() + back
-    close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
-    off = moved + back
-    start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
-    off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
-    brought = sp.And(moves, sp.Not(inside))
-    s_near = p.let("s_kept", choose(brought, off.s, raw.s))
-    c_near = p.let("c_kept", choose(brought, off.c, raw.c))
-    raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
-    t = real("t")
-    unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
-    found = Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
-    return found, (close, moves), unit
-
-
-def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
-    s, c = sp.sin(psi), sp.cos(psi)
-    return (
-        sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
-        sp.Matrix([[-c, s, 0], [s, c, 0], [0, 0, -1]]),
-    )
-
-
-@dataclass(frozen=True)
-class Reaching:
-    """Directions u for which ``(x, y) - offset u`` is within reach of two links.
-
-    If the target does not determine u, or only up to rounding, the reach decides.  Otherwise a pose
-    at a singular wrist could come back without a solution although it has one.
-    """
-
-    chain: Chain
-    x: sp.Expr
-    y: sp.Expr
-    offset: sp.Expr
-    l1: sp.Expr
-    l2: sp.Expr
-    ahead: Pair
-    """How far u is turned ahead of the angle that is solved for."""
-    lever: sp.Expr
-    """The lever of the turn before, over which a rounding of the target turns the wrist."""
-
-    def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
-        def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
-            return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
-
-        at = (self.x, self.y)
-        past = Offset(at, self._r, self.offset, vanishes)
-        pair, unit = past.leaving(self.chain, reach, side, name)
-        self.chain.units.append((pair.s, pair.c, unit))
-        return pair
-
-    @cached_property
-    def _r(self) -> sp.Expr:
-        return self.chain.program.let("r_hub", sp.sqrt(self.x**2 + self.y**2), nonnegative=True)
-
-    def middle(self) -> Pair:
-        """The middle of those distances within reach that turning the offset allows."""
-        p, r = self.chain.program, self._r
-        nearest = p.let("nearest", sp.Max(sp.Abs(self.l1 - self.l2), sp.Abs(r - self.offset)))
-        farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))
-        return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
-
-    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
-        """Flags: u may be in doubt, the nearest direction in reach is u within rounding, it is u.
-
-        That direction is returned too.  ``play`` is what multiplies an error of u in the target.
-        """
-        p, size = self.chain.program, self.chain.size
-        close = p.vanishes("close", play * self.lever - size / 2**11, size, "it may be in doubt")
-        ex, ey = self.x - self.offset * u.c, self.y - self.offset * u.s
-        there = p.let("here", sp.sqrt(ex**2 + ey**2))
-        reach = p.let(
-            "in_reach", sp.Min(sp.Max(there, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2)
-        )
-        cross = p.let("cross", self.x * u.s - self.y * u.c)
-        flat = p.vanishes("flat", sp.Abs(cross), size, "the offset is in line")
-        side = choose(flat, 1, cross / sp.Abs(cross))
-        v = self._at(reach, p.let("side", side), "near")
-        inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
-        change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
-        doubt = play * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
-        near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
-        return close, near, inside, v

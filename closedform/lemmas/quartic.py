@@ -13,7 +13,7 @@ from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import named
 from closedform.lemmas.pairs import any_pair
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.model.functions import choose, real, sign_of
+from closedform.model.functions import Program, choose, real, sign_of
 from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
@@ -83,25 +83,35 @@ class OnCircle:
 def quartic(
     chain: Chain,
     x: sp.Symbol,
-    double: Sequence[sp.Expr],
-    single: Sequence[sp.Expr],
-    e: sp.Expr,
-    line: Choice,
-    side: Choice,
+    coefficients: Sequence[sp.Expr],
+    choices: tuple[Choice, Choice],
     means: OnCircle,
     *,
     name: str = "",
 ) -> Applied:
     """``p cos 2x + q sin 2x + 2 a cos x + 2 b sin x + e = 0``: up to four solutions, on two lines.
 
-    ``double`` are p and q, which must not both vanish, and ``single`` are a and b.  ``means`` is
-    the meaning of the equation: a point is on a circle.  Where two solutions nearly meet, a target
-    that is missed by more than rounding is accepted too; compare the target with the result of the
-    chain.
+    Where two solutions nearly meet, a target that is missed by more than rounding is accepted too;
+    compare the target with the result of the chain.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint or the auxiliary angle that is solved for
+    coefficients
+        p, q, a, b and e; p and q must not both vanish
+    choices
+        the names of the two lines, and those of the two solutions on each
+    means
+        the meaning of the equation: a point is on a circle
+    name
+        the name of the sign and what other names end in, by default the number of the joint
     """
-    program, tag = chain.program, name or label(x)
+    (line, side), program, tag = choices, chain.program, name or label(x)
     tau, sigma = chain.sign(f"line_{tag}", line), chain.sign(tag, side)
-    letters = zip("pqabe", (*double, *single, e), strict=True)
+    letters = zip("pqabe", coefficients, strict=True)
     p, q, a, b, e = (chain.named(f"{n}_quartic{tag}", value) for n, value in letters)
     size = program.let(f"size_{tag}", sp.sqrt(p**2 + q**2), nonnegative=True)
     half, behind = _half(chain, p, q, size, tag)
@@ -115,8 +125,8 @@ def quartic(
     left = program.vanishes(f"left_{tag}", u, 0, "the root of the resolvent is not positive")
     rest_a = choose(left, B**2 / lower, 0) + 2 * (E - u)
     rest_b = choose(left, 0, A**2 / upper) - 2 * (E - u)
-    cosine, m, at_a = _part(chain, A, upper, rest_a, u, f"a_{tag}")
-    sine, d, at_b = _part(chain, B, lower, rest_b, -u, f"b_{tag}")
+    cosine, m, at_a = _part(program, A, (upper, rest_a), u, f"a_{tag}")
+    sine, d, at_b = _part(program, B, (lower, rest_b), -u, f"b_{tag}")
     n = program.let(f"n_{tag}", (m - tau * d) / 2)
     # much more than what e is rounded to, which small parts amplify: in the end the circle decides
     terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2)
@@ -183,16 +193,15 @@ def _in_free_symbols(coefficients: Sequence[sp.Symbol], u: sp.Symbol) -> dict[sp
 
 
 def _part(
-    chain: Chain, a: sp.Symbol, square: sp.Symbol, rest: sp.Expr, near: sp.Expr, tag: str
+    p: Program, a: sp.Symbol, squares: tuple[sp.Symbol, sp.Expr], near: sp.Expr, tag: str
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """The root of ``square``, a divided by it (whose square is ``rest``), and a flag.
+    """The root of the first of two ``squares``, a divided by it, and a flag.
 
-    The root of the resolvent determines a small square only poorly.  If it is the smaller of the
-    two, it follows from the other, and the flag is true; ``near`` is not positive if the square is
-    below 1/2.
+    The second is the square of that quotient.  The root of the resolvent determines a small square
+    only poorly.  If it is the smaller of the two, it follows from the other, and the flag is true;
+    ``near`` is not positive if the square is below 1/2.
     """
-    p = chain.program
-    rest = p.let(f"rest_{tag}", rest)
+    square, rest = squares[0], p.let(f"rest_{tag}", squares[1])
     small = p.vanishes(
         f"small_{tag}", sp.Max(near, square - rest), 0, "the lines are nearly parallel to an axis"
     )

@@ -24,19 +24,34 @@ def root(
     chain: Chain,
     d: sp.Symbol,
     e: sp.Expr,
-    r: sp.Expr,
-    h: sp.Expr,
+    lengths: tuple[sp.Expr, sp.Expr],
     choice: Choice,
     *,
     name: str = "",
 ) -> Applied:
-    """``(d + e)^2 = r^2 - h^2`` for lengths r and h: two solutions, by the sign of d + e."""
+    """``(d + e)^2 = r^2 - h^2`` for lengths r and h: two solutions, by the sign of d + e.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    d
+        the prismatic joint or the auxiliary length that is solved for
+    e
+        what is added to it
+    lengths
+        r and h
+    choice
+        the names of the two solutions, by the sign of d + e
+    name
+        the name of the sign and what other names end in, by default the number of the joint
+    """
     p, tag = chain.program, name or label(d)
     sigma = chain.sign(tag, choice)
     e = chain.coefficient(f"e_{tag}", e)
     r, h = (
         chain.coefficient(f"{n}_root{tag}", value, nonnegative=True)
-        for n, value in (("r", r), ("h", h))
+        for n, value in zip("rh", lengths, strict=True)
     )
     # half: what is clamped stays well within the round trip that is promised
     below = p.bound(f"below{tag}", r - h, chain.size / 2, "the distance is not too short")

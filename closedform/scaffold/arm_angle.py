@@ -73,7 +73,7 @@ class ArmAngleMaker(SubproblemMaker):
         offset = sp.atan2(between[1], between[0])
         x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
         pair = f"pair{joint.number}"
-        self.solve("law_of_cosines", f"{x}, {', '.join(links)}, far, {ELBOW}", pair, 2)
+        self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), far, {ELBOW}", pair, 2)
         turn = self.less(pair, between)
         if turn != pair:
             self.add(f"{pair} = {turn}.known_as(ik.program, '_{pair}')")

@@ -197,7 +197,7 @@ class KnownMaker(Maker):
         a = self.angle(turn.turn + sp.atan2(direction[1], direction[0]))
         length = self.length(along, reach)
         sides = "{+1: 'front', -1: 'back'}"
-        self.solve("polar", f"{a}, {length}, p[0], p[1], {sides}", f"{a}_, _", 2)
+        self.solve("polar", f"{a}, {length}, (p[0], p[1]), {sides}", f"{a}_, _", 2)
         self._length_back(length, along, reach)
         (value,) = sp.solve(up - point("p")[2], lift)
         self.solve("slide", f"{lift}, {source(value)}")
@@ -254,7 +254,7 @@ class KnownMaker(Maker):
         name = self.length(length, slide)
         self.solve(
             "polar",
-            f"{a}, {name}, q[0], q[1], {{+1: 'front', -1: 'back'}}, name='slide'",
+            f"{a}, {name}, (q[0], q[1]), {{+1: 'front', -1: 'back'}}, name='slide'",
             f"{a}_, _",
             2,
         )
@@ -296,7 +296,7 @@ class KnownMaker(Maker):
             toward = ", toward=links"
         self.solve(
             "turn",
-            f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}{toward}",
+            f"{joint}, ({a}, {b}, {source(c)}), {{+1: 'left', -1: 'right'}}{toward}",
             "turn1",
             2,
         )
@@ -392,10 +392,8 @@ class KnownMaker(Maker):
         pair1 = self._turn_base(base, beside, [u, v], f", {offset}")
         self.add(f"M = ik.matrix('M', {times(base.end.T, f'turned({pair1}).T * {lead}')})")
         lengths = f"{source(norm(u))}, {source(norm(v))}"
-        self.add(
-            f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, {ahead}, "
-            f"{pair1}.lever)"
-        )
+        offset = f"offset={source(length)}, ahead={ahead}, lever={pair1}.lever"
+        self.add(f"reaching = Reaching(ik, (q[0], q[1]), ({lengths}), {offset})")
         lift = sum((row.turn for row in parallel.rows), sp.S.Zero)
         pair, _ = self.wrist(lift, groups[1:], "M", after, more=", reaching=reaching")
         c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")

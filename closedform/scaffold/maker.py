@@ -86,7 +86,7 @@ class Maker:
         b = self.angle(second + at[1] - at[0])
         more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
         names = [self.length_of(f"link{i}", value) for i, value in enumerate(lengths, 1)]
-        arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
+        arguments = f"({a}, {b}), ({x}, {y}), ({', '.join(names)})"
         self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
         self.pairs = (f"{a}_", f"{b}_")
 
@@ -131,13 +131,31 @@ class Maker:
         wrist: Sequence[Group],
         M: str,
         after: sp.Matrix,
+        *,
         numbers: Sequence[int] = (4, 5, 6),
         more: str = "",
         choice: str = FLIP,
     ) -> tuple[str, Any]:
         """Solve ``lift`` and the two joints after it, with their offsets, as ZYZ angles.
 
-        The groups start with the one that ``lift`` ends; ``after`` is the rotation to the tool.
+        Returns the pair of the first angle, and what it is ahead of ``lift``.
+
+        Parameters
+        ----------
+        lift
+            the angle of the first joint of the wrist, or of parallel ones together
+        wrist
+            the groups of the joints, from the one that ``lift`` ends
+        M
+            the rotation that is left to them, as it is written
+        after
+            the rotation to the tool
+        numbers
+            those of the joints
+        more
+            further arguments of the lemma, as they are written
+        choice
+            the names of its solutions, as they are written
         """
         first, middle, last = wrist
         e, sense = first.end * Z, 1
@@ -158,7 +176,7 @@ class Maker:
             self.angle(sense * turns[0] + tau),
             self.angle(turns[1] + omega),
         )
-        arguments = f"{M}, {', '.join(names)}, {choice}{more}"
+        arguments = f"{M}, ({', '.join(names)}), {choice}{more}"
         self.solve("zyz", arguments, f"{names[0]}_", 2)
         return f"{names[0]}_", epsilon
 

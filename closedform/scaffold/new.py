@@ -403,7 +403,7 @@ def _without_inverse(
         "# Write it here, lemma by lemma, instead of the last line of this file;",
         "# docs/adding-a-mechanism.md says how:",
         f"# {chain}",
-        "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
+        "# ik.solve(turn, theta1, (a, b, c), {+1: 'left', -1: 'right'})",
         '# ik.finish("All solutions.")',
         f"d.no_inverse({literal(found)})",
     ]

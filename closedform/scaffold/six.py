@@ -192,9 +192,9 @@ class SixMaker(SubproblemMaker):
         length = norm(w[:2, 0])
         angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - sp.atan2(e[1], e[0])
         ahead = f"Pair({source(sp.sin(angle + sp.pi / 2))}, {source(sp.cos(angle + sp.pi / 2))})"
-        lengths = ", ".join(source(norm(x[:2, 0])) for x in (w, u, v))
-        point_of = f"{q}[0], {q}[1]"
-        self.add(f"reaching = Reaching(ik, {point_of}, {lengths}, {ahead}, {pair}.lever)")
+        w, u, v = (source(norm(x[:2, 0])) for x in (w, u, v))
+        turned = f"offset={w}, ahead={ahead}, lever={pair}.lever"
+        self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({u}, {v}), {turned})")
         self.more = ", reaching=reaching"
 
     def _seen_from_tool(self, found: Singles) -> None:

@@ -243,7 +243,7 @@ class Slides:
 
     def _root(self, joint: Single, e: Any, r: str, h: str) -> None:
         e = sp.simplify(self.sense[joint.number] * e)
-        arguments = f"{joint.joint}, {source(e)}, {r}, {h}, {REACH}"
+        arguments = f"{joint.joint}, {source(e)}, ({r}, {h}), {REACH}"
         self.maker.solve("root", arguments, f"{joint.joint}_", 2)
 
     def linear(self, q: str, c: sp.Matrix, slides: Sequence[tuple[Single, sp.Matrix]]) -> None:
@@ -277,7 +277,7 @@ class Slides:
     def _equation(self, joint: Single, sides: tuple[Any, Any, Any]) -> str:
         pair = f"pair{joint.number}"
         shown = ", ".join(source(e) for e in sides)
-        self.maker.solve("turn", f"{self.angle(joint)}, {shown}, {SIDE}", pair, 2)
+        self.maker.solve("turn", f"{self.angle(joint)}, ({shown}), {SIDE}", pair, 2)
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "") -> str:

@@ -83,8 +83,9 @@ class SubproblemMaker(WristMaker):
         g, w = ends[0].end.T * Z, ends[1].end * Z
         level, across = g[2] * w[2], norm(g[:2, 0]) * norm(w[:2, 0])
         limits = f"({source(level - across)}, {source(level + across)})"
-        arguments = f"[{', '.join(shown)}], p, ({M})[:, 2], {limits}, [{', '.join(self.levers)}]"
-        self.add(f"{', '.join(pairs)}, = within_tilt(ik, {arguments})")
+        arguments = f"tool=({M})[:, 2], limits={limits}, levers=[{', '.join(self.levers)}]"
+        carrying = f"[{', '.join(shown)}]"
+        self.add(f"{', '.join(pairs)}, = within_tilt(ik, {carrying}, p, {arguments})")
 
     def solved_point(self, arm: Singles) -> str:
         """Solve three joints for the position of the tool."""
@@ -437,9 +438,10 @@ class SubproblemMaker(WristMaker):
         p, q = ellipse.double
         square = "centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - radius**2"
         self.add("on_circle = OnCircle(lambda pair: centre + along*pair.c + aside*pair.s, radius)")
-        pair, double = f"pair{joint.number}", f"({source(p)}, {source(q)})"
-        arguments = f"{self.unknown(joint)}, {double}, (centre.dot(along), centre.dot(aside))"
-        self.solve("quartic", f"{arguments}, {square}, {LINE}, {SIDE}, on_circle", pair, 4)
+        linear = "centre.dot(along), centre.dot(aside)"
+        arguments = f"{self.unknown(joint)}, ({source(p)}, {source(q)}, {linear}, {square})"
+        pair = f"pair{joint.number}"
+        self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
         return pair
 
     def _by_distance(

@@ -54,7 +54,7 @@ class WristMaker(Maker):
         shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
         more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
         self.solve(
-            "turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
+            "turn", f"{name}, ({shown}), {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
         )
         self.levers.append(f"{pair}.lever/ik.size")
         return pair
@@ -122,7 +122,9 @@ class WristMaker(Maker):
         groups[-1] = Group(groups[-1].rows, sp.eye(3))
         numbers = [j.number for j in joints]
         turn = joints[0].turn
-        pair, epsilon = self.wrist(turn, groups, M, sp.eye(3), numbers, more, choice)
+        pair, epsilon = self.wrist(
+            turn, groups, M, sp.eye(3), numbers=numbers, more=more, choice=choice
+        )
         self.lifted = self._less_by_angle(pair, epsilon)
 
     def is_normal(self, wrist: Sequence[Single]) -> bool:

@@ -16,7 +16,6 @@ from sympy.simplify.fu import TR8
 from closedform.algebra.expressions import InexactNumberError
 from closedform.algebra.factors import polynomial_factors
 from closedform.algebra.normal_form import Undecided, decide, determinant, equal, is_zero, normal
-from closedform.model.functions import free_symbols, parts, substitute
 
 x, y, theta, phi = sp.symbols("x y theta phi", real=True)
 a, b = sp.symbols("a b", nonnegative=True)
@@ -336,29 +335,3 @@ def test_factors_of_a_polynomial() -> None:
         assert {(sp.Poly(f).monic(), n) for f, n in factors} == {
             (sp.Poly(f).monic(), n) for f, n in found
         }
-
-
-def test_parts_that_occur_many_times_are_visited_once() -> None:
-    """Sixty names, each of which holds the one before twice: as a tree they have 2**60 leaves."""
-    x, y = sp.symbols("x y", real=True)
-    pair, chain = sp.Function("pair"), x
-    for _ in range(60):
-        chain = pair(chain, chain)
-    assert len(parts([chain])) == 61
-    assert free_symbols([chain]) == {x}
-    assert substitute(chain, {y: x}) is chain
-    image = substitute(chain, {x: y})
-    assert free_symbols([image]) == {y}
-    assert len(parts([image])) == 61
-    for _ in range(60):
-        assert image.args[0] is image.args[1]
-        image = image.args[0]
-
-
-def test_symbols_are_replaced_at_once() -> None:
-    x, y = sp.symbols("x y", real=True)
-    swap = {x: y, y: x}
-    assert substitute(x**2 - sin(y), swap) == y**2 - sin(x)
-    choice = sp.Piecewise((x, x > y), (sp.Max(x, 2 * y), True))
-    assert substitute(choice, swap) == sp.Piecewise((y, y > x), (sp.Max(y, 2 * x), True))
-    assert substitute(sp.Max(x, y), {x: sp.Integer(1), y: sp.Integer(2)}) == 2

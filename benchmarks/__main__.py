@@ -100,8 +100,23 @@ def compared(
 
 
 def from_c(
-    name: str, case: Case, target: str, folder: Path, inputs: np.ndarray, expected: np.ndarray
+    name: str, case: Case, target: str, *, folder: Path, inputs: np.ndarray, expected: np.ndarray
 ) -> Run:
+    """The run of a competitor in C, after its values are found to be right.
+
+    Parameters
+    ----------
+    name
+        that of the competitor
+    case
+        the function
+    target
+        the flags of the compiler for a machine
+    folder
+        where it is compiled
+    inputs, expected
+        postures, and the values for them
+    """
     run, values = native.timer(name, case, target, folder, inputs)
     check(case, values, expected)
     return run
@@ -116,7 +131,9 @@ def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -
         expected = case.values(inputs)
         for label, target in native.TARGETS.items():
             makers = {
-                name: partial(from_c, name, case, target, folder, inputs, expected)
+                name: partial(
+                    from_c, name, case, target, folder=folder, inputs=inputs, expected=expected
+                )
                 for name in native.SOURCES
             }
             compared(report, f"{case.title}, {label}", "ns", makers, rounds)
@@ -136,10 +153,27 @@ def calls_from_python(
     cases: list[Case],
     rounds: int,
     n: int,
+    *,
     peers: Mapping[str, batches.Peer] = batches.PEERS,
     words: str = "",
 ) -> None:
-    """Write the tables of batches of ``n`` postures in both layouts, or of single postures."""
+    """Write the tables of batches of ``n`` postures in both layouts, or of single postures.
+
+    Parameters
+    ----------
+    report
+        what they are written to
+    cases
+        the functions
+    rounds
+        how many times each competitor runs
+    n
+        the number of postures in a batch
+    peers
+        the competitors, by name
+    words
+        what the title says of them
+    """
     report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python{words}")
     layouts = {"planes": ", structure of arrays, `out=`", "rows": ", `(N, n)` arrays"}
     for case in cases:
@@ -206,17 +240,16 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         if "c" in tables:
             calls_from_c(report, chosen, arguments.rounds, Path(folder))
+    calls = partial(calls_from_python, report, chosen, arguments.rounds)
     if "batch" in tables:
-        calls_from_python(report, chosen, arguments.rounds, arguments.batch)
+        calls(arguments.batch)
     if "single" in tables:
-        calls_from_python(report, chosen, arguments.rounds, 1)
+        calls(1)
     if "array" in tables:
-        words = ", by array libraries"
-        calls_from_python(report, chosen, arguments.rounds, arguments.batch, libraries.PEERS, words)
+        calls(arguments.batch, peers=libraries.PEERS, words=", by array libraries")
     if "threads" in tables:
         peers = with_threads(len(cores) or os.cpu_count() or 1)
-        words = ", by the number of threads"
-        calls_from_python(report, chosen, arguments.rounds, arguments.batch, peers, words)
+        calls(arguments.batch, peers=peers, words=", by the number of threads")
     if "inverse" in tables:
         inverses.compare(report, arguments.rounds)
     whole = not (arguments.cases or arguments.only)

@@ -436,7 +436,7 @@ p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 slants = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
 slack, beside = play(p, m, sum(sp.Abs(half_base * t) for t in slants))
-mid = solve_mid_plane(p, m, q, (wrist, half_base), slack)
+mid = solve_mid_plane(p, m, q, (wrist, half_base), slack=slack)
 upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")

@@ -379,13 +379,25 @@ def solve_mid_plane(
     m: Dimensions,
     q: Joints,
     wrist: tuple[sp.Symbol, sp.Symbol],
+    *,
     slack: sp.Symbol,
     gap: tuple[sp.Expr, sp.Expr] | None = None,
 ) -> MidPlane:
-    """Solve for pitch, waist and virtual arm; ``wrist`` is its length and half its base line.
+    """Solve for pitch, waist and virtual arm.
 
-    ``gap`` is how far the right tip is ahead of the middle of the tips and above it, if that does
-    not depend on the virtual arm.
+    Parameters
+    ----------
+    program
+        the program of the inverse
+    m, q
+        the dimensions and the joints
+    wrist
+        the length of the wrist, and half of its base line
+    slack
+        the scale of the error that is allowed
+    gap
+        how far the right tip is ahead of the middle of the tips and above it, if that does not
+        depend on the virtual arm
     """
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))

@@ -29,10 +29,26 @@ def draw(
     closed: bool,
     notes: tuple[str, ...],
 ) -> None:
-    """Export the skeleton; ``here`` is in names of the program, ``posture`` in angles, to prove it.
+    """Export the skeleton.
 
-    ``arms`` gives the upper arm and the fore-arm of each side at that posture.  If the loop is
-    ``closed``, the links of the wrist start at the tips of the arms.
+    Parameters
+    ----------
+    d, m, q
+        the derivation, the dimensions and the joints
+    program
+        what computes the points
+    here
+        the posture in names of the program
+    posture
+        the posture in angles, for the proof
+    tip
+        the tip at that posture
+    arms
+        the upper arm and the fore-arm of each side at that posture
+    closed
+        whether the loop closes: the links of the wrist then start at the tips of the arms
+    notes
+        sentences for the documentation
     """
     real_arms = {
         side: (pair(second), pair(second + third))

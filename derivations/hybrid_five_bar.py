@@ -423,7 +423,7 @@ inverse_kinematics(d, solved)
 
 # Conditioning, loci, workspace
 
-design.conditioning(d, A_p.subs(passive), theta5 - theta4, d_point - c, theta2, theta3)
+design.conditioning(d, A_p.subs(passive), theta5 - theta4, d_point - c, (theta2, theta3))
 design.loci(d)
 volumes = design.workspace(d)
 

@@ -18,9 +18,16 @@ alpha, beta = (v.dot(v) + L2**2 - L1**2 for v in (AP, BP))
 
 
 def conditioning(
-    d: Derivation, A: sp.Matrix, psi: sp.Expr, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symbol
+    d: Derivation,
+    A: sp.Matrix,
+    psi: sp.Expr,
+    CD: sp.Matrix,
+    joints: tuple[sp.Symbol, sp.Symbol],
 ) -> None:
-    """Add the singular values of A, a matrix of the angles; ``psi`` is the angle from CP to DP."""
+    """Add the singular values of A, a matrix of the angles; ``psi`` is the angle from CP to DP.
+
+    ``CD`` is a vector of the two ``joints``.
+    """
     c = cos(psi)
     gram = L2**2 * sp.Matrix([[1, 0, 0], [0, 1, c], [0, c, 1]])
     lam = real("lambda")
@@ -55,7 +62,7 @@ def conditioning(
             ((1 + c) * sin(psi / 2) ** 2, (1 - c) * cos(psi / 2) ** 2),
         ],
     )
-    range_of_CD(d, CD, theta2, theta3)
+    range_of_CD(d, CD, *joints)
     d.step(
         "Isotropy",
         "kappa = 1 if CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range of "

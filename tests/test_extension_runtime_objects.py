@@ -140,7 +140,7 @@ ERRORS: list[tuple[str, tuple[Any, ...], dict[str, Any], type[Exception], str]] 
 
 @pytest.mark.parametrize(("name", "args", "kwargs", "error", "message"), ERRORS)
 def test_errors(
-    native: Any, name: str, args: Any, kwargs: Any, error: type[Exception], message: str
+    native: Any, name: str, *, args: Any, kwargs: Any, error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error) as info:
         function(native, name)(*args, **kwargs)

@@ -328,7 +328,7 @@ def test_links_that_are_not_there_are_named(ur5: Path) -> None:
         read_urdf(ur5, Choice("tool0", "w1"))
 
 
-def joint(name: str, parent: str, child: str, place: str, axis: str, more: str = "") -> str:
+def joint(name: str, parent: str, child: str, place: str, axis: str, *, more: str = "") -> str:
     return (
         f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
         f'<origin xyz="{place}"/><axis xyz="{axis}"/>{more}</joint>'
@@ -340,7 +340,7 @@ PALLETISER = "<robot>" + "".join(
     [
         joint("turn", "base", "column", "0 0 0.4", "0 0 1"),
         joint("lower", "column", "arm", "0.1 0 0", "0 1 0"),
-        joint("level", "arm", "elbow", "0 0 0.5", "0 1 0", MIMIC.format(-1)),
+        joint("level", "arm", "elbow", "0 0 0.5", "0 1 0", more=MIMIC.format(-1)),
         joint("upper", "elbow", "forearm", "0 0 0", "0 -1 0"),
         '<joint name="end" type="fixed"><parent link="forearm"/><child link="tool"/>'
         '<origin xyz="0.6 0 0"/></joint></robot>',

@@ -55,6 +55,7 @@ def _shown(ball: arb, digits: int = 10) -> str:
 def find_counterexample(
     difference: Expr | sp.MatrixBase,
     symbols: Sequence[Symbol] | None = None,
+    *,
     conditions: Sequence[Relational] = (),
     seed: int = 0,
     sides: Sequence[Sequence[Expr]] = (),
@@ -64,14 +65,23 @@ def find_counterexample(
 
     The simplest points are tried first: small integers for coordinates, 1, 2, 3 for positive
     symbols, the usual fractions of `pi` for angles. Then come random rationals, the same on every
-    run. Every condition must provably hold at the point. The result is None if no point is found,
-    which proves nothing.
+    run. The result is None if no point is found, which proves nothing.
 
-    ``sides`` contains, for each entry, the expressions of which it is the difference. They have
-    values at the point, so the point also gives values for symbols that cancel.
-
-    If symbols depend on each other, ``postures`` lists points at which they agree; no other point
-    is tried then.
+    Parameters
+    ----------
+    difference
+        an expression or a matrix of them
+    symbols
+        those that a point gives values for, by default all that occur, sorted by name
+    conditions
+        what must provably hold at the point
+    seed
+        that of the random points
+    sides
+        for each entry, the expressions of which it is the difference; they have values at the
+        point, so the point also gives values for symbols that cancel
+    postures
+        points at which symbols that depend on each other agree; no other point is tried then
     """
     entries: list[Expr] = sp.Matrix([difference]).flat()
     gaps = [_gap(c) for c in conditions]

@@ -69,11 +69,25 @@ def count_solutions(
     """Count the solutions of `equations = 0`.
 
     An unknown that occurs in a sine or cosine is an angle, counted modulo a full turn. Every other
-    symbol is a parameter. `target_substitution` replaces target symbols that are not independent
-    by rational functions of free parameters (see `rotation_parametrisation`); `saturate` lists
-    expressions that must not vanish. Denominators that contain unknowns are also saturated.
+    symbol is a parameter. Raises `InfinitelyManyError` if there are infinitely many solutions.
 
-    Raises `InfinitelyManyError` if there are infinitely many solutions.
+    Parameters
+    ----------
+    equations
+        expressions that vanish
+    unknowns
+        what they are solved for
+    target_substitution
+        rational functions of free parameters for target symbols that are not independent, see
+        `rotation_parametrisation`
+    saturate
+        expressions that must not vanish, besides the denominators that contain unknowns
+    method
+        whether parameters stay symbols, or get numbers
+    specialisations
+        how many sets of numbers they get
+    seed
+        that of the numbers
     """
     equations, saturate, given = list(equations), list(saturate), target_substitution or {}
     system = _System(equations, unknowns, given, saturate)

@@ -213,11 +213,17 @@ class _Errors:
         self._amplified: dict[int, NDArray[Any]] = {}
 
     def bounds(self) -> NDArray[np.float64]:
-        """Upper bounds of all errors."""
+        """Upper bounds of all errors; infinite where nothing is known."""
         exact = self.middle + TURN * self.turned
-        return _ulp_bounds(
-            self.computed, exact, self.radius, self.scales, self.lengths, self.powers, self.backend
-        )
+        with np.errstate(all="ignore"):
+            sizes = np.where(np.isfinite(self.radius), np.maximum(abs(exact) - self.radius, 0), 0)
+            most = NESTED * sizes.max(axis=1, initial=max(self.lengths, default=0.0))
+            most = np.maximum(most[:, None], NESTED * self.powers)
+            size = np.maximum(np.minimum(self.scales, most), sizes)
+            errors = abs(self.computed - exact) + self.radius
+            bounds = errors / _last_places(size, self.backend)
+            bounds[~np.isfinite(bounds)] = np.inf
+            return np.where(np.isfinite(self.scales), bounds, 0.0).astype(float)
 
     def at(self, row: int, k: int) -> float | None:
         """The error of an entry; None where Arb cannot settle it, or it means nothing."""
@@ -263,26 +269,10 @@ def _turned(angle: arb) -> arb:
         return angle + 2 * arb.pi()
 
 
-def _ulp_bounds(
-    computed: NDArray[Any],
-    middle: NDArray[Any],
-    radius: NDArray[Any],
-    scales: NDArray[Any],
-    lengths: Sequence[float],
-    powers: NDArray[Any],
-    backend: Backend,
-) -> NDArray[np.float64]:
-    """Bounds on the errors, in the same units; infinite where nothing is known."""
-    with np.errstate(all="ignore"):
-        sizes = np.where(np.isfinite(radius), np.maximum(abs(middle) - radius, 0), 0)
-        most = NESTED * sizes.max(axis=1, initial=max(lengths, default=0.0))
-        tiny = float(np.finfo(backend.dtype).tiny)
-        most = np.maximum(most[:, None], NESTED * powers)
-        size = np.maximum(np.maximum(np.minimum(scales, most), sizes), tiny)
-        unit = np.ldexp(backend.eps, np.frexp(size)[1] - 1)
-        bounds = (abs(computed - middle) + radius) / np.maximum(unit, 5e-324)
-        bounds[~np.isfinite(bounds)] = np.inf
-        return np.where(np.isfinite(scales), bounds, 0.0).astype(float)
+def _last_places(sizes: NDArray[Any], backend: Backend) -> NDArray[Any]:
+    """The units in the last place of numbers of these sizes."""
+    normal = np.maximum(sizes, float(np.finfo(backend.dtype).tiny))
+    return np.asarray(np.maximum(np.ldexp(backend.eps, np.frexp(normal)[1] - 1), 5e-324))
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:

@@ -42,7 +42,20 @@ class Amplitude:
     ) -> Amplitude:
         """The equation with the coefficients a, b and c.
 
-        ``scale`` maps h to the scale of the error that is allowed in c; by default it is h itself.
+        Parameters
+        ----------
+        program
+            the program that the names and bounds are added to
+        x
+            the angle
+        coefficients
+            a, b and c
+        sigma
+            the sign of the root
+        scale
+            maps h to the scale of the error that is allowed in c; by default it is h itself
+        suffix
+            what the names end in
         """
         a, b, c = coefficients
         h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)

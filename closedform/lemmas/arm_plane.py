@@ -84,10 +84,24 @@ def arm_plane(
 ) -> Applied:
     """``M v = w`` for the rotation M of a shoulder, at the arm angle whose pair is ``psi``.
 
-    ``shoulder`` is M at a posture; v has no third component, and names the line to the wrist, see
-    :func:`arm_angle`.  The lengths of v and w are equal by the equations that were solved for the
-    unknowns in ``because``.  If w is along z, the plane of x and z takes the place of that of w and
-    z.
+    If w is along z, the plane of x and z takes the place of that of w and z.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    psi
+        the pair of the arm angle
+    shoulder
+        M at a posture
+    v
+        the line to the wrist, without a third component, see :func:`arm_angle`
+    w
+        what M turns it to
+    because
+        why both are equally long: for each unknown, the factor of its equation, as of ``rotate``
+    sense
+        that of the arm angle, 1 or -1
     """
     p, joint = chain.program, chain.joints[0]
     v, w = ([sp.sympify(e, strict=True) for e in vector] for vector in (v, w))

@@ -67,13 +67,29 @@ def circle_intersection(
 ) -> tuple[Lemma, Chord]:
     """The points at two distances, the ``radii``, from two points.
 
-    ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
-    first to the point.  With the factors of Heron's formula the height of the triangle is
-    ``sqrt(S*A*B*C)/(2*d)``. ``scale`` is the size of the coordinates, whose rounding decides what
-    counts as zero.  If the radii are equal and the centres coincide, the point is free on a circle.
-    By convention, the answer is then that for centres that differ along the first axis if both
-    radii are one symbol, and otherwise the point on this axis.  Circles that touch meet in one
-    point.
+    With the factors of Heron's formula the height of the triangle is ``sqrt(S*A*B*C)/(2*d)``.  If
+    the radii are equal and the centres coincide, the point is free on a circle.  By convention, the
+    answer is then that for centres that differ along the first axis if both radii are one symbol,
+    and otherwise the point on this axis.  Circles that touch meet in one point.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    centres
+        the vector from the first to the second
+    radii
+        the distances of the point from them
+    unknowns
+        the vector from the first centre to the point
+    sigma
+        the sign that names the two points
+    scale
+        the size of the coordinates, whose rounding decides what counts as zero
+    free
+        the joints that are free if the point is
+    suffix
+        what the names end in
     """
     (x, y), (first, second) = unknowns, radii
     distance = program.let(
@@ -95,7 +111,9 @@ def circle_intersection(
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
         d = distance
-        along, rise, (B, C) = lens(program, radii, d, A, tolerated, "the bars meet", suffix)
+        along, rise, (B, C) = lens(
+            program, radii, d, slack=A, tolerated=tolerated, meaning="the bars meet", suffix=suffix
+        )
         along = choose(flag, first, along)
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
@@ -136,7 +154,22 @@ def two_circles(
 ) -> Meeting:
     """The points at two distances from two points, as :func:`circle_intersection` gives them.
 
-    The coordinates of the first of the ``centres`` are symbols, and so are the ``radii``.
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    centres
+        the two points; the coordinates of the first are symbols
+    radii
+        the distances, two symbols
+    unknowns
+        the coordinates of the point that is sought
+    sigma
+        the sign that names the two points
+    scale
+        the size of the coordinates, whose rounding decides what counts as zero
+    free
+        the joints that are free if the point is
     """
     p, (r1, r2), (origin, other) = program, radii, centres
     apart = sp.Matrix(

@@ -58,10 +58,22 @@ def coupled(
     )
     d.explain({r"\mathbf B_1": "end of the rod on the driver"})
     d.explain({r"\mathbf B_2": "end of the rod on the follower"})
-    rod = _forward(d, driver, follower, loop, modes, stated)
-    _draw(d, driver, follower, loop, rod)
-    _velocity(d, driver, follower, loop, rod, stated)
-    _inverse(d, driver, follower, loop, stated)
+    closed = _Loop(d, driver, follower, loop, stated)
+    rod = _forward(closed, modes)
+    _draw(closed, rod)
+    _velocity(closed, rod)
+    _inverse(closed)
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """The loop of a derivation: its legs, its equation, and the step that states it."""
+
+    d: Derivation
+    driver: Crank | Slide
+    follower: Crank | Slide
+    equation: sp.Expr
+    stated: Step
 
 
 @dataclass(frozen=True)
@@ -77,14 +89,8 @@ def _slid(*legs: Crank | Slide) -> list[sp.Symbol]:
     return [leg.joint for leg in legs if isinstance(leg, Slide)]
 
 
-def _forward(
-    d: Derivation,
-    driver: Crank | Slide,
-    follower: Crank | Slide,
-    loop: sp.Expr,
-    choice: Choice,
-    stated: Step,
-) -> _Rod:
+def _forward(loop: _Loop, choice: Choice) -> _Rod:
+    d, driver, follower = loop.d, loop.driver, loop.follower
     f, sigma = d.program(), real("sigma_assembly")
     modes = branches((sigma, choice))
     d.assembly_modes = modes.labels
@@ -94,7 +100,7 @@ def _forward(
         "Forward: the follower",
         "The follower has to reach the point B1 with the rod.  Both solutions are assembly modes.",
         {},
-        uses=[stated],
+        uses=[loop.stated],
     )
     d.function(
         "fk",
@@ -111,24 +117,23 @@ def _forward(
         ),
     )
     x = follower.joint
-    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop,), links=(found.link,)))
+    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop.equation,), links=(found.link,)))
     record_lemma(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
     along = sp.Matrix([v.let(f"A_1{i}", -e) for i, e in enumerate(found.rod, 1)])
     return _Rod(v, modes, along)
 
 
-def _points(driver: Crank | Slide, follower: Crank | Slide) -> dict[str, sp.Matrix]:
-    legs = {"1": driver, "2": follower}
+def _points(loop: _Loop) -> dict[str, sp.Matrix]:
+    legs = {"1": loop.driver, "2": loop.follower}
     return {f"A{k}": leg.base for k, leg in legs.items()} | {
         f"B{k}": leg.end() for k, leg in legs.items()
     }
 
 
-def _draw(
-    d: Derivation, driver: Crank | Slide, follower: Crank | Slide, loop: sp.Expr, rod: _Rod
-) -> None:
-    posture = {name: in_space(at) for name, at in _points(driver, follower).items()}
+def _draw(loop: _Loop, rod: _Rod) -> None:
+    d, driver, follower = loop.d, loop.driver, loop.follower
+    posture = {name: in_space(at) for name, at in _points(loop).items()}
     end = driver.end() + rod.vector
     lengths = {("B1", "B2"): sp.sympify(driver.rod, strict=True)}
     links = {"ground": ("A1", "A2"), "rod": ("B1", "B2")}
@@ -156,20 +161,14 @@ def _draw(
         branches=rod.modes,
         notes=(NO_MODE,),
         at_posture=[posture],
-        closing={("B1", "B2"): loop},
+        closing={("B1", "B2"): loop.equation},
     )
 
 
-def _velocity(
-    d: Derivation,
-    driver: Crank | Slide,
-    follower: Crank | Slide,
-    loop: sp.Expr,
-    rod: _Rod,
-    stated: Step,
-) -> None:
+def _velocity(loop: _Loop, rod: _Rod) -> None:
+    d, driver, follower = loop.d, loop.driver, loop.follower
     q, x = driver.joint, follower.joint
-    A, B = velocity_matrices([loop], (x,), (q,))
+    A, B = velocity_matrices([loop.equation], (x,), (q,))
     along = follower.end() - driver.end()
     a, b = along.dot(follower.rate), along.dot(driver.rate)
     d.step(
@@ -181,7 +180,7 @@ def _velocity(
         {"A": a, "B": b},
         proves="A and B are half of the derivatives.",
         equal=[(A[0] / 2, a), (B[0] / 2, b)],
-        uses=[stated],
+        uses=[loop.stated],
     )
     v = Program(list(rod.program.body), rod.program.taken)
     placed = follower.rate_at(driver.end() + rod.vector)
@@ -202,9 +201,8 @@ def _velocity(
     export(d, v, rod.modes, functions)
 
 
-def _inverse(
-    d: Derivation, driver: Crank | Slide, follower: Crank | Slide, loop: sp.Expr, stated: Step
-) -> None:
+def _inverse(loop: _Loop) -> None:
+    d, driver, follower = loop.d, loop.driver, loop.follower
     g, sigma, x = d.program(), real("sigma_driver"), follower.joint
     size = g.let("size", size_of(d, _slid(follower)))
     found = driver.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
@@ -225,7 +223,7 @@ def _inverse(
         "rounding of the lengths times the length of the rod over A.  The status is SINGULAR if A "
         f"is less than 2^-10 of {least}.",
         {},
-        uses=[stated],
+        uses=[loop.stated],
     )
     d.function(
         "ik",
@@ -257,7 +255,7 @@ def _inverse(
             "ik",
             d.actuated,
             (sp.S.Zero,),
-            (loop,),
+            (loop.equation,),
             images="fk",
             links=(found.link,),
             angles=(x,) if isinstance(follower, Crank) else (),

@@ -142,8 +142,20 @@ def rail_and_circle(
 ) -> Meeting:
     """The points of a rail at the length of a rod from the near end of the rod.
 
-    Of the two ``legs``, one is a rail.  ``ends`` are a point of it and the near end of the rod, in
-    the order of the legs.
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    ends
+        a point of the rail and the near end of the rod, in the order of the legs
+    legs
+        two, of which one is a rail
+    hand
+        the point that is sought
+    sigma
+        the sign that names the two points
+    scale
+        the size of the coordinates, whose rounding decides what counts as zero
     """
     p, k = program, 0 if isinstance(legs[0], Rail) else 1
     rail, rod, at, centre = legs[k], legs[1 - k], ends[k], ends[1 - k]

@@ -57,7 +57,15 @@ def theorem(
     rests_on: Sequence[str] = (),
     title: str = "",
 ) -> Theorem:
-    """Register the statement of the lemma of this name, and its proof; see :class:`Theorem`."""
+    """Register the statement of the lemma of this name, and its proof.
+
+    Parameters
+    ----------
+    name
+        that of the lemma
+    statement, proof, exception, rests_on, title
+        the fields of :class:`Theorem`
+    """
     found = Theorem(name, statement, proof, exception, tuple(rests_on), title)
     _theorems[name] = found
     return found

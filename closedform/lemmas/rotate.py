@@ -45,9 +45,23 @@ def rotate(
 ) -> Applied:
     """``Rz(x) w = v`` for vectors of the plane of equal length: one solution.
 
-    x is free where both vanish.  The lengths are equal by the equations that were solved for the
-    unknowns in ``because``: w.w - v.v is the sum of these equations, each times the factor given.
-    ``scale`` is that of the vectors, by default the size of the arm.
+    x is free where both vanish.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint or the auxiliary angle that is solved for
+    w, v
+        the vector before the turn and after it
+    because
+        why both are equally long: w.w - v.v is the sum of the equations that were solved for
+        these unknowns, each times the factor given
+    scale
+        that of the vectors, by default the size of the arm
+    name
+        what the names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(x)
     size = chain.size if scale is None else scale

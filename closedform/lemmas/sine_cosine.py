@@ -75,16 +75,28 @@ def sine_cosine(
 ) -> Lemma:
     """``a sin x + b cos x = c``, by half angles: two solutions where ``a^2 + b^2 >= c^2``.
 
-    ``b sin x - a cos x`` gets a name too.  The keywords are
+    ``b sin x - a cos x`` gets a name too.
 
-    ``free``
-        joints that are free where ``a = b = c = 0``; there x = 0 is returned;
-    ``scale``
-        the scale of the coefficients, on which they vanish;
-    ``slack``
-        the scale of what c may be missed by, by default ``scale`` with free joints, else h;
-    ``toward``
-        what later joints have to reach, which decides where both solutions nearly meet.
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    x
+        the angle
+    coefficients
+        a, b and c
+    sigma
+        the sign that names the two solutions
+    suffix
+        what the names end in
+    free
+        joints that are free where ``a = b = c = 0``; there x = 0 is returned
+    scale
+        the scale of the coefficients, on which they vanish
+    slack
+        the scale of what c may be missed by, by default ``scale`` with free joints, else h
+    toward
+        what later joints have to reach, which decides where both solutions nearly meet
     """
     start = len(program.body)
 

@@ -73,12 +73,26 @@ def three_spheres(
     scale: sp.Expr,
     free: Sequence[sp.Symbol] = (),
 ) -> Meeting:
-    """The points at three distances, the ``radii``, from three points.
+    """The points at three distances from three points.
 
-    The coordinates of the first of the three ``centres`` are symbols, and so are the ``radii``.
-    ``scale`` is the size of the coordinates, whose rounding decides what counts as zero.  Where the
-    centres are in line, the point may be free on a circle; what is ``free`` then gets the status
-    for it.
+    Where the three points are in line, the point that is sought may be free on a circle.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    centres
+        the three points; the coordinates of the first are symbols
+    radii
+        the distances, three symbols
+    unknowns
+        the coordinates of the point that is sought
+    sigma
+        the sign that names the two points
+    scale
+        the size of the coordinates, whose rounding decides what counts as zero
+    free
+        the joints that are free if the point is
     """
     p = program
     r1, r2, r3 = radii
@@ -113,13 +127,15 @@ def three_spheres(
         # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
         left = other.dot(other - apart)
         part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
-        X, Y, h = _met_by_equal(p, r1, (mu, nu, part), left, (point, line), scale)
+        squares = (mu, nu, part)
+        X, Y, h = _met_by_equal(p, r1, squares, left, flags=(point, line), scale=scale)
         more: tuple[sp.Symbol, ...] = ()
     else:
         lengths = (r1, either(r3, r2), either(r2, r3))
-        beyond = p.let("nu_w", choose(line, length * over, nu), nonnegative=True)
-        dot = other.dot(a)
-        X, Y, h, flat = _met_by_unequal(p, lengths, (mu, nu, beyond), dot, (point, line), scale)
+        squares = (mu, nu, p.let("nu_w", choose(line, length * over, nu), nonnegative=True))
+        X, Y, h, flat = _met_by_unequal(
+            p, lengths, squares, other.dot(a), flags=(point, line), scale=scale
+        )
         more = (flat,)
     from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(apart, n, w, strict=True)]
     found = [o + x for o, x in zip(origin, from_first, strict=True)]
@@ -169,6 +185,7 @@ def _met_by_equal(
     r: sp.Symbol,
     squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     left: sp.Expr,
+    *,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
 ) -> tuple[sp.Expr, sp.Symbol, sp.Symbol]:
@@ -191,6 +208,7 @@ def _met_by_unequal(
     radii: tuple[sp.Expr, sp.Expr, sp.Expr],
     squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     dot: sp.Expr,
+    *,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
@@ -210,7 +228,9 @@ def _met_by_unequal(
     D = p.let("D", choose(point, 0, unit), nonnegative=True)
     j = p.let("j", choose(line, 0, rest), nonnegative=True)
     A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
-    along, beside, _ = lens(p, (r1, near), D, A, tolerated, "the spheres meet")
+    along, beside, _ = lens(
+        p, (r1, near), D, slack=A, tolerated=tolerated, meaning="the spheres meet"
+    )
     along = p.let("along", choose(point, 0, along))
     radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
     part = p.let("part", 1 / (unit * rest), nonnegative=True)
@@ -235,6 +255,7 @@ def lens(
     program: Program,
     radii: tuple[sp.Expr, sp.Expr],
     distance: sp.Expr,
+    *,
     slack: sp.Symbol,
     tolerated: sp.Expr,
     meaning: str,
@@ -242,8 +263,24 @@ def lens(
 ) -> tuple[sp.Expr, sp.Expr, tuple[sp.Symbol, sp.Symbol]]:
     """Where circles or spheres meet: how far along the line of the centres, and beside it.
 
-    ``slack`` is the sum of the ``radii`` less the ``distance``, bounded by zero.  The last result
-    are the other two slacks.
+    The last result is the other two slacks.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    radii
+        those of both circles
+    distance
+        that of the centres
+    slack
+        the sum of the radii less the distance, bounded by zero
+    tolerated
+        how far the other two slacks may be below zero
+    meaning
+        what the bounds say, in words
+    suffix
+        what the names end in
     """
     (first, second), A = radii, slack
     B = program.bound(f"outer{suffix}", distance + first - second, tolerated, meaning)

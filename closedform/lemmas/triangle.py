@@ -92,8 +92,21 @@ class Triangle:
     ) -> Triangle:
         """The triangle whose ends are ``reach`` apart, with its four bounds.
 
-        ``scale`` is the natural scale of the lengths: by default that of the links, more where the
-        reach is a difference of larger lengths.
+        Parameters
+        ----------
+        program
+            the program that the names and bounds are added to
+        links
+            their lengths
+        reach
+            the distance of the ends
+        sigma
+            the sign of the elbow
+        scale
+            the natural scale of the lengths: by default that of the links, more where the reach is
+            a difference of larger lengths
+        suffix
+            what the names end in
         """
         first, second = links
         scale = first + second if scale is None else scale
@@ -122,9 +135,15 @@ class Triangle:
         """The triangle with the ``square`` of the distance of the ends, and its two bounds.
 
         Both angles rest on the same N and M, whose rounding counts as some of R.  So the links end
-        where they should even where their angles are ill-conditioned.  ``scale`` is as in
-        :meth:`from_reach`.  A fold closer than 2^-44 of the links does not count as one: there M
-        may be missed by its own square.
+        where they should even where their angles are ill-conditioned.  A fold closer than 2^-44 of
+        the links does not count as one: there M may be missed by its own square.
+
+        Parameters
+        ----------
+        square
+            the square of the distance of the ends
+        program, links, sigma, scale, suffix
+            as in :meth:`from_reach`
         """
         first, second = links
         total, difference = first + second, first - second

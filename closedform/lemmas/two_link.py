@@ -32,15 +32,29 @@ def two_link_arm(
 ) -> Lemma:
     """A planar arm with a cranked fore-arm, by the triangle of its elbow.
 
-    ``lengths`` are the upper arm l, and of the fore-arm the length a along it and its offset b;
-    ``unknowns`` are the absolute angles of both, ``target`` is (r, h):
-
         l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
 
     The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
-    turn together where r = h = 0, and one of them is free where a link has no length; the ``free``
-    joints get the status for it.  ``scale`` is that of what the target may be missed by, if it is
-    not the length of the arm.
+    turn together where r = h = 0, and one of them is free where a link has no length.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    lengths
+        the upper arm l, and of the fore-arm the length a along it and its offset b
+    target
+        r and h
+    unknowns
+        the absolute angles x and y of both
+    sigma
+        the sign of the elbow
+    scale
+        that of what the target may be missed by, by default the length of the arm
+    suffix
+        what the names end in
+    free
+        the joints that are free in a degenerate case
     """
     upper, along, across = lengths
     start = len(program.body)
@@ -71,20 +85,22 @@ def two_link_arm_beside(
 
     Taken from the target, the N of its triangle has lost all its digits where the arm is straight,
     and the elbow half of them.  An arm nearby gives N and M without a difference of nearly equal
-    lengths.  The first arguments are those of :func:`two_link_arm`, the keywords
+    lengths.
 
-    ``second``
-        the length of the fore-arm;
-    ``squares``
-        N and M, see :class:`~closedform.lemmas.triangle.Triangle`;
-    ``scale``
-        the scale of the distance of both ends, which decides how far the target may be missed;
-    ``sided``
+    Parameters
+    ----------
+    program, lengths, target, unknowns, sigma, suffix, free
+        as of :func:`two_link_arm`
+    second
+        the length of the fore-arm
+    squares
+        N and M, see :class:`~closedform.lemmas.triangle.Triangle`
+    scale
+        the scale of the distance of both ends, which decides how far the target may be missed
+    sided
         whether the elbow is kept from being quite straight, so that its side can be read from the
-        answer;
-    ``free``
-        the joints that are free in a degenerate case;
-    ``rest``
+        answer
+    rest
         the direction of the upper arm where the end is on the shoulder.  The end has seen some
         roundings, so a multiple of the usual tolerance counts as there.
     """

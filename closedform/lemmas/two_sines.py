@@ -37,16 +37,28 @@ def two_sines(
 ) -> Lemma:
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
 
-    ``unknowns`` are x and y, ``vectors`` are u and v.
-
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
     error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
     digits, and one is taken that leaves u no more than its length.  Where they are parallel a
     combination of the sines is free; the convention is that both are equally large, which exists
     whenever any answer does.  The directions of u and v are known to a few units in the last
     place, so that a multiple of the usual tolerance counts as parallel.  Cosines are kept from
-    zero, so that their sign can be read from the answer.  ``scale`` is the natural scale of p,
-    which decides how far the equation may be missed.
+    zero, so that their sign can be read from the answer.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    unknowns
+        x and y
+    vectors
+        u and v
+    p
+        the right side
+    scale
+        the natural scale of p, which decides how far the equation may be missed
+    free
+        the joints that are free where u and v are parallel
     """
     (x, y), (u, v) = unknowns, vectors
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])

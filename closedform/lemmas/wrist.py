@@ -48,6 +48,23 @@ def tilt(
     This is ``a sin x + b cos x = c`` for a wrist whose first and last axis can be aligned.  Near
     alignment the difference between c and its largest value is small, and v1 and v2 determine it
     more accurately.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint or the auxiliary angle that is solved for
+    k
+        the coefficient
+    v
+        the column of the rotation
+    choice
+        the names of the two solutions
+    sense
+        -1 if the axes are opposite where they are aligned
+    name
+        the name of the sign and what other names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)

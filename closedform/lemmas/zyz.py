@@ -72,11 +72,25 @@ def zyz_angles(
 ) -> Zyz:
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
 
-    ``angles`` are first, middle and last.  The second solution is the first with a half turn of
-    both outer angles.  Where ``sin(middle) =
-    0`` only ``first + last`` (or ``first - last``) is determined; the convention is ``first = 0``,
-    and ``free`` says which joint that is, if not the first angle itself.  ``scale`` counts the
-    roundings that R has seen.
+    The second solution is the first with a half turn of both outer angles.  Where ``sin(middle) =
+    0`` only ``first + last`` (or ``first - last``) is determined; the convention is ``first = 0``.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    R
+        the rotation
+    angles
+        first, middle and last
+    sigma
+        the sign of sin(middle)
+    free
+        which joint is free where it vanishes, by default the first angle
+    scale
+        the number of roundings that R has seen
+    suffix
+        what the names end in
     """
     h = program.let(f"h{suffix}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
     aligned = program.vanishes(

@@ -196,11 +196,12 @@ def _lower(
         results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
 
     finish = partial(_finished, function, [p.name for p in parameters], graph, ranges)
-    whole = finish(results, names)
+    whole = finish(results=results, names=names)
     images, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
     flat = iter(images)
     plain = [replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in results]
-    return whole, finish([*plain, Result("rare", (), "bool", (rare,))], kept)
+    plain.append(Result("rare", (), "bool", (rare,)))
+    return whole, finish(results=plain, names=kept)
 
 
 def _finished(
@@ -208,6 +209,7 @@ def _finished(
     parameters: Sequence[str],
     graph: Graph,
     ranges: Ranges,
+    *,
     results: Sequence[Result],
     names: Mapping[int, str],
 ) -> Lowered:

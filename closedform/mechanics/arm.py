@@ -32,6 +32,8 @@ from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geometric
 from closedform.model.derivation import Derivation
 
+POSE = "Pose of the tool in the base frame."
+
 
 @dataclass(frozen=True)
 class Serial:
@@ -174,7 +176,7 @@ class Serial:
             equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
         d.explain({f"A_{i}": "motion from link to link" for i in range(1, len(self.moves) + 1)})
-        _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose, equation="T")
+        _export(d, ("pose", POSE), q, {"T": pose}, equation="T")
         drawn = serial_skeleton(d, self.groups, q, self.lead, self.last)
         skeleton(d, **drawn, hand_at=self.position)
         geometric = linkwise.geometric_jacobian(d.program(), links, q)
@@ -222,7 +224,7 @@ class Serial:
             ("its own frame", "jacobian_body", body, "J_b"),
         ):
             summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
-            _export(d, name, summary, q, "J", found, equation=equation)
+            _export(d, (name, summary), q, {"J": found}, equation=equation)
         return self.pose if task is None else task.values
 
     def _export_pose_task(
@@ -231,14 +233,13 @@ class Serial:
         q = self.joints
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
-        _export(d, "fk", "Pose of the tool in the base frame.", q, "T", pose, equation="T")
+        _export(d, ("fk", POSE), q, {"T": pose}, equation="T")
+        summary = "Velocity of the tool over its angular velocity, in base axes, per joint rate."
         _export(
             d,
-            "jacobian",
-            "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
+            ("jacobian", summary),
             q,
-            "J",
-            geometric,
+            {"J": geometric},
             "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
             equation="J",
         )
@@ -281,7 +282,7 @@ class Serial:
         J = geometric.part(task.rows, range(len(q)))
         name = r"J_{\mathrm{task}}"
         summary = f"Derivative of ({shown}) by the joints."
-        _export(d, "jacobian", summary, q, "J", J, equation=name)
+        _export(d, ("jacobian", summary), q, {"J": J}, equation=name)
         det = factored_determinant(task.J)
         check = [
             (task.values.jacobian(q), task.J),
@@ -327,17 +328,16 @@ class Serial:
 
 def _export(
     d: Derivation,
-    name: str,
-    summary: str,
+    named: tuple[str, str],
     q: Sequence[sp.Symbol],
-    output: str,
-    value: Named,
+    result: Mapping[str, Named],
     *notes: str,
     equation: str,
 ) -> None:
+    """Export a function of the joints: its name with a summary, and its result."""
+    ((output, value),) = result.items()
     d.function(
-        name,
-        summary,
+        *named,
         {"q": q},
         {output: value.matrix},
         program=value.program,

@@ -43,6 +43,8 @@ def skeleton(
 
     Parameters
     ----------
+    d
+        the derivation
     points
         the three coordinates of each named point, in the names of the ``program`` if there is one
     links
@@ -55,10 +57,16 @@ def skeleton(
         points that are fixed to the base
     lengths
         the distance of two points: of a link where it is not plain, or of a slide
+    inputs
+        the joints that it is a function of, by default all that are driven
     pose
         the pose of the hand, an input before the joints, if no forward map gives it
+    program
+        the program that computes the points
     branches
         the assembly modes, if there are any
+    notes
+        sentences for its documentation
     at_posture
         for the proof, the points in angles of the mechanism instead of names of the program; a
         later mapping gives points in another way, for the distances between them

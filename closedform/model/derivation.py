@@ -186,10 +186,21 @@ class Derivation(Shown):
         source: str = "the paper's example",
         nonnegative: bool = True,
     ) -> sp.Symbol:
-        """Declare a parameter, which is ``nonnegative`` by default, as a length is.
+        """Declare a parameter.
 
         In the algebra a nonnegative parameter counts as positive: an identity that holds on the
         open set also holds on its closure.  The flags of the inverse handle a zero length.
+
+        Parameters
+        ----------
+        name
+            that of the symbol
+        value, source
+            an example, which is exact, and where it is from
+        unit, meaning
+            ``m``, ``rad``, ..., and what it is, in words
+        nonnegative
+            whether it is never negative, as a length
         """
         self._check_new(name)
         check_text(f"{self.name}: {name}", meaning, unit, source)
@@ -213,10 +224,20 @@ class Derivation(Shown):
     ) -> sp.Symbol:
         """Declare a joint variable.
 
-        ``coupling`` gives the joint as a function of earlier ones, as in
-        ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it.
-        ``limits`` are its least and its largest value, which the modules export as ``LIMITS``; the
-        inverse answers beyond them too.
+        Parameters
+        ----------
+        name, kind
+            that of the symbol, and whether it turns or slides
+        passive
+            whether the other joints move it
+        coupling
+            the joint as a function of earlier ones, as in
+            ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it
+        twin_of
+            a joint that this one stays close to, as in a twin arm
+        limits
+            its least and its largest value, which the modules export as ``LIMITS``; the inverse
+            answers beyond them too
         """
         self._check_new(name)
         if kind not in ("revolute", "prismatic"):
@@ -293,11 +314,26 @@ class Derivation(Shown):
         proves: str = "",
         uses: Sequence[Step] = (),
     ) -> Step:
-        """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
+        """Record a step.
 
-        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``proves``
-        says in sentences what these equalities mean.  ``rows`` is a table, see :class:`Step`.  The
-        text refers to the equations of the steps in ``uses``; these are what ``step`` returned.
+        Parameters
+        ----------
+        title, reason
+            a heading, and sentences of reasoning
+        shown
+            a LaTeX left-hand side for each derived expression
+        published
+            the numbers of the equations of the paper
+        equal
+            pairs that are proved to be equal; the build fails if the proof does
+        nonnegative
+            expressions of which the proof may assume that they are not negative
+        rows
+            a table, see :class:`Step`
+        proves
+            what the equalities mean, in sentences
+        uses
+            the steps, as ``step`` returned them, to whose equations the text refers
         """
         for value in (*shown.values(), *(e for pair in equal for e in pair)):
             self._reject_floats(value, f"{self.name}, step {title!r}")
@@ -337,9 +373,28 @@ class Derivation(Shown):
         equation: str = "",
         entries: Sequence[sp.Symbol] = (),
     ) -> Function:
-        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays.
+        """Export a function.
 
-        See :class:`Function` for ``equation`` and ``entries``, which are for readers.
+        Parameters
+        ----------
+        name, summary
+            its name, and the first sentence of its documentation
+        inputs, outputs
+            named scalars, vectors, matrices or arrays
+        program
+            the statements before the outputs
+        branches
+            the signs of the branches, and their names
+        result
+            the name of the tuple with a status that it returns
+        source
+            where the paper has it
+        notes
+            further sentences of the documentation
+        boolean
+            whether the output is true or false
+        equation, entries
+            for readers, see :class:`Function`
         """
         self._check_function(name, [*inputs, *outputs], result)
         check_text(f"{self.name}.{name}", summary, source)
@@ -379,10 +434,21 @@ class Derivation(Shown):
         paraphrase: bool = False,
         fixed: str = "",
     ) -> None:
-        """Transcribe a statement of the paper, as printed; see :class:`Claim`.
+        """Transcribe a statement of the paper, as printed.
 
-        Without a ``check``, the formulas are equations that hold for all values of their symbols.
-        ``means`` extends the notation for this claim.
+        Parameters
+        ----------
+        label
+            the number of the equation, or the place
+        printed
+            the text
+        check
+            how it is judged; without one, the formulas are equations that hold for all values of
+            their symbols
+        notation, means
+            what the symbols mean, by default as in the whole paper, and more of it for this claim
+        where, phrases, opposites, corrected, readings, erratum, paraphrase, fixed
+            as the fields of :class:`Claim`
         """
         self.claims.append(
             Claim(
@@ -411,7 +477,15 @@ class Derivation(Shown):
         use: str,
         numbers: Mapping[str, tuple[Any, int]] | None = None,
     ) -> None:
-        """Describe an error of the paper (:class:`Erratum`); claims that show it name its key."""
+        """Describe an error of the paper; claims that show it name its key.
+
+        Parameters
+        ----------
+        key
+            what claims call it
+        title, gravity, why, use, numbers
+            the fields of :class:`Erratum`
+        """
         if key in [e.key for e in self.errata]:
             raise ValueError(f"{self.name}: the erratum {key} is described twice")
         self.errata.append(Erratum(key, title, gravity, why, use, numbers or {}))

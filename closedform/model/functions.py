@@ -440,6 +440,23 @@ class Program:
         *,
         squares: bool = False,
     ) -> sp.Symbol:
+        """A flag that a nonnegative value counts as zero.
+
+        Parameters
+        ----------
+        name
+            that of the flag
+        value
+            what is compared with zero
+        scale
+            the natural scale of its rounding
+        meaning
+            what is the case then, in words
+        free
+            the joints that are free then
+        squares
+            whether value and scale are squares
+        """
         symbol = self._symbol(name)
         exact = sp.sympify(scale, strict=True)
         self.body.append(Vanishes(symbol, value, exact, meaning, tuple(free), squares))
@@ -455,6 +472,19 @@ class Program:
         name: str = "",
         scale_name: str = "",
     ) -> None:
+        """Report SINGULAR where rounded joints do not determine the posture.
+
+        Parameters
+        ----------
+        value, scale
+            the forward map amplifies rounding errors by up to ``scale / value``
+        meaning
+            what is the case where the value vanishes, in words
+        squares
+            whether value and scale are squares of such quantities
+        name, scale_name
+            how the article prints them, in LaTeX
+        """
         exact = sp.sympify(scale, strict=True)
         self.body.append(Determined(value, exact, meaning, squares, name, scale_name))
 

@@ -348,8 +348,21 @@ def print_robot(
 ) -> Printed:
     """Prove one robot, unless its stored proof is still valid, and print its files.
 
-    After ``timeout`` seconds of computing its inverse is given up; then it has as many seconds
-    without one.
+    Parameters
+    ----------
+    source
+        the script
+    backends
+        the names of what is printed
+    store
+        where proofs are kept
+    report
+        is told the robot and what is being done
+    fresh
+        whether it is proved in any case
+    timeout
+        after so many seconds of computing, its inverse is given up; then it has as many seconds
+        without one; 0 is no limit
     """
     from closedform.scaffold.limit import LimitError, bounded
 
@@ -361,7 +374,14 @@ def print_robot(
 
     def attempt(reason: str = "") -> Printed:
         def work(report: Callable[[str], None]) -> Printed:
-            return _printed(source, backends, store, fresh, lambda _, what: report(what), reason)
+            return _printed(
+                source,
+                backends,
+                store=store,
+                fresh=fresh,
+                report=lambda _, what: report(what),
+                given_up=reason,
+            )
 
         return bounded(timeout, work, say)
 
@@ -379,6 +399,7 @@ def print_robot(
 def _printed(
     source: Source,
     backends: Sequence[str],
+    *,
     store: Store,
     fresh: bool,
     report: Report,
@@ -424,10 +445,26 @@ def run(
     timeout: float = 0,
     report: Report = lambda _name, _what: None,
 ) -> Result:
-    """Print the chosen robots, and the files that all of ``together`` share.
+    """Print the chosen robots, and the files that all robots share.
 
-    ``together`` is by default the chosen robots.  With a ``timeout`` in seconds the robots are
-    printed one after another.
+    Parameters
+    ----------
+    chosen
+        the scripts to print
+    backends
+        the names of what is printed
+    together
+        the scripts that share files, by default the chosen ones
+    store
+        where proofs are kept, by default the usual place
+    fresh
+        whether robots are proved whose stored proof is valid
+    jobs
+        how many robots are printed at a time
+    timeout
+        that of :func:`print_robot`; with one, robots are printed one after another
+    report
+        is told the robot and what is being done
     """
     from closedform.emit.pages import shared_files
 

@@ -124,7 +124,23 @@ class Diagram:
         self, at: ArrayLike, start: ArrayLike, axis: ArrayLike, turn: float, text: str = "", *,
         radius: float = 0.1, shade: str = ANGLE, reference: float = 0.16,
     ) -> None:  # fmt: skip
-        """An angle: the arc from a direction by a turn about an axis, and where it starts."""
+        """An angle: the arc from a direction by a turn about an axis, and where it starts.
+
+        Parameters
+        ----------
+        at
+            its centre
+        start, axis, turn
+            the direction where it starts, and the turn about the axis in rad
+        text
+            its name
+        radius
+            that of the arc, as a share of the drawing
+        shade
+            its colour
+        reference
+            the length of the line in the direction where it starts, as a share of the drawing
+        """
         foot, way, n = (self._three(v) for v in (at, start, axis))
         way = way - n * (way @ n)
         way = way / np.linalg.norm(way)

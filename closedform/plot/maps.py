@@ -73,7 +73,7 @@ def workspace(
         as in :func:`closedform.plot.mechanism`
     """
     r = Robot.of(robot, params)
-    grid = _task_plane(r, plane, at, resolution, limits, unit)
+    grid = _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
     ax = new_axes(False) if ax is None else ax
@@ -200,6 +200,8 @@ def field(
 
     Parameters
     ----------
+    robot
+        a generated module with an inverse
     function
         ``manipulability`` (the root of det J J^T), ``condition`` (the inverse condition number of
         J, 1 where it is best), the name of an exported function of the joints, or a function of
@@ -213,7 +215,7 @@ def field(
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution, limits, unit)
+    grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
@@ -244,11 +246,15 @@ def singularities(
     """Draw where each factor of the singular set vanishes, over the task or over two joints.
 
     Over the task, these are the curves inside the workspace where a factor of some branch changes
-    its sign, and the border, with the factors that vanish there.  The parameters are those of
-    :func:`field`.
+    its sign, and the border, with the factors that vanish there.
+
+    Parameters
+    ----------
+    robot, plane, at, params, limits, unit, resolution, ax
+        as in :func:`field`
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution, limits, unit)
+    grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     ax = new_axes(False) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:
@@ -298,15 +304,16 @@ class _Grid:
 def _plane(
     r: Robot,
     plane: Sequence[str] | None,
+    *,
     at: ArrayLike | None,
     resolution: int,
     limits: Limits | None,
-    unit: str = "",
+    unit: str,
 ) -> _Grid:
     """A plane of the task, or of two joints where both names are joints."""
     names = list(r.module.JOINTS)
     if plane is None or not all(p in names for p in plane):
-        return _task_plane(r, plane, at, resolution, limits, unit)
+        return _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     base = r.posture() if at is None else np.asarray(at, dtype=float)
     places = [names.index(p) for p in plane]
     ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
@@ -319,10 +326,11 @@ def _plane(
 def _task_plane(
     r: Robot,
     plane: Sequence[str] | None,
+    *,
     at: ArrayLike | None,
     resolution: int,
     limits: Limits | None,
-    unit: str = "",
+    unit: str,
 ) -> _Grid:
     r.require("ik")
     posture = r.posture()

@@ -91,7 +91,7 @@ def mechanism(
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
     if labels:
-        _name(diagram, r, joints, points, mode, along)
+        _name(diagram, r, joints, points, mode=mode, along=along)
         shown.append(_base_frame(diagram, r, points))
     diagram.clean(shown)
     _settle(ax)
@@ -289,7 +289,27 @@ def draw(
     faint: Collection[str] = (),
     about: str = "",
 ) -> None:
-    """The links, the joints and the hand of one posture."""
+    """The links, the joints and the hand of one posture.
+
+    Parameters
+    ----------
+    diagram
+        what it is drawn on
+    r
+        the mechanism
+    points
+        those of its skeleton
+    shade
+        the colour
+    along
+        the place and the direction of the axis of each joint that turns
+    label
+        what the legend calls it
+    width
+        that of the links, in points
+    faint, about
+        as in :func:`mechanism`
+    """
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
     named: dict[str, Any] = {"label": label} if label else {}
@@ -356,6 +376,7 @@ def _name(
     r: Robot,
     q: Array,
     points: Array,
+    *,
     mode: int,
     along: Mapping[str, tuple[Array, Array]],
 ) -> None:

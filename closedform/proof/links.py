@@ -69,9 +69,22 @@ def prove_sound(
 ) -> list[Expr]:
     """Prove that answers satisfy equations in every branch and case.
 
-    Returns the assumptions of the generic case.  ``given`` writes what the equations contain in
-    free symbols.  ``fault`` is the message of an error, with braces where the branch or the case
-    goes; ``names`` are those of the equations.
+    Returns the assumptions of the generic case.
+
+    Parameters
+    ----------
+    answers
+        the values of the unknowns in each branch
+    equations
+        what they must satisfy
+    cases
+        the degenerate ones
+    given
+        what the equations contain, in free symbols
+    fault
+        the message of an error, with braces where the branch or the case goes
+    names
+        those of the equations
     """
     found: list[Expr] = []
     for case in (None, *cases):

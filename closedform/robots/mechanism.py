@@ -51,7 +51,13 @@ class Zero(NamedTuple):
 
 
 class Mechanism:
-    """What a robot computes: the functions of a module, for its own base, tool and joint zero."""
+    """What a robot computes: the functions of a module, for its own base, tool and joint zero.
+
+    Parameters
+    ----------
+    module, parameters, base, tool, signs, offsets, coupling
+        as of :class:`~closedform.robots.robot.Robot`
+    """
 
     def __init__(
         self,

@@ -116,10 +116,23 @@ def new(
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"``, ``"urdf"`` or
-    ``"mjcf"`` (of which the ``choice`` takes a chain) or ``"loop"`` (bodies and joints).
     Raises ``ValueError`` if the name or the table cannot be used; it says where and how to correct
     it.
+
+    Parameters
+    ----------
+    name
+        that of the derivation
+    kind
+        ``"dh"``, ``"screws"``, ``"urdf"``, ``"mjcf"`` or ``"loop"`` (bodies and joints)
+    path
+        the file with the table
+    modified
+        whether Denavit-Hartenberg rows are in Craig's convention
+    choice
+        the chain to take of a URDF or MJCF file
+    search
+        how to search for an inverse
     """
     search = search or Search()
     search.progress("reading the table")

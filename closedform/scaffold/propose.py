@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -49,13 +50,13 @@ def propose(
         )
     for degree in (2, 4):
         left = {t.name for t in tried if t.error.degree == degree}
-        for name, maker, structure in _candidates(arm, given):
+        for name, maker, write in _candidates(arm, given):
             if name in never or (degree > 2 and name not in left):
                 continue
             progress(f"trying {name}")
             maker.degree = degree
             try:
-                found = structure()
+                found = write()
             except NoChainError as error:
                 tried = [*(t for t in tried if t.name != name), Tried(name, error)]
                 continue
@@ -80,53 +81,73 @@ def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:
     return error.after(tried)
 
 
-def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[[], str]]]:
-    """The chains to try, the cheapest first: a name, a maker, and what writes the lines."""
-    n = len(arm.joints)
-    known = KnownMaker(arm)
+class _Candidate(NamedTuple):
+    """A chain to try: ``write`` lets the maker write its lines, and says what was recognised."""
+
+    name: str
+    maker: Maker
+    write: Callable[[], str]
+
+
+def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
+    """The chains to try, the cheapest first."""
+    n, task = len(arm.joints), arm.coordinates()
     slides = any(row.slides for group in arm.groups for row in group.rows)
     if n != 7 or slides:
-        yield "a known structure", known, known.whole
+        known = KnownMaker(arm)
+        yield _Candidate("a known structure", known, known.whole)
     if slides and n > 6:
         return
     whole = singles(arm)
-    task = arm.coordinates()
-    if n == 7 and given == ARM_ANGLE:
-        angled = ArmAngleMaker(arm)
-        yield "the arm angle", angled, partial(angled.solved_by_arm_angle, whole)
-    elif n == 7:
-        for single in (whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)):
-            if given in ("", single.joint.name):
-                yield from _six(arm, whole, f", with {single.joint} given", single)
+    if n == 7:
+        yield from _seven(arm, whole, given)
     elif n == 6:
-        yield from _six(arm, whole, "", None)
-    elif task is not None and task.names == ("x", "y", "z"):
-        maker = SubproblemMaker(arm)
-        yield (
-            "three joints for a point",
-            maker,
-            partial(maker.solved_point, _met(whole, ((0, 2), (1, 2)))),
-        )
-    elif task is not None and task.names == ("x", "y", "z", "yaw"):
-        maker = SubproblemMaker(arm)
-        met = _met(whole, ((0, 2), (1, 2)))
-        yield "three joints and a level tool", maker, partial(maker.solved_level, met)
-    elif task is None:
-        for wrist in (w for w in (3, 2, 1) if 0 <= n - w <= 3):
-            maker = SubproblemMaker(arm)
-            yield f"the last {wrist} of {n} joints", maker, partial(_fewer, maker, whole, wrist)
-        for wrist in (w for w in (3, 2) if 0 <= n - w <= 3):
-            maker = SubproblemMaker(arm)
-            seen = f"the first {wrist} of {n} joints"
-            yield seen, maker, partial(_fewer, maker, whole.reversed(), wrist)
-        if n == 5 and not slides:
-            maker = SubproblemMaker(arm)
-            met = _met(whole, ((3, 2),))
-            yield "three parallel joints", maker, partial(maker.solved_in_plane, met)
+        yield from _six(arm, _Left(whole))
+    elif task is not None:
+        yield from _with_coordinates(arm, whole, task.names)
+    else:
+        yield from _fewer_than_six(arm, whole)
     if slides and task is None:
         for seen, view in (("", whole), (", from the tool", whole.reversed())):
-            apart = DecoupledMaker(arm)
-            yield f"slides apart from turns{seen}", apart, partial(apart.decoupled, view)
+            decoupled = DecoupledMaker(arm)
+            write = partial(decoupled.decoupled, view)
+            yield _Candidate(f"slides apart from turns{seen}", decoupled, write)
+
+
+def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:
+    """An arm of seven joints, with the arm angle or one of them given."""
+    if given == ARM_ANGLE:
+        maker = ArmAngleMaker(arm)
+        yield _Candidate("the arm angle", maker, partial(maker.solved_by_arm_angle, whole))
+        return
+    for single in (whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)):
+        if given in ("", single.joint.name):
+            yield from _six(arm, _Left(whole, single))
+
+
+def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> Iterator[_Candidate]:
+    """Three joints for a point, and another one for its yaw."""
+    maker = SubproblemMaker(arm)
+    met = _met(whole, ((0, 2), (1, 2)))
+    if names == ("x", "y", "z"):
+        yield _Candidate("three joints for a point", maker, partial(maker.solved_point, met))
+    elif names == ("x", "y", "z", "yaw"):
+        write = partial(maker.solved_level, met)
+        yield _Candidate("three joints and a level tool", maker, write)
+
+
+def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
+    """Up to three joints before or after others whose axes meet."""
+    n = len(arm.joints)
+    for which, view, counts in (("last", whole, (3, 2, 1)), ("first", whole.reversed(), (3, 2))):
+        for wrist in (w for w in counts if 0 <= n - w <= 3):
+            maker = SubproblemMaker(arm)
+            name = f"the {which} {wrist} of {n} joints"
+            yield _Candidate(name, maker, partial(_fewer, maker, view, wrist))
+    if n == 5 and not any(joint.slides for joint in whole.joints):
+        maker = SubproblemMaker(arm)
+        write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
+        yield _Candidate("three parallel joints", maker, write)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
@@ -150,56 +171,52 @@ def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
     return f"{structure}, and {joints} the tool"
 
 
-def _six(
-    arm: Serial, whole: Singles, more: str, given: Single | None
-) -> Iterator[tuple[str, Maker, Callable[[], str]]]:
+class _Left(NamedTuple):
+    """The six joints of an arm that are not ``given``, seen from the base or from the tool."""
+
+    whole: Singles
+    given: Single | None = None
+    inverted: bool = False
+
+    @property
+    def more(self) -> str:
+        """What the names of structures add."""
+        return f", with {self.given.joint} given" if self.given else ""
+
+    def joints(self, maker: SubproblemMaker) -> Singles:
+        whole, given = self.whole, self.given
+        if given is not None:
+            maker.give(given)
+            turned = rotation("z", given.turn.xreplace({given.joint: GIVEN}))
+            whole = whole.with_given(given.number, turned.applyfunc(sp.expand_trig))
+        return whole.reversed() if self.inverted else whole
+
+
+def _six(arm: Serial, left: _Left) -> Iterator[_Candidate]:
     """An arm of six joints that are not given, from its base and from its tool."""
-    for inverted, wrist in ((False, "spherical wrist"), (True, "spherical shoulder")):
+    views = [left, left._replace(inverted=True)]
+    for view, wrist in zip(views, ("spherical wrist", "spherical shoulder"), strict=True):
         maker = SubproblemMaker(arm)
-        yield f"{wrist}{more}", maker, partial(_with_wrist, maker, whole, given, inverted, more)
-    if any(joint.slides for joint in whole.joints):
+        yield _Candidate(f"{wrist}{left.more}", maker, partial(_with_wrist, maker, view))
+    if any(joint.slides for joint in left.whole.joints):
         return
     for name, solve in (
         ("three parallel axes in the middle", SixMaker.parallel_middle),
         ("three parallel axes at the end", SixMaker.parallel_first),
         ("three axes in the middle that meet", SixMaker.meeting_middle),
     ):
-        for inverted in (False, True):
+        for view in views:
             six = SixMaker(arm)
-            seen = ", from the tool" if inverted else ""
-            yield (
-                f"{name}{seen}{more}",
-                six,
-                partial(_in_six, six, solve, whole, given, inverted, more),
-            )
+            seen = ", from the tool" if view.inverted else ""
+            yield _Candidate(f"{name}{seen}{left.more}", six, partial(_in_six, six, solve, view))
 
 
-def _in_six(
-    maker: SixMaker,
-    solve: Callable[[SixMaker, Singles], str],
-    whole: Singles,
-    given: Single | None,
-    inverted: bool,
-    more: str,
-) -> str:
-    return solve(maker, _left_of(maker, whole, given, inverted)) + more
+def _in_six(maker: SixMaker, solve: Callable[[SixMaker, Singles], str], left: _Left) -> str:
+    return solve(maker, left.joints(maker)) + left.more
 
 
-def _left_of(
-    maker: SubproblemMaker, whole: Singles, given: Single | None, inverted: bool
-) -> Singles:
-    """The six joints that are not given, from the base or from the tool."""
-    if given is not None:
-        maker.give(given)
-        turned = rotation("z", given.turn.xreplace({given.joint: GIVEN})).applyfunc(sp.expand_trig)
-        whole = whole.with_given(given.number, turned)
-    return whole.reversed() if inverted else whole
-
-
-def _with_wrist(
-    maker: SubproblemMaker, whole: Singles, given: Single | None, inverted: bool, more: str
-) -> str:
-    whole = _left_of(maker, whole, given, inverted)
+def _with_wrist(maker: SubproblemMaker, left: _Left) -> str:
+    whole = left.joints(maker)
     ends = [s.number for s in whole.joints[3:]]
     found = whole.met(3, 3)
     if found is None:
@@ -208,8 +225,8 @@ def _with_wrist(
             "A spherical wrist or shoulder needs three axes that meet.",
         )
     structure = maker.solved(_met(found, ((0, 2), (1, 2))), 3)
-    name = "shoulder" if inverted else "wrist"
-    return f"spherical {name}, {structure}{more}"
+    name = "shoulder" if left.inverted else "wrist"
+    return f"spherical {name}, {structure}{left.more}"
 
 
 __all__ = ["NoChainError", "Proposal", "propose"]

@@ -183,10 +183,9 @@ def _nothing(self: HTML5Translator, node: nodes.Node) -> None:
     pass
 
 
-def _bars(
-    _app: Sphinx, _what: str, _name: str, _value: Any, _options: Any, lines: list[str]
-) -> None:
-    """Absolute values in docstrings, which are not references."""
+def _bars(_app: Sphinx, *documented: Any) -> None:
+    """Absolute values in docstrings, the last argument, which are not references."""
+    lines = documented[-1]
     lines[:] = [BAR.sub(r"\|", line) for line in lines]
 
 

@@ -303,4 +303,4 @@ def inverse_orientation(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "about its axis by a wrong angle unless the rotation is the identity.",
     )
     outer = EULER[0], EULER[2]
-    inverse_claim(claim, wrist, wrist.R, "eq. (13)", outer, EULER[1], "φ")
+    inverse_claim(claim, wrist, wrist.R, "eq. (13)", outer=outer, middle=EULER[1], free="φ")

@@ -126,7 +126,7 @@ def convention(d: Derivation, wrist: Wrist, known: Notation) -> None:
         partial(middle_angle, wrist),
     )
     outer = JOINTS[0], JOINTS[2]
-    inverse_claim(claim, wrist, pose[:3, :3], "eq. (16)", outer, JOINTS[1], "θ_4")
+    inverse_claim(claim, wrist, pose[:3, :3], "eq. (16)", outer=outer, middle=JOINTS[1], free="θ_4")
 
 
 def as_derived(derived: sp.Matrix, printed: sp.Matrix, relation: Relation) -> Check:

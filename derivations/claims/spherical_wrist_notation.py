@@ -135,13 +135,29 @@ def inverse_claim(
     wrist: Wrist,
     forward: sp.Matrix,
     label: str,
+    *,
     outer: tuple[str, str],
     middle: str,
     free: str,
 ) -> None:
-    """The outer angles, which the paper prints twice, under a condition on the ``middle`` one.
+    """The outer angles, which the paper prints twice, under a condition on the middle one.
 
     It writes theta in the condition both times.
+
+    Parameters
+    ----------
+    claim
+        records a claim of the paper
+    wrist
+        the symbols of the wrist
+    forward
+        its rotation
+    label
+        the number of the equation
+    outer, middle
+        the angles as the paper writes them
+    free
+        the angle that is free where the middle one has no sine
     """
     first, last = outer
     formulas = rf"we have ${FIRST % first}$ [...] ${LAST % last}$"

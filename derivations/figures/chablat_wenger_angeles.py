@@ -69,7 +69,25 @@ def linkage(
     robot: ModuleType, ax: Any, P: Any, branch: str, *, params: Any = None, names: bool = True,
     shade: str = colour(0),
 ) -> tuple[Diagram, np.ndarray]:  # fmt: skip
-    """The linkage with its hand at a point of the plane."""
+    """The linkage with its hand at a point of the plane.
+
+    Parameters
+    ----------
+    robot
+        the generated module
+    ax
+        the axes to draw on
+    P
+        the point
+    branch
+        the name of the working mode
+    params
+        the dimensions; by default those of the example
+    names
+        whether the points are named
+    shade
+        the colour
+    """
     params = robot.Parameters() if params is None else params
     q, mode = in_mode(robot, section(*P), branch, params)
     at = plane(robot.skeleton(q, params)[mode])
@@ -238,7 +256,22 @@ def outstretched(robot: ModuleType) -> Any:
 def cartesian(
     robot: ModuleType, params: Any, branches: Any, span: Any, *, ax: Any, regular: Any = None,
 ) -> list[Any]:  # fmt: skip
-    """A section of the workspace: what is reached, its border, and where det A vanishes."""
+    """A section of the workspace: what is reached, its border, and where det A vanishes.
+
+    Parameters
+    ----------
+    robot, params
+        the generated module and the dimensions
+    branches
+        the working modes whose parallel singularities are drawn
+    span
+        the lowest and the highest value of each coordinate
+    ax
+        the axes to draw on
+    regular
+        the working mode of which the part with a positive determinant is shaded; by default, all
+        that is reached is
+    """
     (y0, y1), (a0, a1) = span
     y, away = np.linspace(y0, y1, GRID), np.linspace(a0, a1, GRID)
     x = section(y, away[:, None])

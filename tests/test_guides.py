@@ -35,42 +35,57 @@ def run(*command: str, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+class Snippets:
+    """The snippets of a guide, run one after another; a method for each kind."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.counts: dict[str, int] = {}
+        self.failed = ""
+        self.said: list[str] = []
+
+    def file(self, name: str, text: str) -> None:
+        (self.folder / name).write_text(text, "utf-8")
+
+    csv = toml = file
+
+    def sh(self, _: str, text: str) -> None:
+        self.said = []
+        for line in text.splitlines():
+            done = run("sh", "-c", f"{sys.executable} -m {line}", folder=self.folder)
+            assert done.returncode == 0, f"{line}\n{done.stderr}"
+            self.said.append(done.stdout.splitlines()[-1])
+
+    def console(self, _: str, text: str) -> None:
+        assert text.splitlines() == self.said
+
+    def text(self, _: str, text: str) -> None:
+        assert text.strip() in self.failed
+
+    def python(self, name: str, text: str) -> None:
+        """Plain Python adds to a script; ``run`` and ``error`` are programs of their own."""
+        way = name if name in ("run", "error") else "python"
+        self.counts[way] = self.counts.get(way, 0) + 1
+        if way == "python":
+            with (self.folder / (name or "jib.py")).open("a", encoding="utf-8") as script:
+                script.write(text)
+            return
+        done = run(sys.executable, "-c", text, folder=self.folder)
+        assert (done.returncode == 0) == (way == "run"), f"{text}\n{done.stderr}"
+        if way == "error":
+            self.failed = done.stderr
+
+
 @pytest.mark.parametrize("guide", COUNTS)
 def test_every_snippet(tmp_path: Path, guide: str) -> None:
-    """Plain Python adds to a script; ``run`` and ``error`` are programs of their own."""
-    failed = ""
-    counts: dict[str, int] = {}
+    snippets = Snippets(tmp_path)
     for kind, name, text in BLOCK.findall((DOCS / f"{guide}.md").read_text("utf-8")):
-        if kind == "python":
-            way = name if name in ("run", "error") else kind
-            counts[way] = counts.get(way, 0) + 1
-        if kind in ("csv", "toml"):
-            (tmp_path / name).write_text(text, "utf-8")
-        elif kind == "sh":
-            said = []
-            for line in text.splitlines():
-                done = run("sh", "-c", f"{sys.executable} -m {line}", folder=tmp_path)
-                assert done.returncode == 0, f"{line}\n{done.stderr}"
-                said.append(done.stdout.splitlines()[-1])
-        elif kind == "console":
-            assert text.splitlines() == said
-        elif kind == "python" and name == "run":
-            done = run(sys.executable, "-c", text, folder=tmp_path)
-            assert done.returncode == 0, f"{text}\n{done.stderr}"
-        elif kind == "python" and name == "error":
-            done = run(sys.executable, "-c", text, folder=tmp_path)
-            assert done.returncode != 0, text
-            failed = done.stderr
-        elif kind == "python":
-            script = tmp_path / (name or "jib.py")
-            script.write_text(
-                (script.read_text("utf-8") if script.exists() else "") + text, "utf-8"
-            )
-        elif kind == "text":
-            assert text.strip() in failed
-        else:
+        try:
+            follow = getattr(snippets, kind)
+        except AttributeError:
             pytest.fail(f"a snippet of unknown kind: {kind} {name}")
-    assert counts == COUNTS[guide]
+        follow(name, text)
+    assert snippets.counts == COUNTS[guide]
     if guide == "adding-a-mechanism":
         report = (tmp_path / "printed" / "jib-crosscheck.md").read_text("utf-8")
         assert "Nothing exceeds its tolerance." in report

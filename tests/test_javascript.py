@@ -81,6 +81,15 @@ def postures(rng: np.random.Generator, n: int, rows: int = 400) -> np.ndarray:
     return np.concatenate([rng.uniform(-np.pi, np.pi, (rows, n)), near, mixed])
 
 
+def possible(robot: str, q: np.ndarray, factor: float, longest: float) -> np.ndarray:
+    """Postures of a robot from any numbers; those of slides are lengths."""
+    if robot == "rpr_planar":
+        return factor * (1 + np.abs(q))
+    if robot in ("orthoglide", "linear_delta"):
+        return factor * longest * (0.5 + np.tanh(q) / 4)
+    return q
+
+
 def planes(x: np.ndarray, size: int) -> np.ndarray:
     return np.ascontiguousarray(x.reshape(-1, size).T)
 
@@ -110,11 +119,7 @@ def test_statuses_are_those_of_numpy(robot: str) -> None:
         example = module.Parameters()
         for factor, lengths in product((1.0, 1e-170, 1e140), (example, [1.0] * len(example))):
             parameters = module.Parameters(*(factor * length for length in lengths))
-            q = postures(rng, len(module.JOINTS))
-            if robot == "rpr_planar":
-                q = factor * (1 + np.abs(q))
-            if robot in ("orthoglide", "linear_delta"):
-                q = factor * max(lengths) * (0.5 + np.tanh(q) / 4)
+            q = possible(robot, postures(rng, len(module.JOINTS)), factor, max(lengths))
             if "fk" in functions(module):
                 targets = compare("fk", q, parameters)
             else:  # its task has as many coordinates as there are joints
@@ -124,11 +129,7 @@ def test_statuses_are_those_of_numpy(robot: str) -> None:
                 continue
             (target,) = functions(module)["ik"].inputs
             if len(module.TASK) != target.size:  # a pose, whatever coordinates fk gives
-                targets = (
-                    module.fk(q, parameters)
-                    if robot == "spherical_wrist"
-                    else module.pose(q, parameters)
-                )
+                targets = (module.fk if robot == "spherical_wrist" else module.pose)(q, parameters)
             targets = targets.reshape(-1, *target.shape)
             targets = targets[np.isfinite(targets.reshape(len(targets), -1)).all(axis=1)]
             compare("ik", targets, parameters)

@@ -266,12 +266,8 @@ class Record:
             return self.node(QUOTIENTS[e.func](e.args[0]))
         if isinstance(e, sp.Abs):
             return self._entry("abs", self.node(e.args[0]))
-        if isinstance(e, sp.atan2 | sp.atan):
-            y, x = e.args if isinstance(e, sp.atan2) else (e.args[0], sp.S.One)
-            return self._entry("atan2", self.node(y), self.node(x))
-        if isinstance(e, sp.acos | sp.asin):
-            x, other = self.node(e.args[0]), self._power(1 - e.args[0] ** 2, sp.S.Half)
-            return self._entry("atan2", *((other, x) if isinstance(e, sp.acos) else (x, other)))
+        if isinstance(e, sp.atan2 | sp.atan | sp.acos | sp.asin):
+            return self._arc(e)
         if e == sp.pi:
             return self._entry("pi")
         if isinstance(e, sp.Symbol | AppliedUndef | sp.Derivative):
@@ -279,6 +275,16 @@ class Record:
             uses = self._names[str(e)]
             return self._entry("name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e))
         raise _Unwritable(f"expressions with {type(e).__name__}")
+
+    def _arc(self, e: Expr) -> int:
+        """An angle by its sine, cosine or tangent, as that of a vector."""
+        if isinstance(e, sp.atan2):
+            return self._entry("atan2", *map(self.node, e.args))
+        x = self.node(e.args[0])
+        if isinstance(e, sp.atan):
+            return self._entry("atan2", x, self.node(sp.S.One))
+        other = self._power(1 - e.args[0] ** 2, sp.S.Half)
+        return self._entry("atan2", *((other, x) if isinstance(e, sp.acos) else (x, other)))
 
     def _power(self, base: Expr, exponent: Expr) -> int:
         if exponent.is_Rational and exponent.q == 2:

@@ -59,15 +59,15 @@ class LegByLeg:
             )
         )
 
-    def rows(self, straight: Sequence[sp.Matrix], *, apart: bool) -> list[sp.Matrix]:
+    def rows(self, straight: Sequence[sp.Matrix], *, subtract: bool) -> list[sp.Matrix]:
         """Rows with the determinant of A: the ``straight`` ones and the rods of the solved legs.
 
-        A determinant does not change if a row is subtracted from the others.  This is done if they
-        may be taken ``apart`` and if the entries have no more values over all branches then: the
-        hand may cancel, but a difference has two signs.
+        A determinant does not change if a row is subtracted from the others.  With ``subtract``
+        this is done if the entries have no more values over all branches then: the hand may cancel,
+        but a difference has two signs.
         """
         rows = [*straight, *(s.rod for s in self.found)]
-        if not apart:
+        if not subtract:
             return rows
         first, *others = rows
         differences = [first, *(sp.expand(row - first) for row in others)]

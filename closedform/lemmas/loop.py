@@ -9,7 +9,7 @@ them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -17,7 +17,7 @@ import sympy as sp
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
 from closedform.lemmas.hand import Hand, in_space, square
-from closedform.lemmas.held import LEFT_OUT, bars_of, check_held, constraint, state_held
+from closedform.lemmas.held import LEFT_OUT, Bars, bars_of, check_held, constraint, state_held
 from closedform.lemmas.leg_by_leg import (
     SIGN,
     Choice,
@@ -235,11 +235,11 @@ def left_out(m: Hand) -> tuple[str, ...]:
 def _roles(m: Hand) -> tuple[tuple[str, Any], ...]:
     """What the letters of the lemma stand for that gives the hand."""
     (first, _), *others = m.in_lemma(m.numbered)
-    apart = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
+    between = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
     names = [r"d\,\mathbf n"] if len(others) == 1 else [r"\mathbf c_2", r"\mathbf c_3"]
     return (
         (r"\mathbf x", rf"\mathbf p - \mathbf b_{first}"),
-        *zip(names, apart, strict=True),
+        *zip(names, between, strict=True),
         *(
             (f"r_{k}", sp.sympify(leg.rod, strict=True))
             for k, leg in enumerate(m.in_lemma(m.legs), 1)
@@ -260,64 +260,94 @@ def _passive_angles(m: Hand, at: _Posture, passive: Sequence[sp.Symbol]) -> None
     )
 
 
-def _draw(m: Hand, at: _Posture) -> None:
-    links: dict[str, tuple[str, ...]] = {}
-    lengths: dict[tuple[str, str], sp.Expr] = {}
-    closing: dict[tuple[str, str], sp.Expr] = {}
-    joints: dict[sp.Symbol, tuple[str, ...]] = {}
-    for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
-        base, end, place = f"A{k}", f"B{k}", m.place(leg)
+@dataclass
+class _Drawing:
+    """What the skeleton of a hand on legs consists of; names of points end in those of legs."""
+
+    m: Hand
+    links: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    lengths: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
+    closing: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
+    joints: dict[sp.Symbol, tuple[str, ...]] = field(default_factory=dict)
+
+    def add(self, k: int, leg: Leg, equation: sp.Expr) -> None:
+        """A leg with its equation, and the link of the hand that it holds."""
+        place = self.m.place(leg)
         far = "P" if place.is_zero_matrix else f"C{k}"
-        near = base if isinstance(leg, Stretch | Strut) else end
         if far != "P":
-            links[f"hand{k}"] = ("P", far)
-            lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
+            self.links[f"hand{k}"] = ("P", far)
+            self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
         if isinstance(leg, Rail):
-            span = m.hand - m.centres[k - 1]
-            joints |= {leg.joint: (base, end), leg.slide: (end, far)}
-            lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
-            closing[end, far] = equation**2
-            continue
-        bars = bars_of(k, leg, far)
-        lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
+            self._add_rail(k, leg, far, equation)
+            return
+        self._add_rod(k, leg, far, equation)
+        self._add_driven(k, leg)
+        for pair in bars_of(k, leg, far):
+            self._add_bars(k, pair, equation if pair.far == far else None)
+
+    def _add_rail(self, k: int, leg: Rail, far: str, equation: sp.Expr) -> None:
+        base, end = f"A{k}", f"B{k}"
+        span = self.m.hand - self.m.centres[k - 1]
+        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
+        self.lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
+        self.closing[end, far] = equation**2
+
+    def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
+        """The rod; of a leg that stretches it is the driven joint."""
+        near = f"A{k}" if isinstance(leg, Stretch | Strut) else f"B{k}"
+        self.lengths[near, far] = sp.sympify(leg.rod, strict=True)
+        self.closing[near, far] = equation
         if isinstance(leg, Stretch):
-            joints[leg.joint] = (base, far)
+            self.joints[leg.joint] = (near, far)
         elif not isinstance(leg.rod, Parallelogram):
-            links[f"rod{k}"] = (near, far)
+            self.links[f"rod{k}"] = (near, far)
+
+    def _add_driven(self, k: int, leg: Leg) -> None:
+        """The crank or the slider."""
+        base, end = f"A{k}", f"B{k}"
         if isinstance(leg, Crank):
             if not isinstance(leg.length, Parallelogram):
-                links[f"crank{k}"] = (base, end)
-            lengths[base, end] = sp.sympify(leg.length, strict=True)
-            joints[leg.joint] = (base,)
+                self.links[f"crank{k}"] = (base, end)
+            self.lengths[base, end] = sp.sympify(leg.length, strict=True)
+            self.joints[leg.joint] = (base,)
         elif isinstance(leg, Slide):
-            lengths[base, end] = leg.joint
-            joints[leg.joint] = (base, end)
-        for pair in bars:
-            whole = "rod" if pair.far == far else "crank"
-            for ends in zip(pair.ends(pair.near), pair.ends(pair.far), strict=True):
-                links[f"{whole}{k}{ends[0][-1]}"] = ends
-                lengths[ends] = sp.sympify(pair.given, strict=True)
-                if whole == "rod":
-                    closing[ends] = equation
-            for middle in (pair.near, pair.far):
-                first, second = pair.ends(middle)
-                links[f"bar_{first}"] = (first, middle, second)
-                lengths |= {(first, middle): pair.given.half, (middle, second): pair.given.half}
+            self.lengths[base, end] = leg.joint
+            self.joints[leg.joint] = (base, end)
+
+    def _add_bars(self, k: int, pair: Bars, equation: sp.Expr | None) -> None:
+        """The bars of a parallelogram: a rod, which the equation closes, or a crank."""
+        whole = "crank" if equation is None else "rod"
+        for ends in zip(pair.ends(pair.near), pair.ends(pair.far), strict=True):
+            self.links[f"{whole}{k}{ends[0][-1]}"] = ends
+            self.lengths[ends] = sp.sympify(pair.given, strict=True)
+            if equation is not None:
+                self.closing[ends] = equation
+        for middle in (pair.near, pair.far):
+            first, second = pair.ends(middle)
+            half = pair.given.half
+            self.links[f"bar_{first}"] = (first, middle, second)
+            self.lengths |= {(first, middle): half, (middle, second): half}
+
+
+def _draw(m: Hand, at: _Posture) -> None:
+    drawn = _Drawing(m)
+    for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
+        drawn.add(k, leg, equation)
     ground = tuple(f"A{k}" for k, _ in m.numbered)
     skeleton(
         m.d,
         _points(m, at.hand),
-        links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **links},
-        joints=joints,
+        links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **drawn.links},
+        joints=drawn.joints,
         hand="P",
         hand_at=in_space(m.hand),
         ground=ground,
-        lengths=lengths,
+        lengths=drawn.lengths,
         program=at.program,
         branches=at.modes,
         notes=(NO_MODE, *["The width of a parallelogram matters here alone."] * bool(m.held)),
         at_posture=[_points(m, m.hand)],
-        closing=closing,
+        closing=drawn.closing,
     )
 
 
@@ -458,7 +488,7 @@ def _inverse(m: Hand, loop: Step) -> None:
             hand = straight[0] - m.place(leg) + leg.base
         else:
             solved.solve(k, leg, w)
-    rows = solved.rows(straight, apart=not m.rails)
+    rows = solved.rows(straight, subtract=not m.rails)
     along = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
         for (k, _), row in zip(m.numbered, rows, strict=True)

@@ -27,6 +27,8 @@ OF_ANGLES = frozenset({"sin", "cos", "principal", "wrap", "wrap_cut"})
 """Operators of an angle, whose degree is 0."""
 WITHOUT_DEGREE = OF_ANGLES | {"atan2", "tolerance", "sign", "status"}
 """Operators whose value has the degree 0."""
+LEAVES = frozenset({"const", "nan", "poison", "input"})
+"""Inputs and numbers; also NaN where a condition holds."""
 
 Degree: TypeAlias = "dict[str, Fraction]"
 """A sum of the unknown degrees of inputs; the name ``""`` stands for the number 1."""
@@ -158,6 +160,13 @@ def _combined(a: Degree, b: Degree, factor: int) -> Degree:
     return {name: f for name, f in total.items() if f}
 
 
+def _of_leaf(node: Node) -> Degree | None:
+    """The degree of an input or a number; that of zero and of NaN is not determined."""
+    if node.op == "input":
+        return {str(node.payload): ONE}
+    return {} if node.op == "const" and node.payload != 0 else None
+
+
 class _NodeDegrees:
     """The degree of every node so far; None for zero and NaN, which may have any degree."""
 
@@ -181,30 +190,27 @@ class _NodeDegrees:
                 self._equal(args)
             return None
         if op in WITHOUT_DEGREE:
-            if op == "atan2":
-                self._equal(args)
-            elif op in OF_ANGLES and (angle := self[args[0]]) is not None:
-                self.system.equate(angle, {})
+            self._require_numbers(op, args)
             return {}
-        match op:
-            case "const":
-                return None if node.payload == 0 else {}
-            case "nan" | "poison":
-                return None
-            case "input":
-                return {str(node.payload): ONE}
-            case "mul" | "div":
-                a, b = self[args[0]], self[args[1]]
-                if a is None or b is None:
-                    return None
-                return _combined(a, b, 1 if op == "mul" else -1)
-            case "sqrt":
-                square = self[args[0]]
-                return square and {name: f / 2 for name, f in square.items()}
-            case "select":
-                # A constant instead of a length selects a direction if every direction is valid.
-                return self._equal([n for n in args[1:] if constant_of(n) is None] or args[1:])
+        if op in LEAVES:
+            return _of_leaf(node)
+        if op in ("mul", "div"):
+            a, b = self[args[0]], self[args[1]]
+            return None if a is None or b is None else _combined(a, b, 1 if op == "mul" else -1)
+        if op == "sqrt":
+            square = self[args[0]]
+            return square and {name: f / 2 for name, f in square.items()}
+        if op == "select":
+            # A constant instead of a length selects a direction if every direction is valid.
+            return self._equal([n for n in args[1:] if constant_of(n) is None] or args[1:])
         raise TypeError(f"the degree of {op} is not known")
+
+    def _require_numbers(self, op: str, args: Sequence[Node]) -> None:
+        """What the operands of an operator need whose result has no degree."""
+        if op == "atan2":
+            self._equal(args)
+        elif op in OF_ANGLES and (angle := self[args[0]]) is not None:
+            self.system.equate(angle, {})
 
     def _equal(self, args: Iterable[Node]) -> Degree | None:
         """The degree that all of these have."""

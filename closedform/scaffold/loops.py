@@ -358,22 +358,32 @@ class Legs:
                 f"{joint.name} moves {body}, which must carry one rod, a body with a length, or "
                 f"one passive slide; it carries {len(rods)} rods"
             )
-        (near, rod) = rods[0]
+        if joint.kind == "prismatic":
+            return self.slider(joint, *rods[0])
+        if joint.kind == "revolute":
+            return self.crank(joint, *rods[0])
+        raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
+
+    def slider(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
+        """A driven slider with a rod, which is ``near`` where the slider carries it."""
+        if joint.axis is None:
+            raise self.loop.error(f"{joint.name} slides; say in which direction with axis")
+        place, length = self.place_on_hand(rod, near), self.loop.rods[rod]
+        end = self.point(joint.other(GROUND), near)
+        return LoopLeg(
+            joint,
+            f"Slide({joint.name}, {self.bar(rod, length)}, {self.at(end)}, "
+            f"{self.at(joint.axis)}{self.tail(place)})",
+            f"{joint.name} moves a slider, which a rod of length {length} joins to the hand",
+            place,
+        )
+
+    def crank(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
+        """A driven crank with a rod, which is ``near`` where the crank carries it."""
+        loop, name, body = self.loop, joint.name, joint.other(GROUND)
         place = self.place_on_hand(rod, near)
         end = self.point(body, near)
         length, tail = self.bar(rod, loop.rods[rod]), self.tail(place)
-        name = joint.name
-        if joint.kind == "prismatic":
-            if joint.axis is None:
-                raise loop.error(f"{name} slides; say in which direction with axis")
-            return LoopLeg(
-                joint,
-                f"Slide({name}, {length}, {self.at(end)}, {self.at(joint.axis)}{tail})",
-                f"{name} moves a slider, which a rod of length {loop.rods[rod]} joins to the hand",
-                place,
-            )
-        if joint.kind != "revolute":
-            raise loop.error(f"{name} is driven, so it must be revolute or prismatic")
         start = self.point(GROUND, joint)
         arm = end - start
         if loop.dimensions == 3:

@@ -72,31 +72,37 @@ def forms_of(
     forms = Forms()
     joints = {j.symbol for j in derivation.joints}
     targets = {s for f in derivation.functions for s in f.symbols} - joints
-
-    def add(symbol: sp.Symbol) -> None:
+    for short, _ in legend:
+        forms.add(canonical(short), "")
+    for step in derivation.steps:
+        for left, _ in step.shown:
+            for form in _forms_in(upright(left)):
+                forms.add(form, "")
+    for symbol in _symbols_in(derivation, local):
         form = canonical(math(symbol))
         # one coordinate may be part of the targets of two functions, under two names
         forms.add(form, f"a target {form}" if symbol in targets else symbol.name)
+    return forms
 
-    for short, _ in legend:
-        forms.add(canonical(short), "")
-    for declared in symbols_declared(derivation):
-        add(declared)
+
+def _forms_in(left: str) -> Iterator[str]:
+    """The names in the left side of an equation, and whole sides that are powers of a name."""
+    yield from names_in(left)
+    for part in map(canonical, left.split("=")):
+        if is_name(part) and without_power(part) != part and not part.endswith("T}"):
+            yield part
+
+
+def _symbols_in(derivation: Derivation, local: Container[sp.Symbol]) -> Iterator[sp.Symbol]:
+    """The symbols that are declared, those of the steps, and those that algorithms define."""
+    yield from symbols_declared(derivation)
     for step in derivation.steps:
-        for left in (upright(left) for left, _ in step.shown):
-            for name in names_in(left):
-                forms.add(name, "")
-            for part in map(canonical, left.split("=")):
-                if is_name(part) and without_power(part) != part and not part.endswith("T}"):
-                    forms.add(part, "")
-        for symbol in symbols_of(step):
-            add(symbol)
+        yield from symbols_of(step)
     for function in derivation.functions:
         if function.name != UNPRINTED:
             for statement in function.body:
                 if isinstance(statement, Let | Bound) and statement.symbol not in local:
-                    add(statement.symbol)
-    return forms
+                    yield statement.symbol
 
 
 def clashes(

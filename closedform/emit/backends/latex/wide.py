@@ -76,7 +76,10 @@ class Lines:
             return self._equation(left, value)
         if not isinstance(value, sp.Expr):
             return [(left, self.printer.math(value))]
-        value = self.tidy(value)
+        return self._expression(left, self.tidy(value))
+
+    def _expression(self, left: str, value: sp.Expr) -> list[Equation]:
+        """An expression on one line if it fits, or else with names for its parts, or broken."""
         if inner := self._unbreakable(value):
             return self._with_part(left, value, inner)
         text = self.printer.math(value)

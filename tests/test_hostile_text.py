@@ -37,7 +37,7 @@ pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 Strings = Callable[[str], str]
 PACKAGE = Path(__file__).parents[1] / "closedform"
-HEADER = PACKAGE / "runtime" / "c" / "closedform.h"
+HEADER = PACKAGE.parent / "generated" / "c" / "closedform.h"
 
 
 needs_node = pytest.mark.skipif(

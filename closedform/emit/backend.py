@@ -68,13 +68,19 @@ class Backend(ABC):
         return None
 
 
-def runtime(path: str, numbers: Sequence[str]) -> str:
+def runtime(path: str, numbers: Sequence[str], *, including: str = "") -> str:
     """A file of ``closedform/runtime``, which is printed as it is.
 
-    It repeats numbers that are kept elsewhere.  Each of the ``expected`` texts, a number with the
-    code around it, must occur in the file; otherwise it is refused.
+    A C header may be ``including`` another one, which is printed in its place, so that users have
+    one file.  It repeats numbers that stand elsewhere.  Each of the ``numbers``, with the code
+    around it, must occur in the file; otherwise it is refused.
     """
-    text = (files("closedform") / "runtime" / path).read_text("utf-8")
+    folder = files("closedform") / "runtime"
+    text = (folder / path).read_text("utf-8")
+    if including:
+        before, after = text.split(f'#include "{including}"\n')
+        beside = Path(path).with_name(including).as_posix()
+        text = before + (folder / beside).read_text("utf-8") + after
     for expected in numbers:
         if expected not in text:
             raise ValueError(

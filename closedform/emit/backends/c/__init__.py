@@ -41,7 +41,7 @@ class C(Backend):
         context = {"robots": shares, "version": __version__}
         printed = {Path("c", name): render(f"c/{name}.jinja", context) for name in SHARED}
         headers = {
-            HEADER: runtime("c/closedform.h", _numbers()),
+            HEADER: runtime("c/closedform.h", _numbers(), including="closedform_angles.h"),
             NEAREST: runtime("c/closedform_nearest.h", ()),
         }
         return {**headers, **printed}

@@ -103,8 +103,8 @@ def test_why_a_rotation_is_one_about_z_must_follow() -> None:
     """The last rotation of a wrist keeps z only if the earlier equations say so."""
     d, serial = arm(CHAINS["spherical wrist, axes 2 and 3 parallel"][0])
     lines = propose(serial).source
-    assert "-over[0, k]" in lines
-    solved(d, serial, lines.replace("-over[0, k]", "over[0, k]"))
+    assert "-R_last[0, k]" in lines
+    solved(d, serial, lines.replace("-R_last[0, k]", "R_last[0, k]"))
     with pytest.raises(ProofError, match=r"rotation is one about z.*does not follow so"):
         prove(d)
 

@@ -356,9 +356,9 @@ def _comparison(holds: Callable[[Any, Any], Any]) -> _Step:
 
     def compare(a: Ball, b: Ball) -> Truth:
         (x, r), (y, s) = a, b
-        apart = abs(x - y) * (1 - ROUNDING) > r + s
+        disjoint = abs(x - y) * (1 - ROUNDING) > r + s
         known = np.isfinite(x) & np.isfinite(y)
-        return holds(x, y), known & (apart | ((r == 0) & (s == 0)))
+        return holds(x, y), known & (disjoint | ((r == 0) & (s == 0)))
 
     return _Step(holds, compare)
 

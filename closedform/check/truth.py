@@ -208,13 +208,13 @@ class Solutions:
         counted = self._weights.values(with_parameters(solutions.astype(float), parameters))
         fixed = np.abs(parameters).sum() + self._in_numbers
         size = fixed + np.abs(solutions * self._sliding).sum(axis=-1)
-        apart = []
+        missed = []
         for image, sized in zip(images, self._sized, strict=True):
             difference = (image - given).astype(float)
             turned = np.abs(np.angle(np.exp(1j * difference)))
             by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
-            apart.append((counted * np.where(self._turns, turned, by_size)).max(axis=-1))
-        return np.asarray(np.fmin.reduce([*apart, np.full(len(given), np.inf)]))
+            missed.append((counted * np.where(self._turns, turned, by_size)).max(axis=-1))
+        return np.asarray(np.fmin.reduce([*missed, np.full(len(given), np.inf)]))
 
     def exact_miss(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]

@@ -172,7 +172,7 @@ def two_circles(
         the joints that are free if the point is
     """
     p, (r1, r2), (origin, other) = program, radii, centres
-    apart = sp.Matrix(
+    span = sp.Matrix(
         [
             e if e.is_Symbol or e == 0 else p.let(f"u_{i}", e)
             for i, e in zip("xy", other - origin, strict=True)
@@ -181,7 +181,7 @@ def two_circles(
     start = len(p.body)
     x, y = first = real("from_x"), real("from_y")
     lemma, chord = circle_intersection(
-        p, (apart[0], apart[1]), (r1, r2), first, sigma, scale=scale, free=tuple(free)
+        p, (span[0], span[1]), (r1, r2), first, sigma, scale=scale, free=tuple(free)
     )
     placed = {u: x - o for u, x, o in zip(first, unknowns, origin, strict=True)}
     shifted = replace(
@@ -189,7 +189,7 @@ def two_circles(
         equations=tuple(e.xreplace(placed) for e in lemma.equations),
         solution={x: o + lemma[u] for u, x, o in zip(first, unknowns, origin, strict=True)},
     )
-    at_centre = dict.fromkeys(apart.free_symbols, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
+    at_centre = dict.fromkeys(span.free_symbols, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
     case = Degenerate(
         (chord.flag,), at_centre, free[0] if free else None, "both circles are the same"
     )

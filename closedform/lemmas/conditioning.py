@@ -32,8 +32,8 @@ def conditioning(
         seen = "of the rods of the driven legs, as they are seen along the strut"
     squares = [v.let(f"square{k}", r.dot(r)) for k, r in enumerate(rods, 1)]
     if len(rods) == 2:
-        apart = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)
-        value = (sp.Add(*squares) + apart) / (2 * size)
+        gap = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)
+        value = (sp.Add(*squares) + gap) / (2 * size)
         return (
             f"Ratio of the largest to the smallest singular value {seen}.",
             {"kappa": value},

@@ -154,8 +154,8 @@ class Hand:
                 "the rail if n is at right angles to p - b.",
                 shown,
             )
-        carried = any(leg.on_hand for leg in self.legs)
-        less = ", less the place of its far end on the hand," if carried else ""
+        on_hand = any(leg.on_hand for leg in self.legs)
+        less = ", less the place of its far end on the hand," if on_hand else ""
         strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",

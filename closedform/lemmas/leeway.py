@@ -71,7 +71,7 @@ def within_tilt(
         the joints are turned only if one of these, in units of its scale, is short
     """
     p, tool = chain.vector("wrist_at", p), chain.vector("tool_axis", tool)
-    seen = _Carried(chain, tuple(joints), p, tool, limits, "tilt0")
+    seen = _Posture(chain, tuple(joints), p, tool, limits, "tilt0")
     loose = chain.program.vanishes(
         "loose",
         sp.Max(seen.margin, sp.Min(*map(sp.Abs, levers)) - SHORT),
@@ -96,7 +96,7 @@ def within_tilt(
 
 
 @dataclass(frozen=True)
-class _Carried:
+class _Posture:
     """The joints at some angles, with what they make of the axes.  Names end in ``name``."""
 
     chain: Chain
@@ -173,7 +173,7 @@ class _Carried:
             rates.append(self.let(f"alone{k}", chosen))
         return rates
 
-    def turned(self, rates: Sequence[sp.Expr], name: str) -> _Carried:
+    def turned(self, rates: Sequence[sp.Expr], name: str) -> _Posture:
         """The joints turned at the ``rates``, as far as the limits need and rounding allows."""
         axes, moves, f = self.frames
         axis = self.vector("spin", sum((r * a for r, a in zip(rates, axes, strict=True)), Z0))

@@ -108,9 +108,9 @@ def three_spheres(
     def either(at_v: sp.Expr, at_u: sp.Expr) -> sp.Expr:
         return at_u if at_u == at_v else choose(same, at_v, at_u)
 
-    apart = _vector(p, "d", [either(e, f) for e, f in zip(v, u, strict=True)])
+    span = _vector(p, "d", [either(e, f) for e, f in zip(v, u, strict=True)])
     other = sp.Matrix([either(e, f) for e, f in zip(u, v, strict=True)])
-    a = sp.Matrix([p.let("a_x", choose(point, 1, apart[0])), *apart[1:]])
+    a = sp.Matrix([p.let("a_x", choose(point, 1, span[0])), *span[1:]])
     mu = p.let("mu", choose(point, 1, either(vv, uu)), nonnegative=True)
     over = p.let("over", 1 / mu, nonnegative=True)
     # The first product has lost its direction where the centres are nearly in line, but the others
@@ -125,7 +125,7 @@ def three_spheres(
     w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
     if equal:
         # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
-        left = other.dot(other - apart)
+        left = other.dot(other - span)
         part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
         squares = (mu, nu, part)
         X, Y, h = _met_by_equal(p, r1, squares, left, flags=(point, line), scale=scale)
@@ -137,7 +137,7 @@ def three_spheres(
             p, lengths, squares, other.dot(a), flags=(point, line), scale=scale
         )
         more = (flat,)
-    from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(apart, n, w, strict=True)]
+    from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(span, n, w, strict=True)]
     found = [o + x for o, x in zip(origin, from_first, strict=True)]
     place = sp.Matrix(unknowns) - origin
     lemma = Lemma(

@@ -98,7 +98,7 @@ def skeleton(
     own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
-    apart: dict[sp.Expr, list[str]] = {}
+    distances: dict[sp.Expr, list[str]] = {}
     bounds: list[sp.Expr] = []
     for at, limits, held in _cases(function, tuple(places), pairs, at_posture):
         bounds += [b for b in limits if b not in bounds]
@@ -110,8 +110,8 @@ def skeleton(
                 length = sp.sqrt(sp.factor(_still(square, function)))
             equal.append((square, sp.expand(length**2) + rest.get(pair, 0)))
             between = " to ".join(map(_spoken, pair))
-            if between not in apart.setdefault(length, []):
-                apart[length].append(between)
+            if between not in distances.setdefault(length, []):
+                distances[length].append(between)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
     closed = "  Where a rod closes a loop, the equation of the loop says so." if rest else ""
@@ -120,7 +120,10 @@ def skeleton(
         "The points through which the links are drawn.  No link changes its length when the joints "
         f"move, and the hand is where {where_from}.{closed}",
         {},
-        rows=[("Points", "Distance"), *((", ".join(ends), size) for size, ends in apart.items())],
+        rows=[
+            ("Points", "Distance"),
+            *((", ".join(ends), size) for size, ends in distances.items()),
+        ],
         proves=(
             "The squared distance of each pair of neighbouring points is that of the length"
             f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "

@@ -43,14 +43,14 @@ class ArmAngleMaker(SubproblemMaker):
         R = self.centre(found)
         turned = [followed(f"rotation('z', {source(j.turn)})", j.end) for j in shoulder]
         sense = self._sense(shoulder)
-        self.add(f"carrying = {' * '.join(turned)}")
-        self.add(f"reached = {source(e)} + rotation('z', {source(elbow.turn)}) * {source(u)}")
-        self.add(f"given = arm_angle(ik, carrying, reached[:2, 0]{sense})")
-        self.add("far = ik.let('far', sqrt(p.dot(p)))")
+        self.add(f"R_shoulder = {' * '.join(turned)}")
+        self.add(f"to_wrist = {source(e)} + rotation('z', {source(elbow.turn)}) * {source(u)}")
+        self.add(f"given = arm_angle(ik, R_shoulder, to_wrist[:2, 0]{sense})")
+        self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
         pair = self._elbow(elbow, e, u)
-        self.vector("carried", f"{source(e)} + turned({pair}) * {source(u)}")
+        self.vector("to_wrist", f"{source(e)} + turned({pair}) * {source(u)}")
         because = f"because={{{self.unknowns[elbow.number]}: 1}}"
-        arguments = f"given, carrying, carried[:2, 0], p, {because}{sense}"
+        arguments = f"given, R_shoulder, to_wrist[:2, 0], p, {because}{sense}"
         self.solve("arm_plane", arguments, "M")
         self.add(f"left1 = ik.matrix('left1', M * {source(first.end.T)})")
         self.normal_wrist(shoulder, "left1", ", name='shoulder'", SIDES)
@@ -73,7 +73,7 @@ class ArmAngleMaker(SubproblemMaker):
         offset = sp.atan2(between[1], between[0])
         x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
         pair = f"pair{joint.number}"
-        self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), far, {ELBOW}", pair, 2)
+        self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), p_norm, {ELBOW}", pair, 2)
         turn = self.less(pair, between)
         if turn != pair:
             self.add(f"{pair} = {turn}.known_as(ik.program, '_{pair}')")

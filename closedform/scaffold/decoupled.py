@@ -46,9 +46,9 @@ class DecoupledMaker(SubproblemMaker):
         M = self.without_tool(arm.tool[:3, :3], times(G.T * arm.lead[:3, :3].T, R))
         self.add(f"M = ik.matrix('M', {M})")
         self.orientation(turning, "M")
-        carried = self._carried(turning)
-        if carried:
-            self.vector("p", f"p - {times(G, f'({carried})')}", "p3")
+        to_wrist = self._to_wrist(turning)
+        if to_wrist:
+            self.vector("p", f"p - {times(G, f'({to_wrist})')}", "p3")
         directions, c, before = [], sp.zeros(3, 1), sp.eye(3)
         for joint in helper.joints:
             directions.append((joint, (before * Z).applyfunc(sp.simplify)))
@@ -59,7 +59,7 @@ class DecoupledMaker(SubproblemMaker):
         turns = f"{len(turning)} joints that turn" if len(turning) > 1 else "1 joint that turns"
         return f"{NAMES[count]}, and {turns} the tool, apart from each other"
 
-    def _carried(self, turning: Sequence[Single]) -> str:
+    def _to_wrist(self, turning: Sequence[Single]) -> str:
         """Where the joints that turn carry the last axis, in ``M`` and the pair of the first.
 
         The shift from the second of three axes to the third is taken along both and across them,

@@ -79,9 +79,9 @@ class SixMaker(SubproblemMaker):
             s, g = four.shift, three.end.T * Z
             a, b = turning(s, g)
             fourth = self._turn(four, (a, b, p[2] - height - g[2] * s[2]))
-            self.add(f"before = {times(three.end, f'turned({fourth})')}")
-            self.wrist_about(lift, five, six, M, followed("before", four.end))
-            self.vector("end", f"{source(three.shift)} + before * {source(s)}")
+            self.add(f"R_before = {times(three.end, f'turned({fourth})')}")
+            self.wrist_about(lift, five, six, M, followed("R_before", four.end))
+            self.vector("to_end", f"{source(three.shift)} + R_before * {source(s)}")
         else:
             self.add(f"M = ik.matrix('M', {M})")
             t = five.end.T * five.shift
@@ -94,8 +94,8 @@ class SixMaker(SubproblemMaker):
             links = one.shift, two.shift
             self._reach([lift, four, five], three.shift, ["p", sixth], *links)
             self.orientation([lift, four, five], "left1")
-            self.vector("end", source(three.shift))
-        self.vector("q", f"p - turned({self.lifted}) * end")
+            self.vector("to_end", source(three.shift))
+        self.vector("q", f"p - turned({self.lifted}) * to_end")
         u, v = one.shift, two.shift
         self.two_links([one.turn, two.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
         meeting = (five, six) if at_end is not None else (four, five)
@@ -130,23 +130,23 @@ class SixMaker(SubproblemMaker):
         one, _, _, four, five, six = found.joints
         self._seen_from_tool(found)
         s, t, p = one.shift, four.shift, point("p")
-        self.add("far = ik.let('far', sqrt(p.dot(p)))")
-        far = sp.Symbol("far")
+        self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
+        far = sp.Symbol("p_norm")
         c = (far**2 + sp.simplify(s.dot(s) - t.dot(t))) / 2 - s[2] * p[2]
         size = sp.sqrt(sp.simplify(t.dot(t)))
-        seen = f"M.T * (turned({{}}) * {source(s)} - p)"
-        v, g, w = point("seen"), five.end.T * Z, -(four.end.T * t).applyfunc(sp.simplify)
-        self.ahead_of_turn(seen.format("pair"), w, g[2])
+        to_target = f"M.T * (turned({{}}) * {source(s)} - p)"
+        v, g, w = point("to_target"), five.end.T * Z, -(four.end.T * t).applyfunc(sp.simplify)
+        self.ahead_of_turn(to_target.format("pair"), w, g[2])
         sides = (*turning(s, p), c)
         first = self._turn(one, sides, "seen_across", scale=source(size / 2), by_size=True)
-        self.vector("seen", seen.format(first))
+        self.vector("to_target", to_target.format(first))
         sixth = self._turn(six, (*turning(v, g), w[2] - g[2] * v[2]))
-        self.vector("beyond", times(five.end, f"(turned({sixth}) * seen)"))
+        self.vector("to_target", times(five.end, f"(turned({sixth}) * to_target)"), "to_target2")
         because = (
             f"{{{self.unknowns[one.number]}: -2*ik.size, "
-            f"{self.unknowns[six.number]}: -beyond[2] - ({source(w[2])})}}"
+            f"{self.unknowns[six.number]}: -to_target[2] - ({source(w[2])})}}"
         )
-        fifth = self._rotate(five, "beyond", source(w[:2, 0]), because)
+        fifth = self._rotate(five, "to_target", source(w[:2, 0]), because)
         middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
         middle = f"{followed(middle, five.end.T)} * turned({fifth}).T"
         return followed(middle, four.end.T)
@@ -163,9 +163,9 @@ class SixMaker(SubproblemMaker):
         lengths = ", ".join(source(norm(x[:2, 0])) for x in (u, t))
         self.add(f"links = Links(lambda pair: M.T * (p - turned(pair) * {source(s)}), {lengths})")
         first = self._turn(one, (*turning(s, along), c), "links")
-        self.vector("seen", f"M.T * (p - turned({first}) * {source(s)})")
+        self.vector("to_target", f"M.T * (p - turned({first}) * {source(s)})")
         turns = [-six.turn, -five.turn]
-        self.two_links(turns, [u[:2, 0], t[:2, 0]], "seen[0]", "seen[1]")
+        self.two_links(turns, [u[:2, 0], t[:2, 0]], "to_target[0]", "to_target[1]")
         both = f"turned({self.pairs[0]} + {self.less(self.pairs[1], t[:2, 0])})"
         middle = times(one.end.T, f"(turned({first}).T * M)")
         return followed(f"{middle} * {both}", four.end.T)

@@ -102,8 +102,8 @@ class Slides:
         self._require_turning(g, three, "axis 3 is normal to its two slides")
         value = n.dot(point("p") - c)
         pair = self._turned_by(three, three.shift, g, value)
-        carried = times(G, f"(turned({pair}) * {source(three.shift)})")
-        self._vector("q", f"p - {carried}")
+        link = times(G, f"(turned({pair}) * {source(three.shift)})")
+        self._vector("q", f"p - {link}")
         self.linear("q", c, ((one, a), (two, b)))
         return Solved("two slides and a turn", [("", one.end), ("", two.end), (pair, three.end)])
 
@@ -122,10 +122,10 @@ class Slides:
         elif a[2] == 0 and b[2] != 0:
             self._slide(three, (q[2] - t[2]) / b[2])
             reach = f"{three.joint}_*{source(self.sense[three.number] * b)}"
-            self._vector("carried", f"{source(t)} + {reach}")
+            self._vector("to_end", f"{source(t)} + {reach}")
             m = Z.cross(a)
-            pair = self._turned_by(two, point("carried"), m, m.dot(q))
-            self._vector("q", f"q - turned({pair}) * carried", "q2")
+            pair = self._turned_by(two, point("to_end"), m, m.dot(q))
+            self._vector("q", f"q - turned({pair}) * to_end", "q2")
             self._slide(one, a.dot(point("q")))
         else:
             raise NoChainError(
@@ -153,15 +153,15 @@ class Slides:
         elif not parallel(one) and one.shift.is_zero_matrix:
             e = sp.simplify(b.dot(t))
             h = sp.sqrt(sp.simplify(t.dot(t) - e**2))
-            self.maker.add("far = ik.let('far', sqrt(p.dot(p)))")
-            self._root(three, e, "far", source(h))
+            self.maker.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
+            self._root(three, e, "p_norm", source(h))
             reach = f"{three.joint}_*{source(self.sense[three.number] * b)}"
-            self._vector("carried", f"{source(t)} + {reach}")
-            v, g = point("carried"), _simple(one.end.T * Z)
+            self._vector("to_end", f"{source(t)} + {reach}")
+            v, g = point("to_end"), _simple(one.end.T * Z)
             second = self._turned_by(two, v, g, point("p")[2])
-            self._vector("seen", times(one.end, f"(turned({second}) * carried)"))
-            because = f"{{{three.joint}: 1, {self.angle(two)}: -(seen[2] + p[2])}}"
-            first = self._rotate(one, "seen", "p", because)
+            self._vector("both_links", times(one.end, f"(turned({second}) * to_end)"))
+            because = f"{{{three.joint}: 1, {self.angle(two)}: -(both_links[2] + p[2])}}"
+            first = self._rotate(one, "both_links", "p", because)
         else:
             raise NoChainError(
                 f"its slide is not normal to axis {two.number}, nor do axes {one.number} and "
@@ -218,9 +218,9 @@ class Slides:
         self._vector("q", f"p - {one.joint}_*{source(self.sense[one.number] * a)}")
         q, g = point("q"), _simple(two.end.T * Z)
         third = self._turned_by(three, u, g, q[2])
-        self._vector("seen", times(two.end, f"(turned({third}) * {source(u)})"))
-        because = f"{{{one.joint}: -1, {self.angle(three)}: -(seen[2] + q[2])}}"
-        second = self._rotate(two, "seen", "q", because)
+        self._vector("to_end", times(two.end, f"(turned({third}) * {source(u)})"))
+        because = f"{{{one.joint}: -1, {self.angle(three)}: -(to_end[2] + q[2])}}"
+        second = self._rotate(two, "to_end", "q", because)
         turned = [("", one.end), (second, two.end), (third, three.end)]
         return Solved("a slide and two joints", turned)
 

@@ -154,9 +154,9 @@ class SubproblemMaker(WristMaker):
         """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
         R, p = ("ik.R", "ik.p")
         if arm.inverted:
-            self.add("back = ik.R.T")
-            self.vector("p", "-back * ik.p", "base")
-            R, p = "back", "p"
+            self.add("R_inverse = ik.R.T")
+            self.vector("p", "-R_inverse * ik.p", "base")
+            R, p = "R_inverse", "p"
         tool = arm.tool
         offset = (tool[:3, :3].T * tool[:3, 3]).applyfunc(sp.simplify)
         if not offset.is_zero_matrix:
@@ -299,8 +299,8 @@ class SubproblemMaker(WristMaker):
         pointed = times(one.end.T, f"(turned({first}).T * tool)")
         axis = source((three.end * Z)[:2, 0])
         self.solve("rotate", f"{both}, {axis}, {pointed}, scale=1", "pointed")
-        self.vector("beyond", f"{q} - turned(pointed) * {source(v)}")
-        self._rotate(two, source(u[:2, 0]), "beyond")
+        self.vector("to_elbow", f"{q} - turned(pointed) * {source(v)}")
+        self._rotate(two, source(u[:2, 0]), "to_elbow")
         return Solved(
             f"axes {two.number} and {three.number} parallel, which point the last",
             [(first, one.end), ("pointed", three.end)],
@@ -309,24 +309,24 @@ class SubproblemMaker(WristMaker):
     def _meeting_first(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = two.shift, three.shift, point("p")
         e, g = (two.end.T * t).applyfunc(sp.simplify), one.end * Z
-        self.add("far = ik.let('far', sqrt(p.dot(p)))")
-        far = sp.Symbol("far")
+        self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
+        far = sp.Symbol("p_norm")
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
         sides = turning(g, p)
-        carried = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
+        to_end = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
         self.add(f"reach = ik.let('reach', {source(norm(sp.Matrix(sides)))})")
-        self.within_reach(carried.format("pair"), g[2] * p[2], "reach")
-        scale = "(far + ik.size/2**44)/2"
+        self.within_reach(to_end.format("pair"), g[2] * p[2], "reach")
+        scale = "(p_norm + ik.size/2**44)/2"
         third = self._by_distance(three, e, u, c, scale, "seen_across")
-        self.vector("carried", carried.format(third))
-        v = point("carried")
+        self.vector("to_end", to_end.format(third))
+        v = point("to_end")
         first = self._turn(one, (*sides, v[2] - g[2] * p[2]))
-        self.vector("seen", times(one.end.T, f"(turned({first}).T * p)"))
+        self.vector("to_target", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
             f"{{{self.unknowns[three.number]}: 2*ik.size, "
-            f"{self.unknowns[one.number]}: seen[2] + carried[2]}}"
+            f"{self.unknowns[one.number]}: to_target[2] + to_end[2]}}"
         )
-        second = self._rotate(two, "carried", "seen", because)
+        second = self._rotate(two, "to_end", "to_target", because)
         return Solved(
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
@@ -335,25 +335,24 @@ class SubproblemMaker(WristMaker):
     def _meeting_last(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = one.shift, three.shift, point("p")
         g = two.end * Z
-        self.add("far = ik.let('far', sqrt(p.dot(p)))")
-        far = sp.Symbol("far")
+        self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
+        far = sp.Symbol("p_norm")
         c = (far**2 + sp.simplify(t.dot(t) - u.dot(u))) / 2 - t[2] * p[2]
         size = sp.sqrt(sp.simplify(u.dot(u)))
         sides = (*turning(t, p), c)
-        seen = times(one.end.T, f"(turned({{}}).T * p - {source(t)})")
-        self.ahead_of_turn(seen.format("pair"), u, g[2])
+        to_target = times(one.end.T, f"(turned({{}}).T * p - {source(t)})")
+        self.ahead_of_turn(to_target.format("pair"), u, g[2])
         first = self._turn(one, sides, "seen_across", scale=source(size / 2), by_size=True)
-        self.vector("seen", seen.format(first))
-        m = point("seen")
+        self.vector("to_target", to_target.format(first))
+        m = point("to_target")
         second = self._turn(two, (*turning(g, m), u[2] - g[2] * m[2]))
-        self.add(
-            f"beyond = ik.vector('beyond', {times(two.end.T, f'(turned({second}).T * seen)')})"
-        )
+        turned = f"(turned({second}).T * to_target)"
+        self.vector("to_target", times(two.end.T, turned), "to_target2")
         because = (
             f"{{{self.unknowns[one.number]}: 2*ik.size, "
-            f"{self.unknowns[two.number]}: beyond[2] + {source(u[2])}}}"
+            f"{self.unknowns[two.number]}: to_target[2] + {source(u[2])}}}"
         )
-        third = self._rotate(three, source(u[:2, 0]), "beyond", because)
+        third = self._rotate(three, source(u[:2, 0]), "to_target", because)
         return Solved(
             f"axes {two.number} and {three.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
@@ -363,19 +362,18 @@ class SubproblemMaker(WristMaker):
         s, t, u, p = one.shift, two.shift, three.shift, point("p")
         f = two.end.T * Z
         a, b = map(sp.simplify, turning(u, f))
-        carried = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
-        self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
-        self.add(
-            f"links = Links(lambda pair: {carried.format('pair')}, {source(norm(s[:2, 0]))}, far)"
-        )
+        to_end = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
+        self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
+        lengths = f"{source(norm(s[:2, 0]))}, radius"
+        self.add(f"links = Links(lambda pair: {to_end.format('pair')}, {lengths})")
         third = self._turn(three, (a, b, p[2] - s[2] - t[2] - f[2] * u[2]), "links")
-        self.vector("carried", carried.format(third))
-        far, v = sp.Symbol("far"), point("carried")
+        self.vector("to_end", to_end.format(third))
+        far, v = sp.Symbol("radius"), point("to_end")
         c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
         sides = (*turning(v, s), c)
-        second = self._turn(two, sides, scale="(far + ik.size/2**44)/2", by_size=True)
-        self.vector("seen", f"{source(s)} + turned({second}) * carried")
-        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
+        second = self._turn(two, sides, scale="(radius + ik.size/2**44)/2", by_size=True)
+        self.vector("both_links", f"{source(s)} + turned({second}) * to_end")
+        first = self._rotate(one, "both_links", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
         return Solved(
             f"axes {one.number} and {two.number} parallel",
             [(first, one.end), (second, two.end), (third, three.end)],
@@ -409,22 +407,22 @@ class SubproblemMaker(WristMaker):
         self.vector("centre", source(ellipse.centre))
         self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
         third = self._met_by_circle(three, ellipse)
-        self.vector("seen", f"centre + along*{third}.c + aside*{third}.s", "across")
-        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[three.number]}: 1}}")
+        self.vector("on_ellipse", f"centre + along*{third}.c + aside*{third}.s", "across")
+        first = self._rotate(one, "on_ellipse", "p", f"{{{self.unknowns[three.number]}: 1}}")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
-        self.vector("carried", f"{source(t)} + {inside}")
-        self.vector("beyond", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
+        self.vector("to_end", f"{source(t)} + {inside}")
+        self.vector("to_target", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
         short = sp.Abs(Z.dot((one.end * Z).cross(one.shift)))
         self.add(f"play = ik.amplified_over({source(short)})")
         meaning = "'the point is one of the arm'"
-        for n in ("beyond", "carried"):
-            self.add(f"long_{n} = ik.let('long_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
-        for miss in ("beyond[2] - carried[2]", "long_beyond - long_carried"):
+        for n in ("to_target", "to_end"):
+            self.add(f"radius_{n} = ik.let('radius_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
+        for miss in ("to_target[2] - to_end[2]", "radius_to_target - radius_to_end"):
             self.add(f"ik.program.match({miss}, play, {meaning})")
-        both = f"2*{source(s)} + (beyond[2] + carried[2])*{source(g)}"
+        both = f"2*{source(s)} + (to_target[2] + to_end[2])*{source(g)}"
         self.vector("lever", f"turned({first}) * ({both})")
         because = f"{{{self.unknowns[one.number]}: (-lever[0], -lever[1])}}"
-        second = self._rotate(two, "carried", "beyond", because)
+        second = self._rotate(two, "to_end", "to_target", because)
         return Solved(
             f"axes {one.number}, {two.number} and {three.number} neither meet nor are parallel",
             [(first, one.end), (second, two.end), (third, three.end)],

@@ -60,10 +60,11 @@ AUTHOR = (
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
-    "onto", "over", "axis", "before", "end",
+    "rho", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
+    "both_links", "on_ellipse",
+    "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "long_beyond", "long_carried", "lever", "carrying", "reached",
+    "play", "radius_to_target", "radius_to_end", "lever",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -103,8 +103,8 @@ class WristMaker(Maker):
             w = source((first.end * Z)[:2, 0])
             pair = self._rotate(first, w, f"{M}[:, 2]", scale="1")
             inside = times(first.end.T, f"(turned({pair}).T * {M})")
-            self.add(f"onward = ik.matrix('onward', {inside})")
-            M = "onward"
+            self.add(f"R_rest = ik.matrix('R_rest', {inside})")
+            M = "R_rest"
         self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
 
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
@@ -148,9 +148,9 @@ class WristMaker(Maker):
         w = middle.end * Z
         self.add(f"M = ik.matrix('M_wrist', {M})")
         if onward:
-            self.add(f"onto = ik.matrix('onto', {onward})")
-            g = sp.Matrix([sp.Symbol(f"onto[2, {i}]") for i in range(3)])
-            between = "onto"
+            self.add(f"R_between = ik.matrix('R_between', {onward})")
+            g = sp.Matrix([sp.Symbol(f"R_between[2, {i}]") for i in range(3)])
+            between = "R_between"
         else:
             g, between = first.end.T * Z, source(first.end)
         sense = 0 if onward else self._can_align(g, w)
@@ -164,12 +164,12 @@ class WristMaker(Maker):
         of = "" if sense > 0 else "-"
         because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
         lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
-        self.add(f"over = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
-        self.add("onward = ik.matrix('onward', over.T * M)")
+        self.add(f"R_last = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
+        self.add("R_rest = ik.matrix('R_rest', R_last.T * M)")
         up = "" if sense > 0 else "-"
         lift = self.unknown(first)
-        each = f"{{{lift}: (-over[0, k], -over[1, k]), {x}: {up}over[2, k]}} for k in (0, 1)"
-        self.solve("spin", f"{self.unknown(last)}, onward, [{each}]", f"pair{last.number}")
+        each = f"{{{lift}: (-R_last[0, k], -R_last[1, k]), {x}: {up}R_last[2, k]}} for k in (0, 1)"
+        self.solve("spin", f"{self.unknown(last)}, R_rest, [{each}]", f"pair{last.number}")
         self.lifted = lifted
 
     def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:

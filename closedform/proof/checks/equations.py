@@ -93,8 +93,8 @@ class Identity(Check):
         if right == f"${derived}$":
             return (*at(found.point), entry, left, " is ", printed, ", not ", derived)
         of = "" if not entry or right.startswith("that of ") else "that of "
-        apart = (entry, left, " is ", printed, ", but ", of, right, " is ", derived)
-        return (*at(found.point), *apart)
+        contrast = (entry, left, " is ", printed, ", but ", of, right, " is ", derived)
+        return (*at(found.point), *contrast)
 
 
 def _order(gap: Exact, small: sp.Symbol | tuple[sp.Symbol, ...]) -> tuple[Any, ...]:

@@ -320,10 +320,10 @@ class Procedure(Check):
             except (Undetermined, TypeError):
                 continue
             pairs = list(zip(self.reached, balls, balls[len(self.reached) :], strict=False))
-            apart = [(t, a) for t, a, b in pairs if not (a - b).contains(0)]
-            if all(b.is_finite() for b in balls) and apart:
+            missed = [(t, a) for t, a, b in pairs if not (a - b).contains(0)]
+            if all(b.is_finite() for b in balls) and missed:
                 pieces: list[Any] = []
-                for t, ball in apart:
+                for t, ball in missed:
                     decimal = ball.str(6, radius=False)
                     pieces += [", ", t, f" = ${decimal}$ instead of ", shown(point[t], {})]
                 return ("at ", posture, ": it reaches ", *pieces[1:], "; ")

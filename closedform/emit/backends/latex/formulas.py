@@ -36,7 +36,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         super().__init__({"long_frac_ratio": 20})
         self.joints, self.legend = joints, dict[str, str]()
         self.names = dict(names or {})
-        self.kept = frozenset[str]()
+        self.parameters = frozenset[str]()
         """Names of parameters: a length ``c1`` is not the cosine of ``theta1``."""
         self.written: dict[str, str] = {}
         """What the derivation says of how symbols are written, by their names."""
@@ -44,7 +44,9 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
         if known := self.written.get(expr.name) or self.names.get(expr):
             return known
-        pair = None if expr.name in self.kept else re.fullmatch(r"([cs])(\d)(?:_0)?", expr.name)
+        pair = (
+            None if expr.name in self.parameters else re.fullmatch(r"([cs])(\d)(?:_0)?", expr.name)
+        )
         joint = next((j for j in self.joints if pair and j.name == f"theta{pair[2]}"), None)
         if pair and joint is not None:  # the cosine or the sine of a joint that was solved
             return str(self._print(sp.cos(joint) if pair[1] == "c" else sp.sin(joint)))

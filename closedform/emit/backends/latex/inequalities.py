@@ -20,9 +20,9 @@ def inequalities(
     pairs = [(*magnitude(page, v, w), v, w) for v, w in combinations(left, 2)]
     pairs = [p for p in pairs if p[0] in order and p[1] != 0]
     if pairs:
-        middle, apart, value, other = max(pairs, key=lambda p: order[p[0]])
+        middle, difference, value, other = max(pairs, key=lambda p: order[p[0]])
         above = next((e + middle for e in left if is_above(e, middle)), None)
-        text = rf"{math(sp.Abs(apart, evaluate=False))} \le {math(middle)}"
+        text = rf"{math(sp.Abs(difference, evaluate=False))} \le {math(middle)}"
         text += rf" \le {math(above)}" if above is not None else ""
         texts.append(f"${text}$")
         used = {value, other, *(() if above is None else (above - middle,))}
@@ -44,11 +44,11 @@ def is_above(value: sp.Expr, middle: sp.Expr) -> bool:
 
 def magnitude(page: Sheet, value: sp.Expr, other: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """m and d of two bounds m - d and m + d; d has a positive term first."""
-    middle, apart = sp.expand((value + other) / 2), sp.expand((other - value) / 2)
-    first = page.printer._as_ordered_terms(apart)[0] if apart.is_Add else apart
+    middle, difference = sp.expand((value + other) / 2), sp.expand((other - value) / 2)
+    first = page.printer._as_ordered_terms(difference)[0] if difference.is_Add else difference
     if _is_negative(first):
-        apart = -apart
-    return middle, apart
+        difference = -difference
+    return middle, difference
 
 
 def nonnegative(page: Sheet, value: sp.Expr) -> str:

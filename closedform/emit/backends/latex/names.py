@@ -40,16 +40,16 @@ class Quantities:
 
     A name that is defined again, as the same quantity of the target, has its new meaning from there
     on; the functions that follow the steps are of the joints, and ``former`` meanings serve there.
-    ``kept`` are the left sides that define nothing: joints, and what the mechanism is to reach.
+    ``inputs`` are the left sides that define nothing: joints, and what the mechanism is to reach.
     """
 
-    def __init__(self, printer: Printer, kept: Iterable[str]):
-        self.printer, self.kept = printer, frozenset(kept)
+    def __init__(self, printer: Printer, inputs: Iterable[str]):
+        self.printer, self.inputs = printer, frozenset(inputs)
         self.known: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         self.former: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
 
     def define(self, left: str, value: Any) -> None:
-        if not NAME.fullmatch(left) or left in self.kept:
+        if not NAME.fullmatch(left) or left in self.inputs:
             return
         if left in self.known:
             self.former[left] = self.known.pop(left)

@@ -33,11 +33,11 @@ class Sheet:
         self.derivation = derivation
         self.printer = Printer({j.symbol for j in derivation.joints})
         self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
-        self.printer.kept = frozenset(p.name for p in derivation.parameters)
+        self.printer.parameters = frozenset(p.name for p in derivation.parameters)
         self.math, self.prose = self.printer.math, Prose(derivation)
         self.lines = Lines(self.printer, self.prose.known)
-        kept = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
-        self.quantities = Quantities(self.printer, [upright(n) for n in kept])
+        inputs = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
+        self.quantities = Quantities(self.printer, [upright(n) for n in inputs])
         self.symbols = {p.symbol for p in derivation.parameters}
         self.symbols |= {s for f in derivation.functions for s in f.symbols}
         self.printer.names |= conventional_names(derivation)

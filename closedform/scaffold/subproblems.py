@@ -317,7 +317,7 @@ class SubproblemMaker(WristMaker):
         self.add(f"reach = ik.let('reach', {source(norm(sp.Matrix(sides)))})")
         self.within_reach(to_end.format("pair"), g[2] * p[2], "reach")
         scale = "(p_norm + ik.size/2**44)/2"
-        third = self._by_distance(three, e, u, c, scale, "seen_across")
+        third = self._by_distance(three, e, u, c, scale=scale, toward="seen_across")
         self.vector("to_end", to_end.format(third))
         v = point("to_end")
         first = self._turn(one, (*sides, v[2] - g[2] * p[2]))
@@ -443,7 +443,7 @@ class SubproblemMaker(WristMaker):
         return pair
 
     def _by_distance(
-        self, joint: Single, e: Any, u: Any, c: Any, scale: str, toward: str = ""
+        self, joint: Single, e: Any, u: Any, c: Any, *, scale: str, toward: str = ""
     ) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
         a, b = map(sp.simplify, turning(u, e))

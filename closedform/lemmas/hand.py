@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, vector
+from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_leg, vector
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail
+from closedform.model.alike import INDEX, Alike, alike, renamed
 from closedform.model.derivation import Derivation, Step
 
 _Item = TypeVar("_Item")
@@ -41,6 +42,13 @@ class Hand:
         if n == 3 and self.rails:
             raise ShapeError(f"{self.d.name}: a rail carries a hand in a plane only")
         check_order(self.d, [leg for _, leg in self.driven])
+
+    @cached_property
+    def alike(self) -> Alike | None:
+        """The symbols of the legs, if they differ in these alone."""
+        declared = [j.symbol for j in self.d.joints] + [p.symbol for p in self.d.parameters]
+        signs = [sign_of_leg(k) for k, _ in self.numbered]
+        return alike("leg", self.legs, declared, signs)
 
     @property
     def joints(self) -> tuple[sp.Symbol, ...]:
@@ -137,11 +145,29 @@ class Hand:
         legs = zip(self.legs, spans, strict=True)
         return [leg.normal if isinstance(leg, Rail) else span for leg, span in legs]
 
+    def told(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
+        """What is shown of legs by their numbers: of alike legs, that of leg i alone."""
+        if self.alike:
+            first, value = numbered[0]
+            return [(INDEX, renamed(value, self.alike.names(first - 1)))]
+        return [*numbered]
+
+    def declare_alike(self) -> None:
+        """Say in the derivation that the legs are alike, and what the symbols of leg i are."""
+        self.d.alike = self.alike
+        if self.alike:
+            *own, sign = zip(self.alike.any_part, *self.alike.symbols, strict=True)
+            for symbol, first, *_, last in own:
+                self.d.write(symbol, meaning=f"{first}, ..., {last} of leg {INDEX}")
+            self.d.write(sign[0], rf"\sigma_{{\mathrm{{leg}}_{{{INDEX}}}}}", f"sign of leg {INDEX}")
+
     def state_loop(self) -> Step:
-        placed = list(zip(self.numbered, self.centres, strict=True))
-        shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
+        self.declare_alike()
+        numbers = [k for k, _ in self.numbered]
+        near = self.told([*zip(numbers, self.centres, strict=True)])
+        shown: dict[str, Any] = {rf"\mathbf b_{k}": c for k, c in near}
         self.d.explain(dict.fromkeys(shown, "near end of the rod of a leg"))
-        for k, leg in self.numbered:
+        for k, leg in self.told(self.numbered):
             if isinstance(leg, Rail):
                 shown[rf"\mathbf n_{k}"] = leg.normal
             else:
@@ -156,12 +182,13 @@ class Hand:
             )
         on_hand = any(leg.on_hand for leg in self.legs)
         less = ", less the place of its far end on the hand," if on_hand else ""
+        same = f"  The legs are alike: {INDEX} is any of 1 to {len(self.legs)}." * bool(self.alike)
         strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
             f"the joint of its leg determines.  The hand is at the length of the rod from it."
-            f"{strut}",
+            f"{strut}{same}",
             shown,
         )
 

@@ -11,6 +11,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.hand import Hand, square
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
 from closedform.lemmas.parallelogram import Parallelogram, parallelogram
+from closedform.model.alike import INDEX
 from closedform.model.derivation import Step
 from closedform.model.functions import real
 
@@ -114,8 +115,10 @@ def _in_space(m: Hand, loop: Step) -> None:
         "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
         "cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
-    m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in m.held})
-    m.d.explain({r"\mathbf n_k": "normal of the parallelogram of leg k"})
+    bars = m.told([(k, leg.rod.direction) for k, leg in m.held])
+    one = INDEX if m.alike else "k"
+    m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in bars})
+    m.d.explain({rf"\mathbf n_{one}": f"normal of the parallelogram of leg {one}"})
     m.d.step(
         "The parallelograms",
         "The rod of a leg is a parallelogram: two rods of length l between two bars of length "
@@ -128,9 +131,9 @@ def _in_space(m: Hand, loop: Step) -> None:
         {
             r"\mathbf r\cdot(\mathbf v - \mathbf u)": sp.S.Zero,
             r"|\mathbf r|^2 + h^2\,|\mathbf v - \mathbf u|^2": "l^2",
-            **{rf"\mathbf u_{k}": leg.rod.direction for k, leg in m.held},
-            r"\mathbf n_k": r"\mathbf u_k\times\mathbf r_k",
-            r"\boldsymbol\omega\cdot\mathbf n_k": sp.S.Zero,
+            **{rf"\mathbf u_{k}": u for k, u in bars},
+            rf"\mathbf n_{one}": rf"\mathbf u_{one}\times\mathbf r_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf n_{one}": sp.S.Zero,
         },
         proves="The rods fit if and only if the first two equations hold.  At v = u, the rate of "
         "the first gives the last one.  The bars are unit vectors, and that on a crank is along "

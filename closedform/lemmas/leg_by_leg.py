@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.legs import Leg, Naming, Solution, Stretch
+from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
@@ -19,7 +19,6 @@ from closedform.model.functions import (
     Statement,
     Vanishes,
     branches,
-    real,
 )
 from closedform.model.inverse import Inverse, Link
 
@@ -42,7 +41,7 @@ class LegByLeg:
 
     def solve(self, k: int, leg: Leg, w: sp.Matrix) -> None:
         """Solve leg ``k``, if ``w`` leads from its base to the far end of its rod."""
-        sigma = real(f"sigma_leg{k}")
+        sigma = sign_of_leg(k)
         if leg.signs == 2:
             self.choices.append((sigma, SIGN))
         self.found.append(leg.solve(self.naming(k), w, sigma))

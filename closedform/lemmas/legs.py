@@ -23,7 +23,7 @@ import sympy as sp
 
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.triangle import Triangle, indexed
-from closedform.model.functions import Program, choose
+from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
@@ -103,6 +103,11 @@ class Leg(Protocol):
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         """The joint, if ``w`` leads from the base of the leg to the far end of the rod."""
+
+
+def sign_of_leg(k: int) -> sp.Symbol:
+    """The sign that tells the two working modes of a leg apart."""
+    return real(f"sigma_leg{k}")
 
 
 def vector(entries: Sequence[Any]) -> sp.Matrix:
@@ -357,4 +362,14 @@ class Strut:
         return sp.Matrix([chain.let(f"p{i}", share * e) for i, e in zip("xyz", w, strict=True)])
 
 
-__all__ = ["Crank", "Leg", "Naming", "Slide", "Solution", "Stretch", "Strut", "vector"]
+__all__ = [
+    "Crank",
+    "Leg",
+    "Naming",
+    "Slide",
+    "Solution",
+    "Stretch",
+    "Strut",
+    "sign_of_leg",
+    "vector",
+]

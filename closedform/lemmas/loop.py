@@ -190,7 +190,9 @@ def _on_rods(
         f"lengths of the rods.  They meet twice, on both sides of the "
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
         f"determinant of the vectors along the rods has the sign of the mode.",
-        {
+        {}
+        if m.alike  # the points of all legs are the same formula
+        else {
             rf"\mathbf b_{k} - \mathbf b_{first}": (c - start).applyfunc(merge_angles)
             for (k, _), c in others
         },
@@ -384,7 +386,6 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     if m.rails:
         halved, half = "those of rods halved", "the derivatives, of a rod half of them"
         vectors += " and the normals of the rails"
-    d.explain({f"B_{{{k}{k}}}": "entry of the diagonal of B" for k in labels})
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     adjugate = a.adjugate()
     d.step(
@@ -395,10 +396,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
         f"the joint moves and the hand stands still).  A is singular if {m.meet} (parallel: the "
         f"hand can move while the joints stand still).{strut}",
-        {
-            "A": sp.Matrix.vstack(*(r.T for r in rods)),
-            **{f"B_{{{k}{k}}}": e for k, e in zip(labels, rates, strict=True)},
-        },
+        _shown_velocity(m, rods, rates),
         proves=f"A and B are {half}, and the adjugate of A gives J with A*J = B.",
         equal=[
             (A, sp.diag(*halves) * sp.Matrix.vstack(*(r.T for r in rods))),
@@ -459,6 +457,29 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
         )
         functions.append(("constraint", summary, {"factors": factors}, (how,)))
     export(d, v, at.modes, functions)
+
+
+def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]) -> dict[str, Any]:
+    """A and the diagonal of B; of alike legs, by the row of A and the entry of B of leg i."""
+    numbers = [k for k, _ in m.driven]
+    if not m.alike:
+        diagonal = {f"B_{{{k}{k}}}": e for k, e in zip(numbers, rates, strict=True)}
+        m.d.explain(dict.fromkeys(diagonal, "entry of the diagonal of B"))
+        return {"A": sp.Matrix.vstack(*(r.T for r in rods)), **diagonal}
+    [(i, leg)] = m.told(m.driven)
+    vectors = {
+        rf"\mathbf a_{i}": rf"\mathbf p - \mathbf b_{i}",
+        rf"\mathbf t_{i}": leg.rate,
+    }
+    meanings = ("vector along the rod of a leg", "derivative of b with respect to the joint")
+    entry = f"B_{{{i}{i}}}"
+    m.d.explain({**dict(zip(vectors, meanings, strict=True)), entry: "entry of the diagonal of B"})
+    rows = " & ".join(rf"\mathbf a_{k}" for k in numbers)
+    return {
+        "A": rf"\begin{{bmatrix}} {rows} \end{{bmatrix}}^T",
+        **vectors,
+        entry: rf"\mathbf a_{i}\cdot\mathbf t_{i}",
+    }
 
 
 def export(d: Derivation, program: Program, modes: Branches, functions: Sequence[Exported]) -> None:

@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 import sympy as sp
 
+from closedform.model.alike import Alike
 from closedform.model.claims import Check, Claim, Erratum, Gravity, Reading
 from closedform.model.display import Shown
 from closedform.model.functions import (
@@ -173,6 +174,8 @@ class Derivation(Shown):
     """Symbols that are not written as their name says, or whose meaning no equation gives."""
     explained: dict[str, str] = field(default_factory=dict)
     """What names of equations mean (plain text), by their LaTeX."""
+    alike: Alike | None = None
+    """The legs, if they differ in the names of their symbols alone."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one or no reason was given."""
 

@@ -20,10 +20,10 @@ from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, unless
 from closedform.emit.backends.latex.names import is_word, program_name
 from closedform.emit.backends.latex.sheet import Sheet
+from closedform.emit.backends.latex.subject import Subject
 from closedform.model.functions import (
     Bound,
     Determined,
-    Function,
     Let,
     Match,
     Require,
@@ -53,6 +53,10 @@ LETTERS = "kwgvqm"
 """Letters for quantities whose name is a word; the first that the derivation does not use."""
 
 
+Part = tuple[str, Any, str]
+"""The kind of a line, its text and a remark."""
+
+
 @dataclass(frozen=True)
 class Case:
     """A special case: where it occurs, what it means, and what is returned."""
@@ -71,7 +75,7 @@ class Algorithm:
     """
 
     page: Sheet
-    function: Function
+    subject: Subject
     means: Mapping[sp.Symbol, sp.Expr]
     model: Algorithm | None = None
     letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
@@ -87,6 +91,7 @@ class Algorithm:
     found: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.function, self.inverse = self.subject.function, self.subject.inverse
         body = self.function.body
         self.flags = {s.symbol: s for s in body if isinstance(s, Vanishes)}
         self.usual: dict[sp.Basic, Any] = dict.fromkeys(self.flags, sp.false)
@@ -135,9 +140,7 @@ class Algorithm:
 
     def _pairs(self) -> dict[sp.Symbol, sp.Expr]:
         """Names that lemmas of a chain gave to a sine and a cosine, see ``Pair.known_as``."""
-        inverse = next(
-            (i for i in self.page.derivation.inverses if i.function == self.function.name), None
-        )
+        inverse = self.inverse
         if inverse is None or not isinstance(inverse.glue, Rank):
             return {}
         names = {str(s.name): s for s in self.values if s in self.needed}
@@ -278,7 +281,7 @@ class Algorithm:
         self.page.lines.clear()
         self.page.lines.line_width = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
-        common, each = list[tuple[str, Any, str]](), list[tuple[str, Any, str]]()
+        common, each = list[Part](), list[Part]()
         body = self.function.body
         told = self.model.function.body if self.model else ()
         for statement in body:
@@ -287,19 +290,29 @@ class Algorithm:
                 parts = [part for part in parts if part[0] == "let"]
             used = {s for e in self._expressions(statement) for s in e.free_symbols}
             if isinstance(statement, Let | Bound) and used & branched:
-                shown = self.known.get(statement.symbol, statement.symbol)
-                branched |= {statement.symbol, *shown.free_symbols}
+                branched.add(statement.symbol)
+                if self.is_pair(statement.symbol):  # the angle has the branches of its sine
+                    branched |= self.means[statement.symbol].free_symbols
             (each if used & branched else common).extend(parts)
         kind = "return" if sp.true in self.outputs else "let"
         answer = [(kind, text, "") for text in self._answers()]
         self.page.lines.line_width = FITS
+        if not self.subject.each:
+            return self._over_branches(common, [*each, *answer], 0)
+        last = answer if kind == "return" else []  # which is not that of a leg
+        rest = [*each, *(part for part in answer if part not in last)]
+        head = Line(rf"\textbf{{for}} {self.subject.each}:")
+        return [head, *self._over_branches(common, rest, 1), *self.joined(last, 0)]
+
+    def _over_branches(
+        self, common: Sequence[Part], each: Sequence[Part], depth: int
+    ) -> list[Line]:
+        """Lines that all branches share, and those of each."""
         several = self.function.branches is not None and len(self.function.branches) > 1
-        if not several:
-            return self.joined([*common, *each, *answer], 0)
-        if not each and not answer:
-            return self.joined(common, 0)
-        head = Line(rf"\textbf{{for each}} {self._choice()}:")
-        return [*self.joined(common, 0), head, *self.joined([*each, *answer], 1)]
+        if not several or not each:
+            return self.joined([*common, *each], depth)
+        head = Line(rf"\textbf{{for each}} {self._choice()}:", depth)
+        return [*self.joined(common, depth), head, *self.joined(each, depth + 1)]
 
     def _choice(self) -> str:
         names = [self.page.math(s) for s in self.signs]
@@ -403,7 +416,7 @@ class Algorithm:
             rows += self.parts_first(whole(self.page.array(array, shown, self.function.entries)))
         return rows
 
-    def joined(self, lines: Sequence[tuple[str, Any, str]], depth: int) -> list[Line]:
+    def joined(self, lines: Sequence[Part], depth: int) -> list[Line]:
         """Lines of the page: short equations share one, and so do neighbouring conditions."""
         done: list[Line] = []
         for bounds, group in groupby(merged(lines), lambda line: line[0] == "bound"):
@@ -481,8 +494,9 @@ class Algorithm:
         changed: dict[sp.Basic, sp.Expr] = {}
         printed = [s for s in self.values if s in self.printed]
         whole = [(s, self.function_value(s)) for s in printed]
-        joints = self.page.answers(self.function)
-        whole += list(zip(joints, self.entries, strict=True)) if joints else []
+        joints = self.inverse.unknowns if self.inverse else ()
+        if len(joints) == len(self.entries):  # the outputs stand for the joints
+            whole += zip(joints, self.entries, strict=True)
         for name, value in whole:
             if value.has(flag.symbol):
                 other = substitute(substitute(value, usual), self.known).xreplace(changed)

@@ -36,6 +36,7 @@ from closedform.emit.backends.latex.prose import (
     upright,
 )
 from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
+from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint, Step
 from closedform.model.functions import Function
@@ -75,18 +76,17 @@ class Page(Sheet):
     def algorithm(self, function: Function) -> Algorithm:
         """The algorithm of a function, which goes on where that of an earlier one ends."""
         if function.name not in self.algorithms:
-            model = self.model(function)
+            model, subject = self.model(function), Subject.of(self.derivation, function)
             means = {n: m for s in self.derivation.solved for n, m in s.lemma.means.items()}
-            own = [s.lemma for s in self.derivation.solved if s.function == function.name]
-            for inverse in self.derivation.inverses:
-                if inverse.function == function.name:
-                    means |= inverse.rank.meaning
-                    for link in inverse.links:
-                        means |= link.lemma.means if link.lemma else {}
-                        own += [link.lemma] if link.lemma else []
+            own = [s.lemma for s in subject.solved]
+            if inverse := subject.inverse:
+                means |= inverse.rank.meaning
+                for link in inverse.links:
+                    means |= link.lemma.means if link.lemma else {}
+                    own += [link.lemma] if link.lemma else []
             letters = {s: letter for lemma in own for s, letter in lemma.letters.items()}
             earlier = self.algorithm(model) if model else None
-            self.algorithms[function.name] = Algorithm(self, function, means, earlier, letters)
+            self.algorithms[function.name] = Algorithm(self, subject, means, earlier, letters)
         algorithm = self.algorithms[function.name]
         self.printer.names |= algorithm.names
         return algorithm

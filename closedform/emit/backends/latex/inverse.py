@@ -75,20 +75,17 @@ class Told:
     """The text of one function that has a status for each branch."""
 
     def __init__(self, page: Sheet, function: Function, algorithm: Algorithm, after: str):
-        self.page, self.function = page, function
-        derivation = page.derivation
-        found = [i for i in derivation.inverses if i.function == function.name]
-        self.inverse = found[0] if found else None
-        solved = [s for s in derivation.solved if s.function == function.name]
-        self.solvings = solvings(self.inverse, solved) if self.inverse else []
+        self.page, self.whole = page, function
+        self.subject = algorithm.subject
+        self.function, self.inverse = self.subject.function, self.subject.inverse
+        self.solvings = solvings(self.inverse, self.subject.solved) if self.inverse else []
         self.algorithm, self.after = algorithm, after
-        self.inputs = set(function.symbols)
         self.told: set[sp.Symbol] = set()
         """Names that a step has defined."""
-        self.parameters = {p.symbol for p in derivation.parameters}
+        self.parameters = {p.symbol for p in page.derivation.parameters}
 
     def context(self) -> dict[str, Any]:
-        page, function = self.page, self.function
+        page = self.page
         lines, cases = self.algorithm.lines(), self.algorithm.cases()
         inverse = self.inverse
         return {
@@ -96,6 +93,7 @@ class Told:
             "after": self.after,
             "stages": [self.stage(k, s) for k, s in enumerate(self.solvings, 1)],
             "order": self.order(),
+            "each": self.subject.each,
             "several": sum(len(s.unknowns) for s in self.solvings) > 1,
             "joints": blocks(self.joints()),
             "lines": lines,
@@ -104,7 +102,7 @@ class Told:
             "roundings": self.algorithm.roundings(),
             "branches": [
                 (escape(label), ",\\ ".join(f"{page.math(s)} = {v:+d}" for s, v in signs.items()))
-                for label, signs in function.cases()
+                for label, signs in self.whole.cases()
                 if signs
             ],
             "continua": [self.continuum(inverse, c) for c in inverse.degenerate if c.free]

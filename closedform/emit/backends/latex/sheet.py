@@ -19,6 +19,7 @@ from closedform.emit.backends.latex.names import (
 )
 from closedform.emit.backends.latex.prose import Prose, upright, written_name
 from closedform.emit.backends.latex.wide import Equation, Lines
+from closedform.model.alike import INDEX
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Array, Function
 
@@ -54,12 +55,6 @@ class Sheet:
         earlier = [f for f in functions[: functions.index(function)] if f.name != UNPRINTED]
         shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
         return max(shared, key=lambda f: len(f.body), default=None)
-
-    def answers(self, function: Function) -> list[sp.Symbol]:
-        """The joints that the outputs of an inverse stand for."""
-        found = [i for i in self.derivation.inverses if i.function == function.name]
-        total = sum(a.size for a in function.outputs)
-        return list(found[0].unknowns) if found and len(found[0].unknowns) == total else []
 
     def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[Equation]:
         """An argument and its entries, or the values of the entries on ``locus``."""
@@ -120,7 +115,7 @@ class Sheet:
             return [name]
         value = whole.get(name)
         square = isinstance(value, sp.MatrixBase) and value.rows == value.cols
-        diagonal = f"{name}_{{11}}" in whole or square
+        diagonal = square or any(f"{name}_{{{k}{k}}}" in whole for k in ("1", INDEX))
         indices = [f"{k}{k}" if diagonal else str(k) for k in range(1, array.size + 1)]
         return [element(name, k) for k in indices]
 

@@ -10,7 +10,7 @@ import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.article import Page
-from closedform.emit.backends.latex.formulas import FITS, Printer, integer, measure
+from closedform.emit.backends.latex.formulas import FITS, Printer, integer, is_nested, measure
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.names import Quantities, is_word
 from closedform.emit.backends.latex.wide import Lines
@@ -74,6 +74,14 @@ def test_every_row_of_a_display_is_estimated_to_fit(tex: Path) -> None:
 
 
 @pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
+def test_no_fraction_stands_in_another_or_in_an_exponent(tex: Path) -> None:
+    text = derivation_of(tex)
+    for formula in re.findall(r"\$([^$]*)\$|&= (.*)", text):
+        assert not is_nested("".join(formula)), formula
+    assert not re.search(r"[_^]\{[^{}]*\\frac", text)
+
+
+@pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
 def test_no_sum_starts_with_a_minus_if_it_has_another_term(tex: Path) -> None:
     for inner in re.findall(r"\(- ([^()]*)\)", derivation_of(tex)):
         assert " + " not in inner, inner
@@ -123,6 +131,13 @@ def test_every_failure_has_its_status(name: str) -> None:
         assert any(c.status == "singular" for c in held)
         for joint in flag.free:
             assert any(f"${text.page.math(joint)}$" in c.returned for c in held)
+
+
+@pytest.mark.parametrize("name", ["three_prs", "delta", "planar_2r"])
+def test_every_bound_is_a_condition_for_the_reader(name: str) -> None:
+    algorithm = told(name)[0].algorithm
+    bounds = [s.symbol for s in algorithm.function.body if isinstance(s, Bound)]
+    assert bounds and all(algorithm.conditions([s]) for s in bounds)
 
 
 def evaluated(algorithm: Algorithm, given: dict) -> list[float]:
@@ -180,6 +195,9 @@ def test_the_algorithm_computes_what_the_function_computes(name: str) -> None:
         (a / 2000000, r"5 \cdot 10^{-7} a"),
         (sp.pi * (a - b) * sp.cos(x) / 18, r"\frac{\pi}{18} (a - b) \cos x"),
         (sp.atan(a), r"\arctan(a)"),
+        ((a / sp.cos(x) - b) / y, r"\frac{a - b \cos x}{y \cos x}"),
+        (sp.cos((a - b) / 2) * a / y, r"\frac{a \cos((a - b)/2)}{y}"),
+        (a * (b**2) ** sp.Rational(3, 4) / y, r"\frac{a \left|b\right|^{3/2}}{y}"),
     ],
 )
 def test_terms_and_factors_stand_as_a_person_writes_them(value: sp.Expr, latex: str) -> None:

@@ -272,7 +272,8 @@ class Slide:
         off = w.cross(s) if len(w) == 3 else sp.Matrix([cross_in_plane(w, s)])
         parts = [e for e in off if e != 0]
         size = sp.sqrt(sum(e**2 for e in parts)) if len(parts) > 1 else parts[0]
-        aside = chain.let("aside", size, nonnegative=len(parts) > 1)
+        signed = {} if len(parts) == 1 else {"nonnegative": True}  # False would say negative
+        aside = chain.let("aside", size, **signed)
         start = len(p.body)
         root = chain.half_chord("root", r, aside, "the rod reaches the line of the slider")
         value = chain.let("slide", m - sigma * root)

@@ -17,7 +17,7 @@ from sympy.logic.boolalg import Boolean
 
 from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
-from closedform.emit.backends.latex.claims import Claims, flat
+from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
     Numbers,
     canonical,
@@ -26,6 +26,7 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
+from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.prose import (
@@ -277,7 +278,7 @@ def default(value: sp.Rational) -> str:
     """The value of a parameter: a part of a turn if it is one to all digits, or a decimal."""
     part = sp.Rational(float(value / sp.pi)).limit_denominator(PARTS)
     if part and abs(float(value / (part * sp.pi)) - 1) <= 2 * sys.float_info.epsilon:
-        return f"${sp.latex(part * sp.pi)}$"
+        return f"${flat(sp.latex(part * sp.pi))}$"
     return decimal(value)
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from closedform.emit.backends.latex.equations import reference
+from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
@@ -16,16 +17,9 @@ from closedform.model.derivation import Derivation, Step
 from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import Proof
 
-FLAT = re.compile(r"\\frac\{((?:[^{}+-]|\{[^{}+-]*\})*)\}\{(\d+)\}")
-"""A fraction that can stand in a line."""
 TERM = r"\|?(?:\d+ )?[A-Z]+\d?(?: [-+] (?:\d+ )?[A-Z]+\d?)*\|?"
 COMPARED = rf"{TERM}(?: (?:<=|>=|=|<|>) {TERM})+"
 """A comparison of distances in plain text: ``CD <= L0 + 2 L1``."""
-
-
-def flat(text: str) -> str:
-    """The same with fractions that stand in a line, where that can be."""
-    return FLAT.sub(r"\1/\2", text)
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     """
 
     def __init__(self, joints: set[sp.Symbol], names: Mapping[sp.Symbol, str] | None = None):
-        super().__init__({"long_frac_ratio": 20})
+        super().__init__({"long_frac_ratio": 20, "fold_frac_powers": True})
         self.joints, self.legend = joints, dict[str, str]()
         self.names = dict(names or {})
         self.parameters = frozenset[str]()
@@ -70,6 +70,13 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     # Products
 
     def _print_Mul(self, expr: sp.Mul) -> str:
+        """A product; one with a fraction inside a fraction is printed as a single fraction."""
+        text = self._fraction(expr)
+        if is_nested(text) and (whole := sp.together(expr)).is_Mul:
+            text = self._fraction(whole)
+        return flat(text) if is_nested(text) else text
+
+    def _fraction(self, expr: sp.Mul) -> str:
         number, factors = _number(expr)
         over, under, radicands = [], [], ([], [])  # type: ignore[var-annotated]
         for factor in factors:
@@ -111,7 +118,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             return ""
         if len(radicands) == 1:
             return rf"\sqrt{{{self._print(radicands[0])}}}"
-        return rf"\sqrt{{{self._product(1, [f for r in radicands for f in _factors(r)], '')}}}"
+        return rf"\sqrt{{{self._print_Mul(sp.Mul(*radicands, evaluate=False))}}}"
 
     def _product(
         self, number: int, factors: Sequence[sp.Expr], root: str, *, alone: bool = False
@@ -278,10 +285,16 @@ def natural(text: str) -> tuple[Any, ...]:
     return tuple((p.isdigit(), int(p) if p.isdigit() else 0, p) for p in re.split(r"(\d+)", text))
 
 
+FLAT = re.compile(r"\\frac\{((?:[^{}+-]|\{[^{}+-]*\})*)\}\{(\d+)\}")
+"""A fraction that can stand in a line."""
+ANGLE = re.compile(r"(\\(?:sin|cos|tan)) \\frac\{((?:[^{}]|\{[^{}]*\})*[+-](?:[^{}]|\{[^{}]*\})*)\}\{(\d+)\}")  # fmt: skip  # noqa: E501
+"""The sine, the cosine or the tangent of a part of a sum."""
+
+
 def stacked(rows: Sequence[str]) -> str:
     """Rows of a matrix or of cases; fractions need some space between them."""
-    small = "".join(rows).count(r"\frac") < 2
-    return (r" \\ " if small else r" \\[3pt] ").join(rows)
+    small = r"\frac" not in "".join(rows)
+    return (r" \\ " if small else r" \\[5pt] ").join(rows)
 
 
 INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
@@ -290,10 +303,35 @@ SQUARED = re.compile(r"\\sqrt\{([A-Za-z])\^(?:2|\{2\})\}")
 FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}")  # fmt: skip  # noqa: E501
 
 
+def flat(text: str) -> str:
+    """The same with fractions that stand in a line, where that can be."""
+    return FLAT.sub(r"\1/\2", ANGLE.sub(r"\1((\2)/\3)", text))
+
+
+def is_nested(text: str) -> bool:
+    """Whether a fraction stands in a fraction, where it would be small."""
+    depth, parts, starts = 0, 0, list[int]()
+    for token in re.findall(r"\\frac|[{}]", text):
+        if token == r"\frac" and starts:
+            return True
+        if token == r"\frac":
+            parts = 2  # the groups that follow: above and below the line
+        elif token == "{":
+            if parts and not starts:
+                starts.append(depth)
+            depth += 1
+        else:
+            depth -= 1
+            if starts == [depth]:
+                starts.clear()
+                parts -= 1
+    return False
+
+
 def measure(text: str) -> float:
     """The width of a formula, in average letters; a fraction counts as the wider of its parts."""
     if stack := INNERMOST.search(text):
-        widest = max(map(measure, re.split(r" \\\\(?:\[3pt\])? ", stack[2])))
+        widest = max(map(measure, re.split(r" \\\\(?:\[5pt\])? ", stack[2])))
         return measure(text[: stack.start()] + text[stack.end() :]) + 3 + widest
     if fraction := FRACTION.search(text):
         widest = 0.8 + max(map(measure, fraction.groups()))

@@ -258,3 +258,10 @@ def test_a_sum_of_products_is_grouped() -> None:
     l1, l2, M, N = (real(n) for n in ("l1", "l2", "M", "N"))
     tidied = Lines(Printer(()), ()).tidy(M * l1 + M * l2 + N * l1 - N * l2)
     assert tidied in (M * (l1 + l2) + N * (l1 - l2), l1 * (M + N) + l2 * (M - N))
+
+
+def test_the_entries_of_a_diagonal_share_a_row() -> None:
+    rows = [(f"B_{{{k}{k}}}", rf"entry, see \eqref{{eq:x:{k}}}") for k in (1, 2, 3)]
+    whole = [(r"B_{11},\ \ldots,\ B_{33}", r"entry, see \eqref{eq:x:1}--\eqref{eq:x:3}")]
+    assert symbols.joined(rows) == whole
+    assert symbols.joined([rows[0], rows[2]]) == [rows[0], rows[2]]

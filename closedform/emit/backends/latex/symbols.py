@@ -229,7 +229,7 @@ def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
 
 
-WIDEST = 20
+WIDEST = 16
 """The letters of the symbols in one row; more are too wide for their column."""
 
 
@@ -246,13 +246,19 @@ def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
             if not label and meaning == common and _letters([*forms, form]) <= WIDEST:
                 forms.append(form)
                 continue
-            follows = stem and last and (stem[1], int(stem[2])) == (last[1], int(last[2]) + 1)
+            follows = stem and last and stem[1] == last[1] and _follows(stem[2], last[2])
             if label and labels and follows and common.startswith(f"{label[1]}see"):
                 forms.append(form)
                 labels.append(label[2])
                 continue
         done.append(([form], meaning, [label[2]] if label else []))
     return [_joined(forms, meaning, labels) for forms, meaning, labels in done]
+
+
+def _follows(number: str, last: str) -> bool:
+    """Whether a number is the next one, or the next on the diagonal of a matrix: 22 after 11."""
+    on_diagonal = len(number) == len(last) == 2 and number[0] == number[1] and last[0] == last[1]
+    return int(number) - int(last) == (11 if on_diagonal else 1)
 
 
 def _letters(forms: Iterable[str]) -> int:

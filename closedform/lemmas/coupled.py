@@ -120,7 +120,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
     d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop.equation,), links=(found.link,)))
     record_lemma(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
-    along = sp.Matrix([v.let(f"A_1{i}", -e) for i, e in enumerate(found.rod, 1)])
+    along = sp.Matrix([v.let(f"w{i}", -e) for i, e in zip("xy", found.rod, strict=True)])
     return _Rod(v, modes, along)
 
 

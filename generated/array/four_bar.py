@@ -230,12 +230,12 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
     t22 = t6 * t21
     beyond_2 = 2.0 * ops.sqrt(ops.select(t17, t18 * t19, 1.0))
     t23 = wv_2 * beyond_2
-    A_11 = t6 + share_2 * ops.select(t16, 1.0, t22 + t23)
+    wx = t6 + share_2 * ops.select(t16, 1.0, t22 + t23)
     t24 = wv_2 * t21
     t25 = t6 * beyond_2
     t26 = wv_2 + share_2 * ops.select(t16, 0.0, t24 - t25)
-    A_11_negative = t6 + share_2 * ops.select(t16, 1.0, t22 - t23)
-    t27 = ops.select(failed, ops.nan, t5 + A_11_negative)
+    wx_negative = t6 + share_2 * ops.select(t16, 1.0, t22 - t23)
+    t27 = ops.select(failed, ops.nan, t5 + wx_negative)
     t28 = wv_2 + share_2 * ops.select(t16, 0.0, t24 + t25)
     return (
         t10,
@@ -247,7 +247,7 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
         t12,
         t13,
         t10,
-        ops.select(failed, ops.nan, t5 + A_11),
+        ops.select(failed, ops.nan, t5 + wx),
         ops.select(failed, ops.nan, wv_2 - t26),
         t10,
         t10,
@@ -338,11 +338,11 @@ def _jacobian_parallel(ops, theta, L1, L2, L3, L4):
     t19 = wv_2 + share_2 * ops.select(t11, 0.0, t17 - t18)
     t20 = t5 * t16
     t21 = wv_2 * beyond_2
-    A_11 = t5 + share_2 * ops.select(t11, 1.0, t20 + t21)
-    t22 = ops.select(failed, ops.nan, t19 * (t5 - A_11) - A_11 * (wv_2 - t19))
+    wx = t5 + share_2 * ops.select(t11, 1.0, t20 + t21)
+    t22 = ops.select(failed, ops.nan, t19 * (t5 - wx) - wx * (wv_2 - t19))
     t23 = wv_2 + share_2 * ops.select(t11, 0.0, t17 + t18)
-    A_11_negative = t5 + share_2 * ops.select(t11, 1.0, t20 - t21)
-    A_negative = t23 * (t5 - A_11_negative) - A_11_negative * (wv_2 - t23)
+    wx_negative = t5 + share_2 * ops.select(t11, 1.0, t20 - t21)
+    A_negative = t23 * (t5 - wx_negative) - wx_negative * (wv_2 - t23)
     return (
         t22,
         ops.select(failed, ops.nan, A_negative),
@@ -420,14 +420,14 @@ def _jacobian_serial(ops, theta, L1, L2, L3, L4):
     t18 = t6 * t17
     beyond_2 = 2.0 * ops.sqrt(ops.select(t13, t14 * t15, 1.0))
     t19 = wv_2 * beyond_2
-    A_11 = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
+    wx = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
     t20 = wv_2 * t17
     t21 = t6 * beyond_2
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
-    t23 = ops.select(failed, ops.nan, -(wv_2 * A_11 + t5 * t22))
-    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    t23 = ops.select(failed, ops.nan, -(wv_2 * wx + t5 * t22))
+    wx_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t24 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t25 = ops.select(failed, ops.nan, -(wv_2 * A_11_negative + t5 * t24))
+    t25 = ops.select(failed, ops.nan, -(wv_2 * wx_negative + t5 * t24))
     return (
         t23,
         t25,
@@ -505,16 +505,16 @@ def _jacobian(ops, theta, L1, L2, L3, L4):
     t18 = t6 * t17
     beyond_2 = 2.0 * ops.sqrt(ops.select(t13, t14 * t15, 1.0))
     t19 = wv_2 * beyond_2
-    A_11 = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
+    wx = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
     t20 = wv_2 * t17
     t21 = t6 * beyond_2
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
-    t23 = ops.select(t10, A_11 * (wv_2 - t22) - t22 * (t6 - A_11), 1.0)
-    t24 = ops.select(failed, ops.nan, (wv_2 * A_11 + t5 * t22) / t23)
-    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    t23 = ops.select(t10, wx * (wv_2 - t22) - t22 * (t6 - wx), 1.0)
+    t24 = ops.select(failed, ops.nan, (wv_2 * wx + t5 * t22) / t23)
+    wx_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = A_11_negative * (wv_2 - t25) - t25 * (t6 - A_11_negative)
-    t27 = (wv_2 * A_11_negative + t5 * t25) / ops.select(t10, t26, 1.0)
+    t26 = wx_negative * (wv_2 - t25) - t25 * (t6 - wx_negative)
+    t27 = (wv_2 * wx_negative + t5 * t25) / ops.select(t10, t26, 1.0)
     return (
         t24,
         ops.select(failed, ops.nan, t27),
@@ -593,16 +593,16 @@ def _determinant(ops, theta, L1, L2, L3, L4):
     t18 = t6 * t17
     beyond_2 = 2.0 * ops.sqrt(ops.select(t13, t14 * t15, 1.0))
     t19 = wv_2 * beyond_2
-    A_11 = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
+    wx = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
     t20 = wv_2 * t17
     t21 = t6 * beyond_2
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
-    t23 = ops.select(t10, A_11 * (wv_2 - t22) - t22 * (t6 - A_11), 1.0)
-    t24 = ops.select(failed, ops.nan, (wv_2 * A_11 + t5 * t22) / t23)
-    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    t23 = ops.select(t10, wx * (wv_2 - t22) - t22 * (t6 - wx), 1.0)
+    t24 = ops.select(failed, ops.nan, (wv_2 * wx + t5 * t22) / t23)
+    wx_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = A_11_negative * (wv_2 - t25) - t25 * (t6 - A_11_negative)
-    t27 = (wv_2 * A_11_negative + t5 * t25) / ops.select(t10, t26, 1.0)
+    t26 = wx_negative * (wv_2 - t25) - t25 * (t6 - wx_negative)
+    t27 = (wv_2 * wx_negative + t5 * t25) / ops.select(t10, t26, 1.0)
     return (
         t24,
         ops.select(failed, ops.nan, t27),
@@ -680,16 +680,16 @@ def _singularities(ops, theta, L1, L2, L3, L4):
     t18 = t6 * t17
     beyond_2 = 2.0 * ops.sqrt(ops.select(t13, t14 * t15, 1.0))
     t19 = wv_2 * beyond_2
-    A_11 = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
+    wx = t6 + share_2 * ops.select(t12, 1.0, t18 + t19)
     t20 = wv_2 * t17
     t21 = t6 * beyond_2
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
-    t23 = ops.select(failed, ops.nan, -(wv_2 * A_11 + t5 * t22))
-    t24 = ops.select(failed, ops.nan, t22 * (t6 - A_11) - A_11 * (wv_2 - t22))
-    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    t23 = ops.select(failed, ops.nan, -(wv_2 * wx + t5 * t22))
+    t24 = ops.select(failed, ops.nan, t22 * (t6 - wx) - wx * (wv_2 - t22))
+    wx_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = ops.select(failed, ops.nan, -(wv_2 * A_11_negative + t5 * t25))
-    A_negative = t25 * (t6 - A_11_negative) - A_11_negative * (wv_2 - t25)
+    t26 = ops.select(failed, ops.nan, -(wv_2 * wx_negative + t5 * t25))
+    A_negative = t25 * (t6 - wx_negative) - wx_negative * (wv_2 - t25)
     return (
         t23,
         t24,

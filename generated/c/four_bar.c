@@ -355,7 +355,7 @@ CF_INLINE void four_bar_jacobian_parallel_kernel(const int single, const four_ba
     const real_t t16 = t1 * t11;
     const real_t t17 = wv_2 * beyond_2;
     const real_t t18 = share_2 * cf_select(t4, CLOSEDFORM_C(1.0), t16 + t17);
-    const real_t A_11 = t1 + t18;
+    const real_t wx = t1 + t18;
     const int t19 = cf_nought(L1) + cf_nought(L2) + cf_nought(L3) + cf_nought(L4) == 0;
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
@@ -363,13 +363,12 @@ CF_INLINE void four_bar_jacobian_parallel_kernel(const int single, const four_ba
     const real_t t23 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
     const int unreachable = !((-t23 <= t5) & (-t23 <= t9) & (-t23 <= t7));
     const real_t t24 = cf_poison(single, (!(t21 & t22)) | unreachable);
-    const real_t t25 = t15 * (t1 - A_11) - A_11 * (wv_2 - t15) + t24;
-    const real_t t26 = share_2 * cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13);
-    const real_t t27 = wv_2 + t26;
-    const real_t t28 = share_2 * cf_select(t4, CLOSEDFORM_C(1.0), t16 - t17);
-    const real_t A_11_negative = t1 + t28;
-    const real_t A_negative = t27 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t27);
-    A[0] = t25;
+    const real_t t25 = share_2 * cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13);
+    const real_t t26 = wv_2 + t25;
+    const real_t t27 = share_2 * cf_select(t4, CLOSEDFORM_C(1.0), t16 - t17);
+    const real_t wx_negative = t1 + t27;
+    const real_t A_negative = t26 * (t1 - wx_negative) - wx_negative * (wv_2 - t26);
+    A[0] = t15 * (t1 - wx) - wx * (wv_2 - t15) + t24;
     A[1] = A_negative + t24;
 }
 
@@ -593,12 +592,12 @@ CF_INLINE void four_bar_jacobian_kernel(const int single, const four_bar_params 
     const real_t beyond_2 = CLOSEDFORM_C(2.0) * cf_root(single, t9 * t11);
     const real_t t14 = wv_2 * beyond_2;
     const real_t t15 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 + t14);
-    const real_t A_11 = t2 + t15;
+    const real_t wx = t2 + t15;
     const real_t t16 = wv_2 * t12;
     const real_t t17 = t2 * beyond_2;
     const real_t t18 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 - t17);
     const real_t t19 = wv_2 + t18;
-    const real_t t20 = cf_quotient(single, wv_2 * A_11 + t1 * t19, A_11 * (wv_2 - t19) - t19 * (t2 - A_11));
+    const real_t t20 = cf_quotient(single, wv_2 * wx + t1 * t19, wx * (wv_2 - t19) - t19 * (t2 - wx));
     const int t21 = cf_nought(L1) + cf_nought(L2) + cf_nought(L3) + cf_nought(L4) == 0;
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
@@ -607,11 +606,11 @@ CF_INLINE void four_bar_jacobian_kernel(const int single, const four_bar_params 
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_negative = t2 + t27;
+    const real_t wx_negative = t2 + t27;
     const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
     const real_t t29 = wv_2 + t28;
-    const real_t t30 = A_11_negative * (wv_2 - t29) - t29 * (t2 - A_11_negative);
-    const real_t t31 = cf_quotient(single, wv_2 * A_11_negative + t1 * t29, t30);
+    const real_t t30 = wx_negative * (wv_2 - t29) - t29 * (t2 - wx_negative);
+    const real_t t31 = cf_quotient(single, wv_2 * wx_negative + t1 * t29, t30);
     J[0] = t20 + t26;
     J[1] = t31 + t26;
 }
@@ -713,12 +712,12 @@ CF_INLINE void four_bar_determinant_kernel(const int single, const four_bar_para
     const real_t beyond_2 = CLOSEDFORM_C(2.0) * cf_root(single, t9 * t11);
     const real_t t14 = wv_2 * beyond_2;
     const real_t t15 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 + t14);
-    const real_t A_11 = t2 + t15;
+    const real_t wx = t2 + t15;
     const real_t t16 = wv_2 * t12;
     const real_t t17 = t2 * beyond_2;
     const real_t t18 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 - t17);
     const real_t t19 = wv_2 + t18;
-    const real_t t20 = cf_quotient(single, wv_2 * A_11 + t1 * t19, A_11 * (wv_2 - t19) - t19 * (t2 - A_11));
+    const real_t t20 = cf_quotient(single, wv_2 * wx + t1 * t19, wx * (wv_2 - t19) - t19 * (t2 - wx));
     const int t21 = cf_nought(L1) + cf_nought(L2) + cf_nought(L3) + cf_nought(L4) == 0;
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
@@ -727,11 +726,11 @@ CF_INLINE void four_bar_determinant_kernel(const int single, const four_bar_para
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_negative = t2 + t27;
+    const real_t wx_negative = t2 + t27;
     const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
     const real_t t29 = wv_2 + t28;
-    const real_t t30 = A_11_negative * (wv_2 - t29) - t29 * (t2 - A_11_negative);
-    const real_t t31 = cf_quotient(single, wv_2 * A_11_negative + t1 * t29, t30);
+    const real_t t30 = wx_negative * (wv_2 - t29) - t29 * (t2 - wx_negative);
+    const real_t t31 = cf_quotient(single, wv_2 * wx_negative + t1 * t29, t30);
     det[0] = t20 + t26;
     det[1] = t31 + t26;
 }
@@ -833,7 +832,7 @@ CF_INLINE void four_bar_singularities_kernel(const int single, const four_bar_pa
     const real_t beyond_2 = CLOSEDFORM_C(2.0) * cf_root(single, t9 * t11);
     const real_t t14 = wv_2 * beyond_2;
     const real_t t15 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 + t14);
-    const real_t A_11 = t2 + t15;
+    const real_t wx = t2 + t15;
     const real_t t16 = wv_2 * t12;
     const real_t t17 = t2 * beyond_2;
     const real_t t18 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 - t17);
@@ -845,15 +844,14 @@ CF_INLINE void four_bar_singularities_kernel(const int single, const four_bar_pa
     const real_t t24 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
     const int unreachable = !((-t24 <= t6) & (-t24 <= t10) & (-t24 <= t8));
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
-    const real_t t26 = t19 * (t2 - A_11) - A_11 * (wv_2 - t19) + t25;
-    const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_negative = t2 + t27;
-    const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
-    const real_t t29 = wv_2 + t28;
-    const real_t A_negative = t29 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t29);
-    factors[0] = -(wv_2 * A_11 + t1 * t19) + t25;
-    factors[1] = t26;
-    factors[2] = -(wv_2 * A_11_negative + t1 * t29) + t25;
+    const real_t t26 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
+    const real_t wx_negative = t2 + t26;
+    const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
+    const real_t t28 = wv_2 + t27;
+    const real_t A_negative = t28 * (t2 - wx_negative) - wx_negative * (wv_2 - t28);
+    factors[0] = -(wv_2 * wx + t1 * t19) + t25;
+    factors[1] = t19 * (t2 - wx) - wx * (wv_2 - t19) + t25;
+    factors[2] = -(wv_2 * wx_negative + t1 * t28) + t25;
     factors[3] = A_negative + t25;
 }
 

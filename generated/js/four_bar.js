@@ -331,18 +331,17 @@ function _jacobian_parallel(v, o) {
     const t14 = wv_2 + share_2 * (t4 ? 0.0 : t12 - t13);
     const t15 = t1 * t11;
     const t16 = wv_2 * beyond_2;
-    const A_11 = t1 + share_2 * (t4 ? 1.0 : t15 + t16);
+    const wx = t1 + share_2 * (t4 ? 1.0 : t15 + t16);
     const t17 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t18 = t17 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const t19 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t18 && Number.isFinite(theta)) || !(t19 <= t5 && t19 <= t9 && t19 <= t7);
     const t20 = failed ? NaN : 0;
-    const t21 = t14 * (t1 - A_11) - A_11 * (wv_2 - t14) + t20;
-    const t22 = wv_2 + share_2 * (t4 ? 0.0 : t12 + t13);
-    const A_11_negative = t1 + share_2 * (t4 ? 1.0 : t15 - t16);
-    const A_negative = t22 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t22);
-    o[0] = t21;
+    const t21 = wv_2 + share_2 * (t4 ? 0.0 : t12 + t13);
+    const wx_negative = t1 + share_2 * (t4 ? 1.0 : t15 - t16);
+    const A_negative = t21 * (t1 - wx_negative) - wx_negative * (wv_2 - t21);
+    o[0] = t14 * (t1 - wx) - wx * (wv_2 - t14) + t20;
     o[1] = A_negative + t20;
 }
 
@@ -519,23 +518,22 @@ function _jacobian(v, o) {
     const t13 = t2 * t12;
     const beyond_2 = 2.0 * Math.sqrt(t9 * t11);
     const t14 = wv_2 * beyond_2;
-    const A_11 = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
+    const wx = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
     const t15 = wv_2 * t12;
     const t16 = t2 * beyond_2;
     const t17 = wv_2 + share_2 * (t5 ? 0.0 : t15 - t16);
-    const t18 = (wv_2 * A_11 + t1 * t17) / (A_11 * (wv_2 - t17) - t17 * (t2 - A_11));
+    const t18 = (wv_2 * wx + t1 * t17) / (wx * (wv_2 - t17) - t17 * (t2 - wx));
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
-    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
     const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const t24 = A_11_negative * (wv_2 - t23) - t23 * (t2 - A_11_negative);
-    const t25 = (wv_2 * A_11_negative + t1 * t23) / t24 + t22;
+    const t24 = wx_negative * (wv_2 - t23) - t23 * (t2 - wx_negative);
     o[0] = t18 + t22;
-    o[1] = t25;
+    o[1] = (wv_2 * wx_negative + t1 * t23) / t24 + t22;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -617,23 +615,22 @@ function _determinant(v, o) {
     const t13 = t2 * t12;
     const beyond_2 = 2.0 * Math.sqrt(t9 * t11);
     const t14 = wv_2 * beyond_2;
-    const A_11 = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
+    const wx = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
     const t15 = wv_2 * t12;
     const t16 = t2 * beyond_2;
     const t17 = wv_2 + share_2 * (t5 ? 0.0 : t15 - t16);
-    const t18 = (wv_2 * A_11 + t1 * t17) / (A_11 * (wv_2 - t17) - t17 * (t2 - A_11));
+    const t18 = (wv_2 * wx + t1 * t17) / (wx * (wv_2 - t17) - t17 * (t2 - wx));
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
-    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
     const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const t24 = A_11_negative * (wv_2 - t23) - t23 * (t2 - A_11_negative);
-    const t25 = (wv_2 * A_11_negative + t1 * t23) / t24 + t22;
+    const t24 = wx_negative * (wv_2 - t23) - t23 * (t2 - wx_negative);
     o[0] = t18 + t22;
-    o[1] = t25;
+    o[1] = (wv_2 * wx_negative + t1 * t23) / t24 + t22;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -715,7 +712,7 @@ function _singularities(v, o) {
     const t13 = t2 * t12;
     const beyond_2 = 2.0 * Math.sqrt(t9 * t11);
     const t14 = wv_2 * beyond_2;
-    const A_11 = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
+    const wx = t2 + share_2 * (t5 ? 1.0 : t13 + t14);
     const t15 = wv_2 * t12;
     const t16 = t2 * beyond_2;
     const t17 = wv_2 + share_2 * (t5 ? 0.0 : t15 - t16);
@@ -725,13 +722,12 @@ function _singularities(v, o) {
     const t20 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t19 && Number.isFinite(theta)) || !(t20 <= t6 && t20 <= t10 && t20 <= t8);
     const t21 = failed ? NaN : 0;
-    const t22 = t17 * (t2 - A_11) - A_11 * (wv_2 - t17) + t21;
-    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
-    const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const A_negative = t23 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t23);
-    o[0] = -(wv_2 * A_11 + t1 * t17) + t21;
-    o[1] = t22;
-    o[2] = -(wv_2 * A_11_negative + t1 * t23) + t21;
+    const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const t22 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
+    const A_negative = t22 * (t2 - wx_negative) - wx_negative * (wv_2 - t22);
+    o[0] = -(wv_2 * wx + t1 * t17) + t21;
+    o[1] = t17 * (t2 - wx) - wx * (wv_2 - t17) + t21;
+    o[2] = -(wv_2 * wx_negative + t1 * t22) + t21;
     o[3] = A_negative + t21;
 }
 

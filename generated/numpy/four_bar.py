@@ -365,7 +365,7 @@ def _jacobian_parallel(theta, L1, L2, L3, L4):
     t17 = wv_2 * beyond_2
     del beyond_2
     t18 = share_2 * _runtime.select(t4, 1.0, t16 + t17)
-    A_11 = t1 + t18
+    wx = t1 + t18
     del t18
     t19 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
     t20 = t19 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= L3)
@@ -378,20 +378,18 @@ def _jacobian_parallel(theta, L1, L2, L3, L4):
     del t21, t5, t7, t9
     t22 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t23 = t15 * (t1 - A_11) - A_11 * (wv_2 - t15) + t22
-    del A_11, t15
-    t24 = share_2 * _runtime.select(t4, 0.0, t12 + t13)
+    t23 = share_2 * _runtime.select(t4, 0.0, t12 + t13)
     del t12, t13
-    t25 = wv_2 + t24
-    del t24
-    t26 = share_2 * _runtime.select(t4, 1.0, t16 - t17)
+    t24 = wv_2 + t23
+    del t23
+    t25 = share_2 * _runtime.select(t4, 1.0, t16 - t17)
     del share_2, t16, t17, t4
-    A_11_negative = t1 + t26
-    del t26
-    A_negative = t25 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t25)
-    del A_11_negative, t1, t25, wv_2
+    wx_negative = t1 + t25
+    del t25
+    A_negative = t24 * (t1 - wx_negative) - wx_negative * (wv_2 - t24)
+    del t24, wx_negative
     return (
-        t23,
+        t15 * (t1 - wx) - wx * (wv_2 - t15) + t22,
         A_negative + t22,
     )
 
@@ -572,7 +570,7 @@ def _jacobian(theta, L1, L2, L3, L4):
     del t11, t9
     t14 = wv_2 * beyond_2
     t15 = share_2 * _runtime.select(t5, 1.0, t13 + t14)
-    A_11 = t2 + t15
+    wx = t2 + t15
     del t15
     t16 = wv_2 * t12
     del t12
@@ -581,8 +579,8 @@ def _jacobian(theta, L1, L2, L3, L4):
     t18 = share_2 * _runtime.select(t5, 0.0, t16 - t17)
     t19 = wv_2 + t18
     del t18
-    t20 = (wv_2 * A_11 + t1 * t19) / (A_11 * (wv_2 - t19) - t19 * (t2 - A_11))
-    del A_11, t19
+    t20 = (wv_2 * wx + t1 * t19) / (wx * (wv_2 - t19) - t19 * (t2 - wx))
+    del t19, wx
     t21 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
     t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= L3)
     del t21
@@ -596,19 +594,17 @@ def _jacobian(theta, L1, L2, L3, L4):
     del invalid, unreachable
     t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_negative = t2 + t25
+    wx_negative = t2 + t25
     del t25
     t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
     t27 = wv_2 + t26
     del t26
-    t28 = A_11_negative * (wv_2 - t27) - t27 * (t2 - A_11_negative)
+    t28 = wx_negative * (wv_2 - t27) - t27 * (t2 - wx_negative)
     del t2
-    t29 = (wv_2 * A_11_negative + t1 * t27) / t28 + t24
-    del A_11_negative, t1, t27, t28, wv_2
     return (
         t20 + t24,
-        t29,
+        (wv_2 * wx_negative + t1 * t27) / t28 + t24,
     )
 
 
@@ -686,7 +682,7 @@ def _determinant(theta, L1, L2, L3, L4):
     del t11, t9
     t14 = wv_2 * beyond_2
     t15 = share_2 * _runtime.select(t5, 1.0, t13 + t14)
-    A_11 = t2 + t15
+    wx = t2 + t15
     del t15
     t16 = wv_2 * t12
     del t12
@@ -695,8 +691,8 @@ def _determinant(theta, L1, L2, L3, L4):
     t18 = share_2 * _runtime.select(t5, 0.0, t16 - t17)
     t19 = wv_2 + t18
     del t18
-    t20 = (wv_2 * A_11 + t1 * t19) / (A_11 * (wv_2 - t19) - t19 * (t2 - A_11))
-    del A_11, t19
+    t20 = (wv_2 * wx + t1 * t19) / (wx * (wv_2 - t19) - t19 * (t2 - wx))
+    del t19, wx
     t21 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
     t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= L3)
     del t21
@@ -710,19 +706,17 @@ def _determinant(theta, L1, L2, L3, L4):
     del invalid, unreachable
     t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_negative = t2 + t25
+    wx_negative = t2 + t25
     del t25
     t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
     t27 = wv_2 + t26
     del t26
-    t28 = A_11_negative * (wv_2 - t27) - t27 * (t2 - A_11_negative)
+    t28 = wx_negative * (wv_2 - t27) - t27 * (t2 - wx_negative)
     del t2
-    t29 = (wv_2 * A_11_negative + t1 * t27) / t28 + t24
-    del A_11_negative, t1, t27, t28, wv_2
     return (
         t20 + t24,
-        t29,
+        (wv_2 * wx_negative + t1 * t27) / t28 + t24,
     )
 
 
@@ -799,7 +793,7 @@ def _singularities(theta, L1, L2, L3, L4):
     del t11, t9
     t14 = wv_2 * beyond_2
     t15 = share_2 * _runtime.select(t5, 1.0, t13 + t14)
-    A_11 = t2 + t15
+    wx = t2 + t15
     del t15
     t16 = wv_2 * t12
     del t12
@@ -819,21 +813,19 @@ def _singularities(theta, L1, L2, L3, L4):
     del t10, t22, t6, t8
     t23 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t24 = t19 * (t2 - A_11) - A_11 * (wv_2 - t19) + t23
-    t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
+    t24 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_negative = t2 + t25
-    del t25
-    t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
+    wx_negative = t2 + t24
+    del t24
+    t25 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
-    t27 = wv_2 + t26
-    del t26
-    A_negative = t27 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t27)
-    del t2
+    t26 = wv_2 + t25
+    del t25
+    A_negative = t26 * (t2 - wx_negative) - wx_negative * (wv_2 - t26)
     return (
-        -(wv_2 * A_11 + t1 * t19) + t23,
-        t24,
-        -(wv_2 * A_11_negative + t1 * t27) + t23,
+        -(wv_2 * wx + t1 * t19) + t23,
+        t19 * (t2 - wx) - wx * (wv_2 - t19) + t23,
+        -(wv_2 * wx_negative + t1 * t26) + t23,
         A_negative + t23,
     )
 

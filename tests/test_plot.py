@@ -18,6 +18,7 @@ from closedform import plot
 from closedform.cli.commands import main
 from closedform.plot.catalogue import fits
 from closedform.plot.postures import OK, spoken
+from closedform.plot.style import colour
 
 SMALL = 40
 
@@ -191,6 +192,13 @@ def test_wrong_postures_are_explained() -> None:
         plot.branches(closedform.planar_2r, [100.0, 0.0])
     with pytest.raises(TypeError, match="is not a generated module"):
         plot.mechanism(np)
+
+
+def test_links_may_have_colours_of_their_own() -> None:
+    robot = module("agile_wrist")
+    axes = plot.mechanism(robot, hues={"rod1": 3}, about="O", labels=False, axes=False)
+    shades = [line.get_color() for line in axes.lines]
+    assert shades.count(colour(3)) == 1 and colour(0) in shades
 
 
 def test_links_of_a_spherical_mechanism_are_arcs_about_its_centre() -> None:

@@ -54,6 +54,8 @@ class View:
     general: Sequence[float] | None = None
     mode: int = 0
     faint: Collection[str] = ()
+    hues: Mapping[str, int] = field(default_factory=dict)
+    """The numbers of the colours of links that have one of their own."""
     about: str = ""
     """The centre of a spherical mechanism, whose links are arcs."""
     plane: tuple[str, str] | None = None
@@ -132,7 +134,7 @@ def _both(robot: ModuleType, view: View) -> Any:
 
 def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:
     """Draw one of the postures of a view; by default a posture that is far from singular."""
-    style |= {"mode": view.mode, "faint": view.faint, "about": view.about}
+    style |= {"mode": view.mode, "faint": view.faint, "about": view.about, "hues": view.hues}
     if Robot.of(robot).has_forward_map:
         return mechanism(robot, posture, **style)
     return mechanism(robot, x=posture, **style)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from closedform.plot.robot import Array, Robot
 from closedform.plot.style import GROUND, colour, new_axes, new_panels, styled
 from closedform.plot.symbols import lengths, symbol
 
+NO_HUES: Mapping[str, int] = MappingProxyType({})
 OK = 0
 SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
@@ -44,6 +45,7 @@ def mechanism(
     axes: bool = True,
     faint: Collection[str] = (),
     about: str = "",
+    hues: Mapping[str, int] = NO_HUES,
 ) -> Any:
     """Draw a mechanism in one posture, with the axes of its joints, its lengths and angles.
 
@@ -70,6 +72,8 @@ def mechanism(
     about
         the point that is the centre of a spherical mechanism, whose links are drawn as arcs of
         great circles about it
+    hues
+        the number of the colour of links that have one of their own, such as those of a leg
     """
     r = _posed(Robot.of(robot, params), x)
     joints = _first(r) if q is None else np.asarray(q, dtype=float)
@@ -86,7 +90,16 @@ def mechanism(
     points = on_sphere(r, points, about)
     diagram = Diagram(ax, extent([points]))
     along = joint_axes(r, joints, mode=mode)
-    draw(diagram, r, points, colour(0), along=along if axes else {}, faint=faint, about=about)
+    draw(
+        diagram,
+        r,
+        points,
+        colour(0),
+        along=along if axes else {},
+        faint=faint,
+        about=about,
+        hues=hues,
+    )
     shown = [points]
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
@@ -288,6 +301,7 @@ def draw(
     width: float = 2.6,
     faint: Collection[str] = (),
     about: str = "",
+    hues: Mapping[str, int] = NO_HUES,
 ) -> None:
     """The links, the joints and the hand of one posture.
 
@@ -314,7 +328,8 @@ def draw(
     place = dict(zip(skeleton.points, points, strict=True))
     named: dict[str, Any] = {"label": label} if label else {}
     for name, link in skeleton.links.items():
-        style: dict[str, Any] = {"linewidth": width, "color": shade}
+        hue = colour(hues[name]) if name in hues else shade
+        style: dict[str, Any] = {"linewidth": width, "color": hue}
         if name == "ground" or set(link) <= set(skeleton.ground):
             style = {"linewidth": 1.6, "color": GROUND}
         elif name in faint:

@@ -3,6 +3,7 @@
 import sympy as sp
 from closedform.derivations.claims.h6ar import state
 from closedform.derivations.h6ar_free_turn import as_published, free_turn, turn_step, turned_by
+from closedform.derivations.h6ar_jacobian import factors_shown
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
@@ -340,17 +341,24 @@ outward = reach(m, posture.upper, posture.fore, along, across)[0]
 with_wrist = straight(along, across, posture.upper, posture.fore)
 without = straight(m.L2, m.a3, posture.upper, posture.fore)
 area = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
+factors_of, position = factors_shown(d, m, q, m.d / cos(psi), wrist)
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
     "factor is the derivative of the task by these quantities, and the inner factor is their "
     "derivative by the joints.",
-    {"J": outer[:3, :3]},
+    {
+        **factors_of,
+        "V": by_half[:2, 1:5],
+        "W": inner[3:5, 1:5],
+    },
     proves=(
-        "The determinants of the factors: that of the virtual arm with the wrist, that of the "
-        "rates of yaw and roll, and 1/4 for averages and half differences."
+        "The first three rows of the outer factor.  The determinants of the factors: that of the "
+        "virtual arm with the wrist, that of the rates of yaw and roll, and 1/4 for averages and "
+        "half differences."
     ),
     equal=[
+        (outer[:3, :], position),
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (area, -m.L1 * without * cos(alpha) * cos(beta)),
         (by_half[:, 1:5].det(), Rational(1, 4)),
@@ -387,6 +395,7 @@ d.function(
     {"q": q},
     {"J": J},
     program=p,
+    equation="J",
     source="derivative of eqs. (1) to (9)",
     notes=(too_wide, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
 )

@@ -2,13 +2,16 @@
 
 import sympy as sp
 from closedform.derivations.h6ar_free_turn import free_turn, moved_by, turn_step
+from closedform.derivations.h6ar_jacobian import factors_shown, loop_factors
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
+    L_2W,
     MID_PLANE_ROWS,
     WAIST,
     Pair,
     Posture,
+    a_3W,
     arm,
     by_half_sums,
     condition,
@@ -331,7 +334,9 @@ posture = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), leng
 _, along, across = extended(m, posture)
 with_wrist = straight(along, across, posture.upper, posture.fore)
 outward = reach(m, pair(theta2A), pair(theta23A), along, across)[0]
-arm_by = arm(m, theta2R, theta2R + theta3R).jacobian([theta2R, theta3R])
+by_right = arm(m, theta2R, theta2R + theta3R).jacobian([theta2R, theta3R])
+by_left = arm(m, theta2L, theta2L + theta3L).jacobian([theta2L, theta3L])
+factors_of, position = factors_shown(d, m, q, base, length)
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the virtual arm, yaw, roll and pitch.  The "
@@ -339,18 +344,18 @@ d.step(
     "follow the base line in the axes of the virtual fore-arm.  The determinant is the product of "
     "the determinants of the factors: those of both real arms are in the numerator, that of the "
     "virtual arm is in the denominator.",
-    {"J": outer[:3, :3]},
+    factors_of | loop_factors(d, point_by, (by_right, by_left), by_line, line_by),
     proves=(
-        "The determinant of each factor: the outer one, those of the virtual and of the real "
-        "arms, and those of yaw and roll."
+        "The first three rows of J_o, the rates of the tips, and the determinant of each factor: "
+        "the outer one, those of the virtual and of the real arms, and those of yaw and roll."
     ),
     equal=[
+        (outer[:3, :], position),
+        (middle.jacobian(q[1:5]), sp.Matrix.hstack(by_right, by_left) / 2),
+        (apart.jacobian(q[1:5]), sp.Matrix.hstack(by_right, -by_left) / 2),
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (point_by.det(), -m.L1 * without),
-        (
-            arm_by.det(),
-            -m.L1 * straight(m.L2, m.a3, pair(theta2R), pair(theta2R + theta3R)),
-        ),
+        (by_right.det(), -m.L1 * straight(m.L2, m.a3, pair(theta2R), pair(q[1] + q[2]))),
         (line_by[:, :2].det(), -sp.S.One),
         (
             by_line.det(),
@@ -401,6 +406,7 @@ d.function(
     {"q": q},
     {"J": J},
     program=p,
+    equation="J",
     source="derivative of the forward map",
     notes=(*notes, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
 )
@@ -524,7 +530,6 @@ for name, sigma, unknowns in (
 kept = [real(f"{k}_{name}", nonnegative=True) for k in "NM" for name in ("right", "left")]
 N, M = (kept[0] + kept[1]) / 2 + gap, (kept[2] + kept[3]) / 2 - gap
 bends = 2 * m.L1 * bent - side * sqrt(sp.Max(0, N)) * sqrt(sp.Max(0, M))
-L_2W, a_3W = real("L_2W"), real("a_3W")
 aside = (sp.Abs(L_2W - m.L2) + sp.Abs(a_3W - m.a3)) * sp.Abs(bends)
 p.determined(
     choose(spent, m.L1 * second * sum(m), 1),

@@ -252,7 +252,13 @@ class TestEvery:
 
     def test_says_which_part_is_wrong(self) -> None:
         shown = evidence(Every({"upper": TRUE, "lower": Identity(x, 2 * x)}))
-        assert shown.startswith("lower: refuted (at $x = 1$: ")
+        assert shown.startswith("lower: at $x = 1$: ")
+
+    def test_says_what_is_proved_without_the_verdict_of_each_part(self) -> None:
+        parts = {"it is upright": TRUE, "it is long": ForAll(sp.Ge(2, 1))}
+        assert evidence(Every(parts)) == "it is upright; it is long"
+        counted = {"it is upright": TRUE, "it is one": Enumeration(1, lambda: 1, "their number")}
+        assert evidence(Every(counted)) == "it is upright; it is one (their number: 1)"
 
     def test_nothing_is_not_proved(self) -> None:
         with pytest.raises(ValueError, match="at least one"):

@@ -25,8 +25,10 @@ def state(
         """The first two by themselves, the last two where the loop is closed."""
         return Every(
             {
-                "first and middle axis": Identity([u.dot(w) for u, w, _, _ in axes], [cosine] * 3),
-                "middle and last axis": Identity(
+                "the first and the middle axis are at this angle": Identity(
+                    [u.dot(w) for u, w, _, _ in axes], [cosine] * 3
+                ),
+                "so are the middle and the last axis": Identity(
                     [w.dot(v) for _, w, _, v in axes], [e + cosine for e in loop]
                 ),
             }

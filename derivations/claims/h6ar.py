@@ -88,7 +88,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "plane}.”",
         lambda n, plane: Every(
             {
-                "freedoms": Enumeration(
+                "the freedoms are as many": Enumeration(
                     n, lambda: r.rank(list(r.right), arms[:2]), "the rank of the right arm"
                 ),
                 "the tip stays in the plane": Identity(
@@ -118,8 +118,8 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "design, by moving {only the twin arms}, the yaw and roll motions are generated.”",
         lambda angle, joints: Every(
             {
-                "the actuator of the wrist": driven(r, angle, (q.theta,)),
-                "yaw and roll": driven(r, ("yaw", "roll"), joints),
+                "the actuator of the wrist moves this angle alone": driven(r, angle, (q.theta,)),
+                "these joints move yaw and roll": driven(r, ("yaw", "roll"), joints),
             }
         ),
         phrases=[own, movers],
@@ -149,10 +149,10 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "{single} actuator used to generate the {pitching} motion.”",
         lambda n, angle: Every(
             {
-                "number": Enumeration(
+                "so many actuators are not in the arms": Enumeration(
                     n, lambda: len(q) - r.rank([*r.right, *r.left], q), "actuators"
                 ),
-                "what it moves": driven(r, angle, (q.theta,)),
+                "it moves this angle alone": driven(r, angle, (q.theta,)),
             }
         ),
         phrases=[{"single": 1, "second": 2}, own],
@@ -163,8 +163,8 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "hence, the actuators for these {2} DOFs are completely eliminated.”",
         lambda joints, n: Every(
             {
-                "yaw and roll": driven(r, ("yaw", "roll"), joints),
-                "freedoms": Enumeration(
+                "these joints move yaw and roll": driven(r, ("yaw", "roll"), joints),
+                "the freedoms are as many": Enumeration(
                     n, lambda: r.rank([*r.slants.values()], arms), "of yaw and roll by the arms"
                 ),
             }
@@ -219,10 +219,10 @@ def description(d: Derivation, r: Robot, printed: Notation) -> None:
         "centre.”",
         lambda axis, same: Every(
             {
-                "plane": Identity(
+                "each arm stays in its plane": Identity(
                     [axis.dot(r.right.diff(s)) for s in r.arm_joints[:2]], [sp.S.Zero] * 2
                 ),
-                "distance": Identity(
+                "the planes are at this distance from the middle": Identity(
                     [normal.dot(r.right), -normal.dot(r.left)], [(1 + same) * m.d] * 2
                 ),
             }
@@ -273,8 +273,8 @@ def description(d: Derivation, r: Robot, printed: Notation) -> None:
         lambda side, place, direction: Every(
             {
                 "on opposite sides": Identity(r.right - r.middle, side * (r.left - r.middle)),
-                "place": Identity(normal.dot(r.middle), place),
-                "line": Identity(
+                "the point is in the mid-plane": Identity(normal.dot(r.middle), place),
+                "the line of the tips has this direction": Identity(
                     (r.right - r.left).subs(together).cross(direction), sp.zeros(3, 1)
                 ),
             }
@@ -362,10 +362,12 @@ def mobility(d: Derivation, printed: Notation) -> None:
         found = counted()
         return Every(
             {
-                "the rows": Enumeration(
+                "each kind of joint has these freedoms": Enumeration(
                     [int(line.left) for line in lines], lambda: list(found.values()), "freedoms"
                 ),
-                "their sum": Identity(last.left.subs(total, sum(found.values())), last.right),
+                "the total is their sum": Identity(
+                    last.left.subs(total, sum(found.values())), last.right
+                ),
             }
         )
 
@@ -393,9 +395,13 @@ def mobility(d: Derivation, printed: Notation) -> None:
         mobility = sum(counted().values()) - coupled - 6 * loop.right
         return Every(
             {
-                "the number of loops": Enumeration(words, loops, "independent loops"),
-                "l": Identity(loop.left.subs(freedoms, loops()), loop.right),
-                "M": Identity(result.right, result.left.subs(real("M"), mobility)),
+                "the loops are as many": Enumeration(words, loops, "independent loops"),
+                "the freedoms less the bodies are the number of loops": Identity(
+                    loop.left.subs(freedoms, loops()), loop.right
+                ),
+                "the formula gives this M": Identity(
+                    result.right, result.left.subs(real("M"), mobility)
+                ),
             }
         )
 

@@ -324,8 +324,10 @@ def elbow(d: Derivation, r: Robot, v: Virtual) -> None:
         example = {m.L2: Rational(1, 1000), m.lp: 1, hand: 1, more[0]: 0, more[1]: 0}
         return Every(
             {
-                "the angles": Identity(limit.left, largest),
-                "the length": ForAll(sp.Ge(normal(length).subs(by_cosines), 0), among=[example]),
+                "the limits are those of the angles": Identity(limit.left, largest),
+                "the extended fore-arm has no negative length": ForAll(
+                    sp.Ge(normal(length).subs(by_cosines), 0), among=[example]
+                ),
             }
         )
 
@@ -418,10 +420,10 @@ def right_arm(d: Derivation, r: Robot, printed: Notation) -> None:
         return Under(
             Every(
                 {
-                    "the half differences": Equal(
+                    "the half differences agree": Equal(
                         tuple(replace(a, sides=[e.subs(values) for e in a.sides]) for a in angles)
                     ),
-                    "what is zero": Identity([*given.sides[:2]], [r.psi, r.phi]),
+                    "yaw and roll are zero": Identity([*given.sides[:2]], [r.psi, r.phi]),
                 }
             ),
             "the virtual arm is neither straight nor folded, and the angles of the arms differ by "

@@ -97,12 +97,12 @@ def length(d: Derivation, r: Robot, printed: Notation) -> None:
         value = first.right.subs(ratio.left, ratio.right)
         return Every(
             {
-                "the angles": Enumeration(
+                "the length depends on these angles": Enumeration(
                     [a.name for a in angles],
                     lambda: [a.name for a in (r.psi, r.phi) if not equal((value**2).diff(a), 0)],
                     "the length depends on",
                 ),
-                "the length": Identity(
+                "the formula is the length of the closed wrist": Identity(
                     value, first.left, names=("the right side", "the length of the closed wrist")
                 ),
             }
@@ -258,8 +258,8 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
         (line,) = (needed(r.psi, 0).subs(by_cosine),)
         return Every(
             {
-                "at the largest yaw": Identity(signed, m.al - needed(yaw, sp.S.Zero)),
-                "at smaller yaws": ForAll(
+                "it holds at the largest yaw": Identity(signed, m.al - needed(yaw, sp.S.Zero)),
+                "it holds at smaller yaws": ForAll(
                     sp.Ge((line.subs(more, 0) - line) * narrow * wide * (wide + more), 0),
                     slack=[],
                 ),

@@ -305,8 +305,10 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
             rows.append([side.row(i)[0].subs(both) for side in law.sides])
         return Every(
             {
-                "A dp = B dq": Identity([r[0] for r in rows], [r[1] for r in rows]),
-                "its dimension": Enumeration(n, lambda: law.left.rows, "independent equations"),
+                "the velocities of P satisfy the equation": Identity(
+                    [r[0] for r in rows], [r[1] for r in rows]
+                ),
+                "it has three rows": Enumeration(n, lambda: law.left.rows, "independent equations"),
             }
         )
 
@@ -419,7 +421,7 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         "postures in different working modes corresponding to an inverse kinematic solution.”",
         lambda indicator: Every(
             {
-                "modes": sign_patterns(indicator),
+                "each working mode has its own signs of B": sign_patterns(indicator),
                 "a sign of B changes only at zero": serial_by_position(bar),
             }
         ),
@@ -442,7 +444,9 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
                 "every sign of B changes": Identity(
                     [sp.expand_trig(e) for e in moved], [-sp.expand_trig(e) for e in diagonal]
                 ),
-                "their number": Enumeration(n, lambda: prod(counts()) // 2, "the other half"),
+                "half of the modes are images of the others": Enumeration(
+                    n, lambda: prod(counts()) // 2, "the other half"
+                ),
             }
         )
 

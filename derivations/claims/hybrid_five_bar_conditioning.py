@@ -170,7 +170,9 @@ def condition_number(d: Derivation, bar: FiveBar) -> None:
                 "the turn keeps A and B in place": Identity(
                     axis.cross(bar.pivots[1] - bar.pivots[0]), sp.zeros(3, 1)
                 ),
-                "and the condition number": Identity(bar.gram.diff(bar.angles[0]), sp.zeros(3, 3)),
+                "the condition number stays the same": Identity(
+                    bar.gram.diff(bar.angles[0]), sp.zeros(3, 3)
+                ),
             }
         ),
         phrases=[{"first": J, "second": bar.k}],

@@ -98,8 +98,10 @@ def common_point() -> Check:
     other = first.other_mode()
     return Every(
         {
-            "convex": closed_and(first, det_A=sp.Gt(first.cross, 0)),
-            "not convex": closed_and(other, det_A=sp.Gt(other.cross, 0)),
+            "the convex mode reaches the point with this sign of det A": closed_and(
+                first, det_A=sp.Gt(first.cross, 0)
+            ),
+            "so does the other mode": closed_and(other, det_A=sp.Gt(other.cross, 0)),
         }
     )
 
@@ -357,8 +359,10 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "(Figure 12 right).”",
         lambda shape, singular, regular, other: Every(
             {
-                "first mode": closed_and(flat, mode=shape(flat), det_A=singular(flat.cross)),
-                "second mode": closed_and(
+                "the first mode is as stated": closed_and(
+                    flat, mode=shape(flat), det_A=singular(flat.cross)
+                ),
+                "so is the second mode": closed_and(
                     flat.other_mode(),
                     mode=other(flat.other_mode()),
                     det_A=regular(flat.other_mode().cross),
@@ -398,7 +402,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
             {
                 "each mode has its own signs of B": required(sign_patterns(lambda at: at.diagonal)),
                 "they change at the boundary": located(
-                    Every({"legs": serial_by_position(bar), **others})
+                    Every({"a sign of B changes only at zero": serial_by_position(bar), **others})
                 ),
             }
         )

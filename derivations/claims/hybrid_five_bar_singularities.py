@@ -156,8 +156,10 @@ def parallel(d: Derivation, bar: FiveBar) -> None:
                 "the linkage stays in its plane": Identity(bar.loop[0].subs(on_circle), 0),
                 "the leg over C has the same equation": Every(
                     {
-                        "circle": Identity(over_c, bar.loop[2]),
-                        "centre": Identity(over_c.subs(met), -(L2**2) / 2),
+                        "it is a circle": Identity(over_c, bar.loop[2]),
+                        "its centre is where C and D meet": Identity(
+                            over_c.subs(met), -(L2**2) / 2
+                        ),
                     }
                 ),
             }
@@ -257,7 +259,7 @@ def serial(d: Derivation, bar: FiveBar) -> None:
                     n: Identity(row.subs(at), speed * sp.ones(1, 3))
                     for n, (row, at) in cases.items()
                 },
-                "their number": Enumeration(
+                "one direction is lost with one entry of B": Enumeration(
                     directions,
                     lambda: 3 - sp.diag(0, bar.B[1, 1], bar.B[2, 2]).rank(),
                     "directions that are lost with one entry of B",
@@ -286,7 +288,9 @@ def serial(d: Derivation, bar: FiveBar) -> None:
     def listed(named: frozenset[str]) -> Check:
         return Every(
             {
-                "cases": Listing(named, bar.serial_cases, "an entry of B vanishes with"),
+                "an entry of B vanishes in these cases": Listing(
+                    named, bar.serial_cases, "an entry of B vanishes with"
+                ),
                 "aligned bars are at the boundary": serial_by_position(bar),
                 "P can be on AB inside": closed_and(
                     posture, rho=Eq(posture.P[1], 0), **posture.interior()

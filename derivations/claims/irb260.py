@@ -150,7 +150,7 @@ def introduction(d: Derivation, arm: Palletiser) -> None:
                 "poses: from the velocity of a pose its twist follows",
                 check=lambda avoid: Every(
                     {
-                        "twists": stated(
+                        "the twist follows from the velocity at every pose": stated(
                             avoid,
                             Identity(twist_of(twist_matrix(twist) * g * inverse(g)), twist),
                         ),
@@ -221,7 +221,9 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
                     sp.Matrix(arm.lower.equations).subs(arm.lower.solution).subs(sigma, assembly),
                     sp.zeros(2, 1),
                 ),
-                "the coupler": Identity(arm.lower[turn].subs(sigma, assembly).diff(angle), moving),
+                "the coupler does not turn": Identity(
+                    arm.lower[turn].subs(sigma, assembly).diff(angle), moving
+                ),
             }
         ),
         phrases=[
@@ -358,7 +360,9 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
                     lambda: bool(arm.driving_sets()),
                     "the rates of others determine its own",
                 ),
-                "its angle": Count(list(arm.free[:3, :3] * normal - VERTICAL), (theta4,), n),
+                "its angle follows from the level hand": Count(
+                    list(arm.free[:3, :3] * normal - VERTICAL), (theta4,), n
+                ),
             }
         ),
         phrases=[
@@ -430,8 +434,8 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
         "motion of the end-effector can also keep horizontal.”",
         lambda sign, axis: Every(
             {
-                "the axis of motors 2 and 3": Identity(spun[:3, :3] * axis, axis),
-                "the rotation that is left": Identity(
+                "motors 2 and 3 turn about this axis": Identity(spun[:3, :3] * axis, axis),
+                "the virtual motor cancels their rotation": Identity(
                     spun[:3, :3] * arm.couple(arm.moves[3])[:3, :3] ** sign, sp.eye(3)
                 ),
             }
@@ -461,8 +465,10 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
                 reading.text,
                 check=lambda holds, n, check=reading.check: Every(
                     {
-                        "the pose": check(holds),
-                        "its axes": Enumeration(n, lambda: screws.rank(), "independent twists"),
+                        "the pose is the same": check(holds),
+                        "the axes of the chain are independent": Enumeration(
+                            n, lambda: screws.rank(), "independent twists"
+                        ),
                     }
                 ),
             )

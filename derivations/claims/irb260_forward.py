@@ -91,7 +91,7 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         "the unit axis w direction passing through {the point q}”",
         lambda pitch, point: Every(
             {
-                "the pitch": Identity(*slides(velocity, pitch)),
+                "the pitch is zero": Identity(*slides(velocity, pitch)),
                 "the axis does not move": Identity(
                     motion * sp.Matrix([*(point + real("s") * w), 1]),
                     sp.Matrix([*(point + real("s") * w), 1]),
@@ -214,8 +214,12 @@ def groups(d: Derivation, arm: Palletiser) -> None:
         "the movement.”",
         lambda origin, direction: Every(
             {
-                "p": Identity((motion * sp.Matrix([*origin, 1]))[:3, :], p),
-                "R": Identity((motion * sp.Matrix([*point, 0]))[:3, :], direction),
+                "the motion takes the origin to p": Identity(
+                    (motion * sp.Matrix([*origin, 1]))[:3, :], p
+                ),
+                "the motion turns directions by R": Identity(
+                    (motion * sp.Matrix([*point, 0]))[:3, :], direction
+                ),
             }
         ),
         phrases=[
@@ -262,8 +266,8 @@ def groups(d: Derivation, arm: Palletiser) -> None:
         "“$so(3)$ is the space of {3×3} {skew-symmetric} matrices”",
         lambda f, size, sign: Every(
             {
-                "the size": Enumeration(size, lambda: f.left.rows, "rows"),
-                "the transpose": Identity(f.left.T, sign * f.left),
+                "the matrices have this size": Enumeration(size, lambda: f.left.rows, "rows"),
+                "the transpose is the matrix with this sign": Identity(f.left.T, sign * f.left),
             }
         ),
         means={"so(3)": tangent[:3, :3], "se(3)": tangent},
@@ -333,9 +337,11 @@ def exponentials(d: Derivation, arm: Palletiser) -> None:
         """The left side solves the equation that defines the exponential, and equals the right."""
         return Every(
             {
-                "the derivative": Identity(f.left.diff(theta), twist_matrix(twist) * f.left),
-                "the beginning": Identity(f.left.subs(theta, 0), sp.eye(4)),
-                "the two sides": Equal(f),
+                "both have the same derivative": Identity(
+                    f.left.diff(theta), twist_matrix(twist) * f.left
+                ),
+                "both begin at the identity": Identity(f.left.subs(theta, 0), sp.eye(4)),
+                "the two sides are equal": Equal(f),
             }
         )
 
@@ -395,7 +401,7 @@ def products(d: Derivation, arm: Palletiser) -> None:
         r"e^{\hat{\xi}_2 \theta_2} e^{\hat{\xi}_3 \theta_3} e^{\hat{\xi}_4 \theta_4} "
         r"e^{\hat{\xi}_5 \theta_5} g_{st}(0)$”",
         lambda g, joined, f: Every(
-            {"the words": Identity(g.left, joined), "the formula": Equal(f)}
+            {"the map is this product": Identity(g.left, joined), "the formula holds": Equal(f)}
         ),
         means={
             "g_{st}": arm.chain,

@@ -89,13 +89,15 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         "{1, 2, 3, and 5}, are actuated.”",
         lambda five, four, joints: Every(
             {
-                "joints": Enumeration(
+                "the joints are as many": Enumeration(
                     five,
                     lambda: screws.subs(generic).rank(),
                     "independent twists of the open chain",
                 ),
-                "actuated": Enumeration(four, arm.freedoms, "freedoms of the closed linkage"),
-                "which": Enumeration(
+                "the actuated ones are as many": Enumeration(
+                    four, arm.freedoms, "freedoms of the closed linkage"
+                ),
+                "they determine the others": Enumeration(
                     [joints],
                     arm.driving_sets,
                     "sets of joints without joint 4 whose rates determine all rates",
@@ -383,7 +385,7 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
         r"$g = \begin{bmatrix} R & p \\ 0 & 1 \end{bmatrix}$",
         lambda f: Every(
             {
-                "the two sides": Equal(f),
+                "the two sides are equal": Equal(f),
                 "it moves points": Identity(
                     f.right * sp.Matrix([*x, 1]), sp.Matrix([*(R * x + p), 1])
                 ),

@@ -72,8 +72,8 @@ def verification(d: Derivation, arm: Palletiser) -> None:
                 check=lambda factor: Not(
                     Every(
                         {
-                            "the same Jacobian": Identity(theirs, factor * arm.J_space),
-                            "another pose": Not(
+                            "the Jacobian is the same": Identity(theirs, factor * arm.J_space),
+                            "the pose is another one": Not(
                                 Identity(mounted.subs(at_home), arm.pose.subs(at_home))
                             ),
                             "the velocity of the test contains neither l2 nor l5": Identity(

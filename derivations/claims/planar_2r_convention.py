@@ -454,14 +454,14 @@ def example(d: Derivation, arm: Arm, known: Notation) -> None:
         placed = {posture[name]: value for name, value in angles.items()}
         return Every(
             {
-                "the target": Identity(
+                "the angles give the target": Identity(
                     arm.position.subs(lengths).subs(angles), arm.position.subs(values)
                 ),
                 "they solve the equations": Identity(
                     [e.subs(lengths).subs(placed).subs(found) for e in equations],
                     [sp.S.Zero] * len(equations),
                 ),
-                "the posture itself": Solves(posture, equations),
+                "the only solution is the posture itself": Solves(posture, equations),
             }
         )
 

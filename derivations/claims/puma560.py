@@ -149,7 +149,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         lambda f: Every(
             {
                 "the hand is beside the arm": Identity(beside.subs({px: T[0, 3], py: T[1, 3]}), 0),
-                "the angles": Solves(
+                "all its angles solve this": Solves(
                     {f.left: f.right}, [beside], nonnegative=(px**2 + py**2 - d3**2,)
                 ),
             }
@@ -192,8 +192,10 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         angle, printed = formula.left, formula.right
         return Every(
             {
-                "the arguments": Identity(printed, sp.Matrix([y.left, x.left])),
-                "their ratio": Identity(printed[0] * cos(angle), printed[1] * sin(angle)),
+                "the arguments are those printed": Identity(printed, sp.Matrix([y.left, x.left])),
+                "their ratio is the tangent": Identity(
+                    printed[0] * cos(angle), printed[1] * sin(angle)
+                ),
             }
         )
 
@@ -264,8 +266,8 @@ def corke(d: Derivation, puma: Puma) -> None:
         a, b = (puma.J[:, puma.q.index(joint.left)] for joint in (one, other))
         return Every(
             {
-                "the rank": Enumeration(rank, lambda: puma.J.subs(at).rank(), "rank at qr"),
-                "the columns": Identity(a.subs(at), b.subs(at)),
+                "the rank falls": Enumeration(rank, lambda: puma.J.subs(at).rank(), "rank at qr"),
+                "the two columns are equal": Identity(a.subs(at), b.subs(at)),
             }
         )
 

@@ -191,8 +191,10 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "{moving} reference frame.”",
         lambda n, turned: Every(
             {
-                "the angles": Enumeration(n, lambda: len(R.free_symbols), "their number"),
-                "the axes": Identity(turned(wrist.angles), R),
+                "the angles are as many": Enumeration(
+                    n, lambda: len(R.free_symbols), "their number"
+                ),
+                "the turns are about these axes": Identity(turned(wrist.angles), R),
             }
         ),
         phrases=[{"moving": moving, "fixed": fixed}],
@@ -202,7 +204,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "“There are however many ({12}, to be exact) sets that describe the same orientation:”",
         lambda n: Every(
             {
-                "their number": Enumeration(
+                "the sequences are as many": Enumeration(
                     n,
                     lambda: len(independent_sequences()),
                     "sequences, of all 27, with independent rates",
@@ -219,12 +221,14 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "angles.”",
         lambda first, second, alike: Every(
             {
-                "the examples": Enumeration(
+                "both examples are among them": Enumeration(
                     2,
                     lambda: len({first, second} & {*independent_sequences()}),
                     "different examples with independent rates",
                 ),
-                "the sequences": Enumeration(alike, pairs_alike, "pairs that give one matrix"),
+                "so many pairs give one matrix": Enumeration(
+                    alike, pairs_alike, "pairs that give one matrix"
+                ),
             }
         ),
         phrases=[

@@ -15,7 +15,6 @@ from closedform.algebra.counterexample import Counterexample
 from closedform.algebra.normal_form import decide
 from closedform.model.claims import (
     APPROXIMATION,
-    FAULTS,
     INCOMPLETE,
     INCONSISTENT,
     NOT_DECIDABLE,
@@ -173,7 +172,7 @@ class Equal(Check):
             here = replace(relation, sides=tuple(at_index(s, k) for s in relation.sides))
             verdict = replace(self, relation=here).judge()
             if verdict.kind != PROVED:
-                return Verdict(verdict.kind, (f"index {k}: ", *verdict.evidence))
+                return Verdict(verdict.kind, (f"for $i = {k}$: ", *verdict.evidence))
         return Verdict(PROVED)
 
     def _on(self, side: Exact) -> Exact:
@@ -297,7 +296,7 @@ LISTED = 12
 class Every(Check):
     """A statement with several parts; its verdict is the worst verdict of its parts.
 
-    The evidence of a fault is that of the parts that show it.
+    The evidence is that of the parts with this verdict.  The name of a part says what it states.
     """
 
     parts: Mapping[str, Check]
@@ -311,10 +310,11 @@ class Every(Check):
             return Verdict(kind, (f"all {len(verdicts)} parts: {kind}",))
         pieces: list[Any] = []
         for name, v in verdicts.items():
-            if kind in FAULTS and v.kind != kind:
+            if v.kind != kind:
                 continue
-            pieces += ["; ", f"{name}: {v.kind}"]
-            pieces += [" (", *v.evidence, ")"] if v.evidence else []
+            pieces += ["; ", name]
+            if v.evidence:
+                pieces += [" (", *v.evidence, ")"] if kind == PROVED else [": ", *v.evidence]
         return Verdict(kind, tuple(pieces[1:]))
 
 

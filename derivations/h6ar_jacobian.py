@@ -1,0 +1,123 @@
+"""The Jacobian of the H6AR as a product of small matrices, for both models.
+
+The tip is at the end of a virtual arm whose fore-arm includes the wrist: three lengths, which
+depend on yaw, roll and pitch alone, and three angles.
+"""
+
+from typing import Any
+
+import sympy as sp
+from closedform.derivations.h6ar_mechanism import (
+    L_2W,
+    Dimensions,
+    Joints,
+    Posture,
+    a_3W,
+    extended,
+    in_space,
+    pair,
+    phi,
+    psi,
+    reach,
+    theta2A,
+    theta23A,
+    wrist_squared,
+)
+from sympy import cos
+
+from closedform import Derivation, real
+
+L_theta, l_H = real("L_theta"), real("l_H")
+LENGTHS = (L_theta, L_2W, a_3W)
+MEANINGS = {
+    "J_o": "derivative of the task by theta1, the virtual arm, yaw, roll and pitch",
+    "J_i": "derivative of these quantities by the joints",
+    "P": "derivative of the position by theta1 and the virtual arm",
+    "N": "derivative of the position by the lengths of the virtual arm with the wrist",
+    "H": "derivative of these lengths by yaw, roll and pitch",
+    "H_0": "the same for a wrist of constant length",
+    r"\mathbf w": "derivative of these lengths by that of the wrist",
+    r"\mathbf g": "derivative of the length of the wrist by yaw, roll and pitch",
+    r"L_\theta": "distance of the tip from the mid-plane",
+    "V": "derivative of the virtual arm by the joints of the arms",
+    "W": "derivative of yaw and roll by the joints of the arms",
+}
+
+
+def factors_shown(
+    d: Derivation, m: Dimensions, q: Joints, base: sp.Expr, wrist: sp.Symbol
+) -> tuple[dict[str, Any], sp.Matrix]:
+    """What a step shows of the outer factor, and the first three rows that follow from it.
+
+    ``base`` is half the base line as a function of yaw and roll, ``wrist`` the symbol for l_W.
+    """
+    d.explain(MEANINGS)
+    d.write("l_H", "l_{H}", "distance of the hand along the wrist")
+    turns = (psi, phi, q.theta)
+    whole = wrist + m.loff + m.lp * cos(q.theta)
+    posture = Posture(*map(pair, (q.theta1, theta2A, theta23A, *turns)), wrist, base)
+    aside, along, across = (_with_hand(e, whole) for e in extended(m, posture))
+    lengths = sp.Matrix([aside, along, across])
+    end = reach(m, posture.upper, posture.fore, L_2W, a_3W)
+    place = in_space(m, posture.waist, end, -L_theta)
+    P, N = place.jacobian([q.theta1, theta2A, theta23A]), place.jacobian(LENGTHS)
+    by_hand = lengths.diff(l_H)
+    constant = lengths.jacobian(turns) + by_hand * sp.Matrix([whole]).jacobian(turns)
+    slopes = sp.Matrix([wrist_squared(m, base)]).jacobian(turns) / (2 * wrist)
+    known = dict(zip(LENGTHS, lengths, strict=True))
+    rows = sp.Matrix.hstack(P.subs(known), N * (constant + by_hand * slopes)).subs(l_H, whole)
+    shown = {
+        "J": r"J_o\,J_i",
+        "J_o": r"\begin{bmatrix} P & N\,H \\ 0 & I \end{bmatrix}",
+        "J_i": r"\begin{bmatrix} 1 & 0 & 0 \\ 0 & V & 0 \\ 0 & W & 0 \\ 0 & 0 & 1 \end{bmatrix}",
+        "l_H": whole,
+        r"L_\theta": aside,
+        "L_{2W}": along,
+        "a_{3W}": across,
+        "P": P,
+        "N": N,
+        "H": r"H_0 + \mathbf w\,\mathbf g^T",
+        "H_0": constant,
+        r"\mathbf w": by_hand,
+        r"\mathbf g": slopes.T,
+    }
+    return shown, rows
+
+
+def _with_hand(length: sp.Expr, whole: sp.Expr) -> sp.Expr:
+    """A length in the name of the distance of the hand along the wrist."""
+    return sp.sympify(length).subs(whole, l_H)
+
+
+LOOP_MEANINGS = {
+    "K": "derivative of the end of the virtual arm by its angles",
+    "A_R": "derivative of the right tip by the joints of its arm, in the mid-plane",
+    "A_L": "derivative of the left tip by the joints of its arm, in the mid-plane",
+    "E": "derivative of yaw and roll by the base line",
+    "S": "derivative of the base line, seen from the virtual fore-arm, by the tips",
+}
+
+
+def loop_factors(
+    d: Derivation,
+    virtual: sp.Matrix,
+    arms: tuple[sp.Matrix, sp.Matrix],
+    by_line: sp.Matrix,
+    line_by: sp.Matrix,
+) -> dict[str, Any]:
+    """The factors of the rates of the virtual arm, of yaw and of roll in the closed loop."""
+    d.explain(LOOP_MEANINGS)
+    right, left = arms
+    return {
+        "V": r"\frac{1}{2} K^{-1} \begin{bmatrix} A_R & A_L \end{bmatrix}",
+        "K": virtual,
+        "A_R": right,
+        "A_L": left,
+        "W": r"E\,S \begin{bmatrix} \frac{1}{2} A_R & - \frac{1}{2} A_L \\[5pt] "
+        r"\multicolumn{2}{c}{\text{second row of $V$}} \end{bmatrix}",
+        "E": by_line,
+        "S": line_by,
+    }
+
+
+__all__ = ["factors_shown", "loop_factors"]

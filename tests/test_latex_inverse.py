@@ -228,6 +228,14 @@ def test_a_polynomial_is_collected_and_its_coefficients_are_named() -> None:
     assert sp.expand(sum(e * symbol**k for k, e in terms) - wide) == 0
 
 
+def test_a_sum_of_squares_is_not_collected() -> None:
+    pairs = [(real(f"a_{k}"), real(f"b_{k}")) for k in range(1, 11)]
+    total = sum((p * y - q * x) ** 2 for p, q in pairs)
+    rows = Lines(Printer(set()), ()).equations("N", total)
+    assert [left for left, _ in rows if left] == ["N"]
+    assert "".join(right for _, right in rows).count(")^{2}") == 10
+
+
 def test_an_equation_to_zero_is_taken_apart_too() -> None:
     wide = sp.expand((a * x + b * y - c) ** 4 * (x + 7 * a) + b**3 * x**2 * y)
     rows = Lines(Printer(set()), ()).equations("F", sp.Eq(wide, 0))

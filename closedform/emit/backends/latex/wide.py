@@ -89,6 +89,8 @@ class Lines:
         if isinstance(value, sp.Piecewise):
             inner = self._widest_case(value)
             return self._with_part(left, value, inner) if inner else [(left, text)]
+        if _of_squares(value):  # says more than its powers of one symbol
+            return self._broken(left, value, available)
         if (parts := self._polynomial(value)) is not None:
             return self._with_coefficients(left, *parts)
         if inner := self._nested(value):
@@ -292,6 +294,12 @@ def _common(matrix: sp.MatrixBase) -> sp.Expr:
 
 
 __all__ = ["Equation", "Lines"]
+
+
+def _of_squares(value: sp.Expr) -> bool:
+    """Whether a value is a sum of squares of sums."""
+    terms = sp.Add.make_args(value)
+    return len(terms) > 1 and all(t.is_Pow and t.exp == 2 and t.base.is_Add for t in terms)
 
 
 def _is_product(value: sp.Basic) -> bool:

@@ -6,7 +6,7 @@ from closedform.derivations.claims.five_bar_postures import FiveBar
 from closedform.derivations.claims.hybrid_five_bar import state
 from closedform.derivations.hybrid_five_bar_inverse import Loop, inverse_kinematics
 from closedform.derivations.papers.chablat_wenger_angeles import CHABLAT_WENGER_ANGELES
-from sympy import atan2, cos, sin, sqrt
+from sympy import Rational, atan2, cos, sin, sqrt
 
 from closedform import (
     Derivation,
@@ -106,8 +106,10 @@ C = f.let("C_y", L1 * cos(theta2)), f.let("C_r", L1 * sin(theta2))
 D = f.let("D_y", L0 + L1 * cos(theta3)), f.let("D_r", L1 * sin(theta3))
 CP, DP = (real("CP_y"), real("CP_r")), (real("DP_y"), real("DP_r"))
 CD = f.let("CD_y", D[0] - C[0]), f.let("CD_r", D[1] - C[1])
+size = f.let("size", L0 + L1 + L2)
+# the inverse tolerates less than the usual share: L1 + L2 may be a third of the size
 meeting, chord = circle_intersection(
-    f, CD, (L2, L2), CP, sigma, scale=L0 + L1 + L2, free=(theta4, theta5)
+    f, CD, (L2, L2), CP, sigma, scale=size, share=Rational(1, 4), free=(theta4, theta5)
 )
 n, half, height = chord.direction, chord.along, chord.height
 for name, value in zip(CP, (meeting[CP[0]], meeting[CP[1]]), strict=True):

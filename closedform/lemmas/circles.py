@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from closedform.lemmas.missed import SHARE
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.spheres import Meeting, lens
 from closedform.model.functions import Program, choose, real
@@ -62,6 +63,7 @@ def circle_intersection(
     sigma: sp.Symbol,
     *,
     scale: sp.Expr,
+    share: sp.Rational = SHARE,
     free: tuple[sp.Symbol, ...] = (),
     suffix: str = "",
 ) -> tuple[Lemma, Chord]:
@@ -86,6 +88,8 @@ def circle_intersection(
         the sign that names the two points
     scale
         the size of the coordinates, whose rounding decides what counts as zero
+    share
+        what the point may miss a circle by, as a share of the scale
     free
         the joints that are free if the point is
     suffix
@@ -96,9 +100,8 @@ def circle_intersection(
         f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
     )
     S = first + second + distance
-    # With three quarters of the tolerance, the legs accept the target of what is accepted here.
-    # Equal circles can only be too far apart, and no posture was ever lost with the whole of it.
-    tolerated = scale if first == second else 3 * scale / 4
+    # of a gap between the circles, the point misses each by half
+    tolerated = 2 * share * scale
     A = program.bound(f"slack{suffix}", first + second - distance, tolerated, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
     flag = program.vanishes(f"coincide{suffix}", distance, scale, "the centres coincide", free)
@@ -150,6 +153,7 @@ def two_circles(
     sigma: sp.Symbol,
     *,
     scale: sp.Expr,
+    share: sp.Rational = SHARE,
     free: Sequence[sp.Symbol] = (),
 ) -> Meeting:
     """The points at two distances from two points, as :func:`circle_intersection` gives them.
@@ -181,7 +185,7 @@ def two_circles(
     start = len(p.body)
     x, y = first = real("from_x"), real("from_y")
     lemma, chord = circle_intersection(
-        p, (span[0], span[1]), (r1, r2), first, sigma, scale=scale, free=tuple(free)
+        p, (span[0], span[1]), (r1, r2), first, sigma, scale=scale, share=share, free=tuple(free)
     )
     placed = {u: x - o for u, x, o in zip(first, unknowns, origin, strict=True)}
     shifted = replace(

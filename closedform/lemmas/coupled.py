@@ -13,6 +13,7 @@ from closedform.lemmas.hand import check_plain, in_space, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Naming, Slide
 from closedform.lemmas.loop import NO_MODE, Exported, export
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
@@ -95,7 +96,8 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
     modes = branches((sigma, choice))
     d.assembly_modes = modes.labels
     size = f.let("size", size_of(d, _slid(driver)))
-    found = follower.solve(Naming(f, size, "_2"), driver.end() - follower.base, sigma)
+    names = Naming(f, size, "_2", MOVED if _slid(driver) else SHARE)
+    found = follower.solve(names, driver.end() - follower.base, sigma)
     d.step(
         "Forward: the follower",
         "The follower has to reach the point B1 with the rod.  Both solutions are assembly modes.",

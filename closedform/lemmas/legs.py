@@ -120,11 +120,15 @@ def cross_in_plane(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
 
 @dataclass(frozen=True)
 class Naming:
-    """Names the quantities of one leg in a program; ``size`` is the sum of all lengths."""
+    """Names the quantities of one leg in a program; ``size`` is the sum of all lengths.
+
+    The rod may be missed by a ``share`` of it.
+    """
 
     program: Program
     size: sp.Expr
     tag: str
+    share: sp.Rational = sp.S.Half
 
     def let(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Symbol:
         return self.program.let(f"{name}{self.tag}", value, **assumptions)
@@ -135,7 +139,7 @@ class Naming:
         return value if value.is_Symbol else self.let(name, value, **assumptions)
 
     def bound(self, name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
-        return self.program.bound(f"{name}{self.tag}", value, self.size / 2, meaning)
+        return self.program.bound(f"{name}{self.tag}", value, self.size * self.share, meaning)
 
     def half_chord(self, name: str, r: sp.Expr, aside: sp.Expr, meaning: str) -> sp.Symbol:
         """The root of ``r**2 - aside**2``, if ``r`` is long enough, which ``meaning`` says."""
@@ -195,7 +199,7 @@ class Crank:
         aside = chain.let("aside", w.dot(u.cross(v))) if len(w) == 3 else sp.S.Zero
         start = len(p.body)
         s: sp.Expr = r
-        scale = chain.size / 2
+        scale = chain.size * chain.share
         if aside != 0:
             s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
             # where the rod is nearly at right angles to the plane, s has lost digits that r has

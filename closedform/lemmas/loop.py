@@ -28,6 +28,7 @@ from closedform.lemmas.leg_by_leg import (
     size_of,
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
@@ -179,7 +180,9 @@ def _on_rods(
     n = len(m.legs)
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
-    found = meet(f, near, m.in_lemma(radii), tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
+    still = all(isinstance(leg, Crank | Strut) for leg in m.legs)
+    hand, share = tuple(m.hand), SHARE if still else MOVED
+    found = meet(f, near, m.in_lemma(radii), hand, sigma, scale=size, share=share, free=hand)
     ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
     shape = "circles" if n == 2 else "spheres"
     return _Met(

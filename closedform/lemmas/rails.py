@@ -10,6 +10,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Naming, Solution, cross_in_plane, vector
+from closedform.lemmas.missed import MOVED
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.spheres import Meeting
 from closedform.model.functions import Program
@@ -159,8 +160,7 @@ def rail_and_circle(
     """
     p, k = program, 0 if isinstance(legs[0], Rail) else 1
     rail, rod, at, centre = legs[k], legs[1 - k], ends[k], ends[1 - k]
-    # with three quarters of the tolerance, the legs accept the target of what is accepted here
-    names = Naming(p, 3 * scale / 2, "")
+    names = Naming(p, scale, "", MOVED)
     w = sp.Matrix([p.let(f"w_{i}", e) for i, e in zip("xy", centre - at, strict=True)])
     r = names.coefficient("r", rod.rod, nonnegative=True)
     start = len(p.body)

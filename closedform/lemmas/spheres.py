@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.missed import SHARE
 from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose, sign_of
 from closedform.model.inverse import Degenerate, Link
@@ -71,6 +72,7 @@ def three_spheres(
     sigma: sp.Symbol,
     *,
     scale: sp.Expr,
+    share: sp.Rational = SHARE,
     free: Sequence[sp.Symbol] = (),
 ) -> Meeting:
     """The points at three distances from three points.
@@ -91,6 +93,8 @@ def three_spheres(
         the sign that names the two points
     scale
         the size of the coordinates, whose rounding decides what counts as zero
+    share
+        what the point may miss a sphere by, as a share of the scale
     free
         the joints that are free if the point is
     """
@@ -128,13 +132,13 @@ def three_spheres(
         left = other.dot(other - span)
         part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
         squares = (mu, nu, part)
-        X, Y, h = _met_by_equal(p, r1, squares, left, flags=(point, line), scale=scale)
+        X, Y, h = _met_by_equal(p, r1, squares, left, flags=(point, line), scale=scale, share=share)
         more: tuple[sp.Symbol, ...] = ()
     else:
         lengths = (r1, either(r3, r2), either(r2, r3))
         squares = (mu, nu, p.let("nu_w", choose(line, length * over, nu), nonnegative=True))
         X, Y, h, flat = _met_by_unequal(
-            p, lengths, squares, other.dot(a), flags=(point, line), scale=scale
+            p, lengths, squares, other.dot(a), flags=(point, line), scale=scale, share=share
         )
         more = (flat,)
     from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(span, n, w, strict=True)]
@@ -188,14 +192,15 @@ def _met_by_equal(
     *,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
+    share: sp.Rational,
 ) -> tuple[sp.Expr, sp.Symbol, sp.Symbol]:
     """X, Y and h for one radius; ``squares`` are mu, nu and 1 / (mu nu), ``left`` is 2 nu Y."""
     (mu, nu, part), (point, line) = squares, flags
     left = p.let("left", left)
     p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")
     Y = p.let("Y", choose(line, 0, left * mu * part / 2))
-    # the radius of the circle of the centres is longer by the tolerance at most
-    missed = 2 * scale * r
+    # the radius of the circle of the centres is longer by what the spheres may be missed by
+    missed = 2 * share * scale * r
     square = choose(point, 0, mu / 4 + nu * Y**2)
     slack = p.bound("slack", r**2 - square, missed, "the spheres meet")
     touching = p.vanishes("touching", slack, missed, "the spheres touch")
@@ -211,6 +216,7 @@ def _met_by_unequal(
     *,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
+    share: sp.Rational,
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
     """X, Y and h from the circle of the first two spheres.
 
@@ -221,8 +227,8 @@ def _met_by_unequal(
     third sphere contains it.
     """
     (r1, near, far), (mu, nu, beyond), (point, line) = radii, squares, flags
-    # with a quarter of the tolerance, the legs accept the target of what is accepted here
-    tolerated = scale / 4
+    # the third sphere may miss a circle that the first two just share: less for each of both
+    tolerated = 2 * share * scale / 3
     unit = p.let("length_a", sp.sqrt(mu), nonnegative=True)
     rest = p.let("length_n", sp.sqrt(beyond), nonnegative=True)
     D = p.let("D", choose(point, 0, unit), nonnegative=True)

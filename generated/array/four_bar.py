@@ -2,13 +2,13 @@
 # derivations/four_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 18 add, 41 compare and select, 2 atan2, 1 divide, 14 multiply, 1 sincos, 3 sqrt
-#   skeleton: 27 add, 44 compare and select, 2 divide, 19 multiply, 1 sincos, 3 sqrt
-#   jacobian_parallel: 29 add, 38 compare and select, 2 divide, 23 multiply, 1 sincos, 3 sqrt
-#   jacobian_serial: 25 add, 38 compare and select, 2 divide, 23 multiply, 1 sincos, 3 sqrt
-#   jacobian: 31 add, 40 compare and select, 4 divide, 27 multiply, 1 sincos, 3 sqrt
-#   determinant: 31 add, 40 compare and select, 4 divide, 27 multiply, 1 sincos, 3 sqrt
-#   singularities: 31 add, 40 compare and select, 2 divide, 27 multiply, 1 sincos, 3 sqrt
+#   fk: 18 add, 41 compare and select, 2 atan2, 15 multiply, 1 sincos, 3 sqrt
+#   skeleton: 27 add, 44 compare and select, 1 divide, 20 multiply, 1 sincos, 3 sqrt
+#   jacobian_parallel: 29 add, 38 compare and select, 1 divide, 24 multiply, 1 sincos, 3 sqrt
+#   jacobian_serial: 25 add, 38 compare and select, 1 divide, 24 multiply, 1 sincos, 3 sqrt
+#   jacobian: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
+#   determinant: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
+#   singularities: 31 add, 40 compare and select, 1 divide, 28 multiply, 1 sincos, 3 sqrt
 #   ik: 56 compare and select, 31 add, 2 atan2, 2 divide, 33 multiply, 1 sincos, 4 sqrt
 #   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 """Planar four-bar linkage.
@@ -110,7 +110,7 @@ def _fk(ops, theta, L1, L2, L3, L4):
     invalid = ops.opposite(t2)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L1 - L2 * c
     wv_2 = L2 * s
     t6 = t5 * t5 + wv_2 * wv_2
@@ -204,7 +204,7 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -314,7 +314,7 @@ def _jacobian_parallel(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L1 - L2 * c
     wv_2 = L2 * s
     t6 = t5 * t5 + wv_2 * wv_2
@@ -398,7 +398,7 @@ def _jacobian_serial(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -483,7 +483,7 @@ def _jacobian(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -571,7 +571,7 @@ def _determinant(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -658,7 +658,7 @@ def _singularities(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (size * 0.5))
+    t4 = -(ops.feasibility * (0.375 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s

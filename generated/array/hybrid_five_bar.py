@@ -3,16 +3,16 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 17 add, 37 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 13 add, 42 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
+#   fk: 17 add, 37 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+#   passive_angles: 13 add, 42 compare and select, 4 atan2, 6 divide, 14 multiply, 2 sincos, 3
 #     sqrt
-#   skeleton: 17 add, 44 compare and select, 5 divide, 22 multiply, 3 sincos, 3 sqrt
-#   jacobian_parallel: 13 add, 45 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 19 add, 36 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
-#   jacobian: 19 add, 48 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
-#   determinant: 19 add, 33 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
-#   singularities: 19 add, 38 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 32 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+#   skeleton: 17 add, 44 compare and select, 6 divide, 22 multiply, 3 sincos, 3 sqrt
+#   jacobian_parallel: 13 add, 45 compare and select, 6 divide, 20 multiply, 3 sincos, 3 sqrt
+#   jacobian_serial: 19 add, 36 compare and select, 6 divide, 24 multiply, 2 sincos, 3 sqrt
+#   jacobian: 19 add, 48 compare and select, 18 divide, 43 multiply, 3 sincos, 3 sqrt
+#   determinant: 19 add, 33 compare and select, 8 divide, 27 multiply, 2 sincos, 3 sqrt
+#   singularities: 19 add, 38 compare and select, 6 divide, 23 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 32 compare and select, 4 divide, 10 multiply, 2 sincos, 3 sqrt
 #   ik: 100 compare and select, 37 add, 6 atan2, 2 divide, 49 multiply, 6 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 14 add, 41 compare and select, 4 divide, 29 multiply
@@ -126,50 +126,50 @@ def _fk(ops, theta1, theta2, theta3, L0, L1, L2):
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
     invalid = ops.opposite(t2)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
-    t5 = C_r - L1 * s3
+    t4 = C_r - L1 * s3
     C_y = L1 * c2
-    t6 = C_y - (L0 + L1 * c3)
-    t7 = t5 * t5 + t6 * t6
-    apart = ops.sqrt(t7)
-    t8 = t4 - apart
-    unreachable = ops.opposite(-(ops.feasibility * t3) <= t8)
+    t5 = C_y - (L0 + L1 * c3)
+    t6 = t4 * t4 + t5 * t5
+    apart = ops.sqrt(t6)
+    t7 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
     failed = invalid | unreachable
-    t9 = t3 * ops.vanishing
-    coincide = apart <= t9
-    t10 = ops.opposite(failed)
-    t11 = t10 & ops.opposite(coincide)
-    touching = ops.max(t8, 0.0) <= t9
-    t12 = t10 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
+    t8 = size * ops.vanishing
+    coincide = apart <= t8
+    t9 = ops.opposite(failed)
+    t10 = t9 & ops.opposite(coincide)
+    touching = ops.max(t7, 0.0) <= t8
+    t11 = t9 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t10 | t11, t6, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t13 = 1.0 / ops.select(t11, apart_2, 1.0)
-    t14 = ops.select(coincide, 0.0, t5 * t13)
-    t15 = distance * t14 * 0.5
-    t16 = ops.select(t12, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
-    n_1 = ops.select(coincide, 1.0, -(t6 * t13))
-    t17 = height * n_1
-    P_r = C_r - (t15 - t17)
-    t18 = distance * n_1 * 0.5
-    t19 = height * t14
-    t20 = ops.select(failed, ops.nan, C_y + (t18 + t19))
-    P_r_right_of_CD = C_r - (t15 + t17)
-    t21 = ops.select(failed, ops.nan, -(c1 * P_r_right_of_CD))
-    t22 = ops.select(failed, ops.nan, C_y + (t18 - t19))
-    t23 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
-    t24 = ops.status(invalid, unreachable, coincide)
+    t12 = 1.0 / ops.select(t10, apart_2, 1.0)
+    t13 = ops.select(coincide, 0.0, t4 * t12)
+    t14 = distance * t13 * 0.5
+    t15 = ops.select(t11, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t15) * 0.5)
+    n_1 = ops.select(coincide, 1.0, -(t5 * t12))
+    t16 = height * n_1
+    P_r = C_r - (t14 - t16)
+    t17 = distance * n_1 * 0.5
+    t18 = height * t13
+    t19 = ops.select(failed, ops.nan, C_y + (t17 + t18))
+    P_r_right_of_CD = C_r - (t14 + t16)
+    t20 = ops.select(failed, ops.nan, -(c1 * P_r_right_of_CD))
+    t21 = ops.select(failed, ops.nan, C_y + (t17 - t18))
+    t22 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
+    t23 = ops.status(invalid, unreachable, coincide)
     return (
         ops.select(failed, ops.nan, -(c1 * P_r)),
-        t20,
+        t19,
         ops.select(failed, ops.nan, s1 * P_r),
+        t20,
         t21,
         t22,
         t23,
-        t24,
-        t24,
+        t23,
     )
 
 
@@ -232,48 +232,49 @@ def _passive_angles(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
-    t5 = L1 * s2 - L1 * s3
-    t6 = L1 * c2 - (L0 + L1 * c3)
-    t7 = t5 * t5 + t6 * t6
-    apart = ops.sqrt(t7)
-    t8 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t8)
-    t9 = t3 * ops.vanishing
-    coincide = apart <= t9
-    t10 = ops.opposite(failed)
-    t11 = t10 & ops.opposite(coincide)
-    touching = ops.max(t8, 0.0) <= t9
-    t12 = t10 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
+    t4 = L1 * s2 - L1 * s3
+    t5 = L1 * c2 - (L0 + L1 * c3)
+    t6 = t4 * t4 + t5 * t5
+    apart = ops.sqrt(t6)
+    t7 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    failed = ops.opposite(t2) | unreachable
+    t8 = size * ops.vanishing
+    coincide = apart <= t8
+    t9 = ops.opposite(failed)
+    t10 = t9 & ops.opposite(coincide)
+    touching = ops.max(t7, 0.0) <= t8
+    t11 = t9 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t10 | t11, t6, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t13 = ops.select(t11, apart_2, 1.0)
-    t14 = ops.select(coincide, 0.0, t5 / t13)
-    t15 = distance * t14 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t6 / t13))
-    t16 = ops.select(t12, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
-    t17 = n_1 * height
-    DP_r_right_of_CD = t15 - t17
-    t18 = distance * n_1 * 0.5
-    t19 = t14 * height
-    CP_y = t18 + t19
-    t20 = ops.atan2(DP_r_right_of_CD, ops.select(t10, CP_y, 1.0))
-    t21 = ops.select(failed, ops.nan, ops.wrap_cut(-t20))
-    DP_r = t15 + t17
-    CP_y_right_of_CD = t18 - t19
-    t22 = ops.atan2(DP_r, ops.select(t10, -CP_y_right_of_CD, 1.0))
-    t23 = ops.select(failed, ops.nan, ops.wrap_cut(t22))
-    t24 = ops.atan2(DP_r, ops.select(t10, CP_y_right_of_CD, 1.0))
-    t25 = ops.select(failed, ops.nan, ops.wrap_cut(-t24))
-    t26 = ops.atan2(DP_r_right_of_CD, ops.select(t10, -CP_y, 1.0))
-    t27 = ops.select(failed, ops.nan, ops.wrap_cut(t26))
+    t12 = ops.select(t10, apart_2, 1.0)
+    t13 = ops.select(coincide, 0.0, t4 / t12)
+    t14 = distance * t13 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t5 / t12))
+    t15 = ops.select(t11, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t15) * 0.5)
+    t16 = n_1 * height
+    DP_r_right_of_CD = t14 - t16
+    t17 = distance * n_1 * 0.5
+    t18 = t13 * height
+    CP_y = t17 + t18
+    t19 = ops.atan2(DP_r_right_of_CD, ops.select(t9, CP_y, 1.0))
+    t20 = ops.select(failed, ops.nan, ops.wrap_cut(-t19))
+    DP_r = t14 + t16
+    CP_y_right_of_CD = t17 - t18
+    t21 = ops.atan2(DP_r, ops.select(t9, -CP_y_right_of_CD, 1.0))
+    t22 = ops.select(failed, ops.nan, ops.wrap_cut(t21))
+    t23 = ops.atan2(DP_r, ops.select(t9, CP_y_right_of_CD, 1.0))
+    t24 = ops.select(failed, ops.nan, ops.wrap_cut(-t23))
+    t25 = ops.atan2(DP_r_right_of_CD, ops.select(t9, -CP_y, 1.0))
+    t26 = ops.select(failed, ops.nan, ops.wrap_cut(t25))
     return (
-        t21,
-        t23,
-        t25,
-        t27,
+        t20,
+        t22,
+        t24,
+        t26,
     )
 
 
@@ -329,80 +330,81 @@ def _skeleton(ops, theta1, theta2, theta3, L0, L1, L2):
     c1 = ops.cos(theta1)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
     D_r = L1 * s3
-    t5 = C_r - D_r
+    t4 = C_r - D_r
     C_y = L1 * c2
     D_y = L0 + L1 * c3
-    t6 = C_y - D_y
-    t7 = t5 * t5 + t6 * t6
-    apart = ops.sqrt(t7)
-    t8 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t8)
-    t9 = ops.select(failed, ops.nan, 0.0)
-    t10 = ops.select(failed, ops.nan, L0)
-    t11 = ops.select(failed, ops.nan, -(C_r * c1))
-    t12 = ops.select(failed, ops.nan, C_y)
-    t13 = ops.select(failed, ops.nan, C_r * s1)
-    t14 = ops.select(failed, ops.nan, -(D_r * c1))
-    t15 = ops.select(failed, ops.nan, D_y)
-    t16 = ops.select(failed, ops.nan, D_r * s1)
-    t17 = t3 * ops.vanishing
-    coincide = apart <= t17
-    t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(coincide)
-    touching = ops.max(t8, 0.0) <= t17
-    t20 = t18 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t19 | t20, t7, 1.0))
+    t5 = C_y - D_y
+    t6 = t4 * t4 + t5 * t5
+    apart = ops.sqrt(t6)
+    t7 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    failed = ops.opposite(t2) | unreachable
+    t8 = ops.select(failed, ops.nan, 0.0)
+    t9 = ops.select(failed, ops.nan, L0)
+    t10 = ops.select(failed, ops.nan, -(C_r * c1))
+    t11 = ops.select(failed, ops.nan, C_y)
+    t12 = ops.select(failed, ops.nan, C_r * s1)
+    t13 = ops.select(failed, ops.nan, -(D_r * c1))
+    t14 = ops.select(failed, ops.nan, D_y)
+    t15 = ops.select(failed, ops.nan, D_r * s1)
+    t16 = size * ops.vanishing
+    coincide = apart <= t16
+    t17 = ops.opposite(failed)
+    t18 = t17 & ops.opposite(coincide)
+    touching = ops.max(t7, 0.0) <= t16
+    t19 = t17 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t18 | t19, t6, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t21 = ops.select(t19, apart_2, 1.0)
-    t22 = ops.select(coincide, 0.0, t5 / t21)
-    t23 = distance * t22 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t6 / t21))
-    t24 = ops.select(t20, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t24) * 0.5)
-    t25 = n_1 * height
-    P_r = C_r - (t23 - t25)
-    t26 = distance * n_1 * 0.5
-    t27 = t22 * height
-    t28 = ops.select(failed, ops.nan, C_y + (t26 + t27))
-    P_r_right_of_CD = C_r - (t23 + t25)
-    t29 = ops.select(failed, ops.nan, -(c1 * P_r_right_of_CD))
-    t30 = ops.select(failed, ops.nan, C_y + (t26 - t27))
-    t31 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
+    t20 = ops.select(t18, apart_2, 1.0)
+    t21 = ops.select(coincide, 0.0, t4 / t20)
+    t22 = distance * t21 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t5 / t20))
+    t23 = ops.select(t19, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t23) * 0.5)
+    t24 = n_1 * height
+    P_r = C_r - (t22 - t24)
+    t25 = distance * n_1 * 0.5
+    t26 = t21 * height
+    t27 = ops.select(failed, ops.nan, C_y + (t25 + t26))
+    P_r_right_of_CD = C_r - (t22 + t24)
+    t28 = ops.select(failed, ops.nan, -(c1 * P_r_right_of_CD))
+    t29 = ops.select(failed, ops.nan, C_y + (t25 - t26))
+    t30 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
     return (
+        t8,
+        t8,
+        t8,
+        t8,
         t9,
-        t9,
-        t9,
-        t9,
+        t8,
         t10,
-        t9,
         t11,
         t12,
         t13,
         t14,
         t15,
-        t16,
         ops.select(failed, ops.nan, -(c1 * P_r)),
-        t28,
+        t27,
         ops.select(failed, ops.nan, s1 * P_r),
+        t8,
+        t8,
+        t8,
+        t8,
         t9,
-        t9,
-        t9,
-        t9,
+        t8,
         t10,
-        t9,
         t11,
         t12,
         t13,
         t14,
         t15,
-        t16,
+        t28,
         t29,
         t30,
-        t31,
     )
 
 
@@ -457,63 +459,64 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
-    t5 = L1 * s2 - L1 * s3
-    t6 = L1 * c2 - (L0 + L1 * c3)
-    t7 = t5 * t5 + t6 * t6
-    apart = ops.sqrt(t7)
-    t8 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t8)
-    t9 = ops.select(failed, ops.nan, L2 * s1)
-    t10 = ops.select(failed, ops.nan, 0.0)
-    t11 = ops.select(failed, ops.nan, L2 * c1)
-    t12 = t3 * ops.vanishing
-    coincide = apart <= t12
-    t13 = ops.opposite(failed)
-    t14 = t13 & ops.opposite(coincide)
-    touching = ops.max(t8, 0.0) <= t12
-    t15 = t13 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t14 | t15, t7, 1.0))
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
+    t4 = L1 * s2 - L1 * s3
+    t5 = L1 * c2 - (L0 + L1 * c3)
+    t6 = t4 * t4 + t5 * t5
+    apart = ops.sqrt(t6)
+    t7 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    failed = ops.opposite(t2) | unreachable
+    t8 = ops.select(failed, ops.nan, L2 * s1)
+    t9 = ops.select(failed, ops.nan, 0.0)
+    t10 = ops.select(failed, ops.nan, L2 * c1)
+    t11 = size * ops.vanishing
+    coincide = apart <= t11
+    t12 = ops.opposite(failed)
+    t13 = t12 & ops.opposite(coincide)
+    touching = ops.max(t7, 0.0) <= t11
+    t14 = t12 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t13 | t14, t6, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t16 = ops.select(t14, apart_2, 1.0)
-    t17 = ops.select(coincide, 0.0, t5 / t16)
-    t18 = distance * t17 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t6 / t16))
-    t19 = ops.select(t15, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t19) * 0.5)
-    t20 = n_1 * height
-    DP_r_right_of_CD = t18 - t20
-    t21 = c1 * DP_r_right_of_CD
-    t22 = distance * n_1 * 0.5
-    t23 = t17 * height
-    CP_y = t22 + t23
-    t24 = s1 * DP_r_right_of_CD
-    DP_r = t18 + t20
-    t25 = c1 * DP_r
-    CP_y_right_of_CD = t22 - t23
-    t26 = ops.select(failed, ops.nan, -CP_y_right_of_CD)
-    t27 = s1 * DP_r
-    t28 = ops.select(failed, ops.nan, CP_y_right_of_CD)
+    t15 = ops.select(t13, apart_2, 1.0)
+    t16 = ops.select(coincide, 0.0, t4 / t15)
+    t17 = distance * t16 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t5 / t15))
+    t18 = ops.select(t14, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t18) * 0.5)
+    t19 = n_1 * height
+    DP_r_right_of_CD = t17 - t19
+    t20 = c1 * DP_r_right_of_CD
+    t21 = distance * n_1 * 0.5
+    t22 = t16 * height
+    CP_y = t21 + t22
+    t23 = s1 * DP_r_right_of_CD
+    DP_r = t17 + t19
+    t24 = c1 * DP_r
+    CP_y_right_of_CD = t21 - t22
+    t25 = ops.select(failed, ops.nan, -CP_y_right_of_CD)
+    t26 = s1 * DP_r
+    t27 = ops.select(failed, ops.nan, CP_y_right_of_CD)
     return (
+        t8,
         t9,
         t10,
-        t11,
-        ops.select(failed, ops.nan, t21),
+        ops.select(failed, ops.nan, t20),
         ops.select(failed, ops.nan, CP_y),
+        ops.select(failed, ops.nan, -t23),
         ops.select(failed, ops.nan, -t24),
-        ops.select(failed, ops.nan, -t25),
-        t26,
-        ops.select(failed, ops.nan, t27),
+        t25,
+        ops.select(failed, ops.nan, t26),
+        t8,
         t9,
         t10,
-        t11,
-        ops.select(failed, ops.nan, t25),
-        t28,
-        ops.select(failed, ops.nan, -t27),
-        ops.select(failed, ops.nan, -t21),
-        ops.select(failed, ops.nan, -CP_y),
         ops.select(failed, ops.nan, t24),
+        t27,
+        ops.select(failed, ops.nan, -t26),
+        ops.select(failed, ops.nan, -t20),
+        ops.select(failed, ops.nan, -CP_y),
+        ops.select(failed, ops.nan, t23),
     )
 
 
@@ -566,52 +569,53 @@ def _jacobian_serial(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
     D_r = L1 * s3
-    t5 = C_r - D_r
+    t4 = C_r - D_r
     C_y = L1 * c2
-    t6 = L1 * c3
-    t7 = C_y - (L0 + t6)
-    t8 = t5 * t5 + t7 * t7
-    apart = ops.sqrt(t8)
-    t9 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t9)
-    t10 = t3 * ops.vanishing
-    coincide = apart <= t10
-    t11 = ops.opposite(failed)
-    t12 = t11 & ops.opposite(coincide)
-    touching = ops.max(t9, 0.0) <= t10
-    t13 = t11 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t12 | t13, t8, 1.0))
+    t5 = L1 * c3
+    t6 = C_y - (L0 + t5)
+    t7 = t4 * t4 + t6 * t6
+    apart = ops.sqrt(t7)
+    t8 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    failed = ops.opposite(t2) | unreachable
+    t9 = size * ops.vanishing
+    coincide = apart <= t9
+    t10 = ops.opposite(failed)
+    t11 = t10 & ops.opposite(coincide)
+    touching = ops.max(t8, 0.0) <= t9
+    t12 = t10 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t14 = ops.select(t12, apart_2, 1.0)
-    t15 = ops.select(coincide, 0.0, t5 / t14)
-    t16 = distance * t15 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t7 / t14))
-    t17 = ops.select(t13, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t17) * 0.5)
-    t18 = n_1 * height
-    DP_r_right_of_CD = t16 - t18
-    t19 = ops.select(failed, ops.nan, L2 * (C_r - DP_r_right_of_CD))
-    t20 = distance * n_1 * 0.5
-    t21 = t15 * height
-    CP_y = t20 + t21
-    t22 = ops.select(failed, ops.nan, -(C_y * DP_r_right_of_CD + C_r * CP_y))
-    DP_r = t16 + t18
-    CP_y_right_of_CD = t20 - t21
-    t23 = ops.select(failed, ops.nan, t6 * DP_r + D_r * CP_y_right_of_CD)
-    t24 = ops.select(failed, ops.nan, L2 * (C_r - DP_r))
-    t25 = ops.select(failed, ops.nan, -(C_y * DP_r + C_r * CP_y_right_of_CD))
-    t26 = ops.select(failed, ops.nan, t6 * DP_r_right_of_CD + D_r * CP_y)
+    t13 = ops.select(t11, apart_2, 1.0)
+    t14 = ops.select(coincide, 0.0, t4 / t13)
+    t15 = distance * t14 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t6 / t13))
+    t16 = ops.select(t12, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
+    t17 = n_1 * height
+    DP_r_right_of_CD = t15 - t17
+    t18 = ops.select(failed, ops.nan, L2 * (C_r - DP_r_right_of_CD))
+    t19 = distance * n_1 * 0.5
+    t20 = t14 * height
+    CP_y = t19 + t20
+    t21 = ops.select(failed, ops.nan, -(C_y * DP_r_right_of_CD + C_r * CP_y))
+    DP_r = t15 + t17
+    CP_y_right_of_CD = t19 - t20
+    t22 = ops.select(failed, ops.nan, t5 * DP_r + D_r * CP_y_right_of_CD)
+    t23 = ops.select(failed, ops.nan, L2 * (C_r - DP_r))
+    t24 = ops.select(failed, ops.nan, -(C_y * DP_r + C_r * CP_y_right_of_CD))
+    t25 = ops.select(failed, ops.nan, t5 * DP_r_right_of_CD + D_r * CP_y)
     return (
-        t19,
+        t18,
+        t21,
         t22,
         t23,
         t24,
         t25,
-        t26,
     )
 
 
@@ -667,82 +671,83 @@ def _jacobian(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
     D_r = L1 * s3
-    t5 = C_r - D_r
+    t4 = C_r - D_r
     C_y = L1 * c2
-    t6 = L1 * c3
-    t7 = C_y - (L0 + t6)
-    t8 = t5 * t5 + t7 * t7
-    apart = ops.sqrt(t8)
-    t9 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t9)
-    t10 = t3 * ops.vanishing
-    coincide = apart <= t10
-    t11 = ops.opposite(failed)
-    t12 = t11 & ops.opposite(coincide)
-    touching = ops.max(t9, 0.0) <= t10
-    t13 = t11 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t12 | t13, t8, 1.0))
+    t5 = L1 * c3
+    t6 = C_y - (L0 + t5)
+    t7 = t4 * t4 + t6 * t6
+    apart = ops.sqrt(t7)
+    t8 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    failed = ops.opposite(t2) | unreachable
+    t9 = size * ops.vanishing
+    coincide = apart <= t9
+    t10 = ops.opposite(failed)
+    t11 = t10 & ops.opposite(coincide)
+    touching = ops.max(t8, 0.0) <= t9
+    t12 = t10 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t14 = ops.select(t12, apart_2, 1.0)
-    t15 = ops.select(coincide, 0.0, t5 / t14)
-    t16 = distance * t15 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t7 / t14))
-    t17 = ops.select(t13, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t17) * 0.5)
-    t18 = n_1 * height
-    DP_r_right_of_CD = t16 - t18
+    t13 = ops.select(t11, apart_2, 1.0)
+    t14 = ops.select(coincide, 0.0, t4 / t13)
+    t15 = distance * t14 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t6 / t13))
+    t16 = ops.select(t12, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
+    t17 = n_1 * height
+    DP_r_right_of_CD = t15 - t17
     P_r = C_r - DP_r_right_of_CD
-    t19 = distance * n_1 * 0.5
-    t20 = t15 * height
-    CP_y_right_of_CD = t19 - t20
-    t21 = c1 * CP_y_right_of_CD
-    CP_y = t19 + t20
-    t22 = C_y * DP_r_right_of_CD + C_r * CP_y
-    t23 = ops.select(t11, distance * height, 1.0)
-    t24 = c1 * CP_y
-    DP_r = t16 + t18
-    along_d = t6 * DP_r + D_r * CP_y_right_of_CD
-    t25 = ops.select(failed, ops.nan, -(t24 * along_d / t23))
-    t26 = ops.select(failed, ops.nan, 0.0)
-    t27 = ops.select(failed, ops.nan, -(DP_r * t22 / t23))
-    t28 = ops.select(failed, ops.nan, DP_r_right_of_CD * along_d / t23)
-    t29 = s1 * CP_y_right_of_CD
-    t30 = ops.select(failed, ops.nan, -(t29 * t22 / t23))
-    t31 = s1 * CP_y
-    t32 = ops.select(failed, ops.nan, t31 * along_d / t23)
+    t18 = distance * n_1 * 0.5
+    t19 = t14 * height
+    CP_y_right_of_CD = t18 - t19
+    t20 = c1 * CP_y_right_of_CD
+    CP_y = t18 + t19
+    t21 = C_y * DP_r_right_of_CD + C_r * CP_y
+    t22 = ops.select(t10, distance * height, 1.0)
+    t23 = c1 * CP_y
+    DP_r = t15 + t17
+    along_d = t5 * DP_r + D_r * CP_y_right_of_CD
+    t24 = ops.select(failed, ops.nan, -(t23 * along_d / t22))
+    t25 = ops.select(failed, ops.nan, 0.0)
+    t26 = ops.select(failed, ops.nan, -(DP_r * t21 / t22))
+    t27 = ops.select(failed, ops.nan, DP_r_right_of_CD * along_d / t22)
+    t28 = s1 * CP_y_right_of_CD
+    t29 = ops.select(failed, ops.nan, -(t28 * t21 / t22))
+    t30 = s1 * CP_y
+    t31 = ops.select(failed, ops.nan, t30 * along_d / t22)
     P_r_right_of_CD = C_r - DP_r
-    t33 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
-    t34 = C_y * DP_r + C_r * CP_y_right_of_CD
-    t35 = ops.select(failed, ops.nan, -(t24 * t34 / t23))
-    along_d_right_of_CD = t6 * DP_r_right_of_CD + D_r * CP_y
-    t36 = ops.select(failed, ops.nan, t21 * along_d_right_of_CD / t23)
-    t37 = ops.select(failed, ops.nan, DP_r_right_of_CD * t34 / t23)
-    t38 = ops.select(failed, ops.nan, -(DP_r * along_d_right_of_CD / t23))
-    t39 = ops.select(failed, ops.nan, c1 * P_r_right_of_CD)
-    t40 = ops.select(failed, ops.nan, -(t29 * along_d_right_of_CD / t23))
+    t32 = ops.select(failed, ops.nan, s1 * P_r_right_of_CD)
+    t33 = C_y * DP_r + C_r * CP_y_right_of_CD
+    t34 = ops.select(failed, ops.nan, -(t23 * t33 / t22))
+    along_d_right_of_CD = t5 * DP_r_right_of_CD + D_r * CP_y
+    t35 = ops.select(failed, ops.nan, t20 * along_d_right_of_CD / t22)
+    t36 = ops.select(failed, ops.nan, DP_r_right_of_CD * t33 / t22)
+    t37 = ops.select(failed, ops.nan, -(DP_r * along_d_right_of_CD / t22))
+    t38 = ops.select(failed, ops.nan, c1 * P_r_right_of_CD)
+    t39 = ops.select(failed, ops.nan, -(t28 * along_d_right_of_CD / t22))
     return (
         ops.select(failed, ops.nan, s1 * P_r),
-        ops.select(failed, ops.nan, t21 * t22 / t23),
+        ops.select(failed, ops.nan, t20 * t21 / t22),
+        t24,
         t25,
         t26,
         t27,
-        t28,
         ops.select(failed, ops.nan, c1 * P_r),
-        t30,
+        t29,
+        t31,
         t32,
-        t33,
+        t34,
         t35,
+        t25,
         t36,
-        t26,
         t37,
         t38,
+        ops.select(failed, ops.nan, t30 * t33 / t22),
         t39,
-        ops.select(failed, ops.nan, t31 * t34 / t23),
-        t40,
     )
 
 
@@ -796,47 +801,48 @@ def _determinant(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
     D_r = L1 * s3
-    t5 = C_r - D_r
+    t4 = C_r - D_r
     C_y = L1 * c2
-    t6 = L1 * c3
-    t7 = C_y - (L0 + t6)
-    t8 = t5 * t5 + t7 * t7
-    apart = ops.sqrt(t8)
-    t9 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t9)
-    t10 = t3 * ops.vanishing
-    coincide = apart <= t10
-    t11 = ops.opposite(failed)
-    t12 = t11 & ops.opposite(coincide)
-    touching = ops.max(t9, 0.0) <= t10
-    t13 = t11 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t12 | t13, t8, 1.0))
+    t5 = L1 * c3
+    t6 = C_y - (L0 + t5)
+    t7 = t4 * t4 + t6 * t6
+    apart = ops.sqrt(t7)
+    t8 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    failed = ops.opposite(t2) | unreachable
+    t9 = size * ops.vanishing
+    coincide = apart <= t9
+    t10 = ops.opposite(failed)
+    t11 = t10 & ops.opposite(coincide)
+    touching = ops.max(t8, 0.0) <= t9
+    t12 = t10 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t14 = ops.select(t12, apart_2, 1.0)
-    t15 = ops.select(coincide, 0.0, t5 / t14)
-    t16 = distance * t15 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t7 / t14))
-    t17 = ops.select(t13, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t17) * 0.5)
-    t18 = n_1 * height
-    DP_r_right_of_CD = t16 - t18
-    t19 = distance * n_1 * 0.5
-    t20 = t15 * height
-    CP_y = t19 + t20
-    t21 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y)
-    DP_r = t16 + t18
-    CP_y_right_of_CD = t19 - t20
-    t22 = ops.select(t11, distance * height, 1.0)
-    t23 = t21 * (t6 * DP_r + D_r * CP_y_right_of_CD) / t22
-    t24 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
-    t25 = t24 * (t6 * DP_r_right_of_CD + D_r * CP_y) / t22
+    t13 = ops.select(t11, apart_2, 1.0)
+    t14 = ops.select(coincide, 0.0, t4 / t13)
+    t15 = distance * t14 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t6 / t13))
+    t16 = ops.select(t12, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
+    t17 = n_1 * height
+    DP_r_right_of_CD = t15 - t17
+    t18 = distance * n_1 * 0.5
+    t19 = t14 * height
+    CP_y = t18 + t19
+    t20 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y)
+    DP_r = t15 + t17
+    CP_y_right_of_CD = t18 - t19
+    t21 = ops.select(t10, distance * height, 1.0)
+    t22 = t20 * (t5 * DP_r + D_r * CP_y_right_of_CD) / t21
+    t23 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
+    t24 = t23 * (t5 * DP_r_right_of_CD + D_r * CP_y) / t21
     return (
-        ops.select(failed, ops.nan, -t23),
-        ops.select(failed, ops.nan, t25),
+        ops.select(failed, ops.nan, -t22),
+        ops.select(failed, ops.nan, t24),
     )
 
 
@@ -889,53 +895,54 @@ def _singularities(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
     C_r = L1 * s2
     D_r = L1 * s3
-    t5 = C_r - D_r
+    t4 = C_r - D_r
     C_y = L1 * c2
-    t6 = L1 * c3
-    t7 = C_y - (L0 + t6)
-    t8 = t5 * t5 + t7 * t7
-    apart = ops.sqrt(t8)
-    t9 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t9)
-    t10 = t3 * ops.vanishing
-    coincide = apart <= t10
-    t11 = ops.opposite(failed)
-    t12 = t11 & ops.opposite(coincide)
-    touching = ops.max(t9, 0.0) <= t10
-    t13 = t11 & ops.opposite(touching)
-    apart_2 = ops.sqrt(ops.select(t12 | t13, t8, 1.0))
+    t5 = L1 * c3
+    t6 = C_y - (L0 + t5)
+    t7 = t4 * t4 + t6 * t6
+    apart = ops.sqrt(t7)
+    t8 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    failed = ops.opposite(t2) | unreachable
+    t9 = size * ops.vanishing
+    coincide = apart <= t9
+    t10 = ops.opposite(failed)
+    t11 = t10 & ops.opposite(coincide)
+    touching = ops.max(t8, 0.0) <= t9
+    t12 = t10 & ops.opposite(touching)
+    apart_2 = ops.sqrt(ops.select(t11 | t12, t7, 1.0))
     distance = ops.select(coincide, 0.0, apart_2)
-    t14 = ops.select(t12, apart_2, 1.0)
-    t15 = ops.select(coincide, 0.0, t5 / t14)
-    t16 = distance * t15 * 0.5
-    n_1 = ops.select(coincide, 1.0, -(t7 / t14))
-    t17 = ops.select(t13, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t17) * 0.5)
-    t18 = n_1 * height
-    DP_r_right_of_CD = t16 - t18
-    t19 = ops.select(failed, ops.nan, C_r - DP_r_right_of_CD)
-    t20 = distance * n_1 * 0.5
-    t21 = t15 * height
-    CP_y = t20 + t21
-    t22 = ops.select(failed, ops.nan, -(C_y * DP_r_right_of_CD + C_r * CP_y))
-    DP_r = t16 + t18
-    CP_y_right_of_CD = t20 - t21
-    t23 = ops.select(failed, ops.nan, t6 * DP_r + D_r * CP_y_right_of_CD)
+    t13 = ops.select(t11, apart_2, 1.0)
+    t14 = ops.select(coincide, 0.0, t4 / t13)
+    t15 = distance * t14 * 0.5
+    n_1 = ops.select(coincide, 1.0, -(t6 / t13))
+    t16 = ops.select(t12, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t16) * 0.5)
+    t17 = n_1 * height
+    DP_r_right_of_CD = t15 - t17
+    t18 = ops.select(failed, ops.nan, C_r - DP_r_right_of_CD)
+    t19 = distance * n_1 * 0.5
+    t20 = t14 * height
+    CP_y = t19 + t20
+    t21 = ops.select(failed, ops.nan, -(C_y * DP_r_right_of_CD + C_r * CP_y))
+    DP_r = t15 + t17
+    CP_y_right_of_CD = t19 - t20
+    t22 = ops.select(failed, ops.nan, t5 * DP_r + D_r * CP_y_right_of_CD)
     side = distance * height
-    t24 = ops.select(failed, ops.nan, -(C_y * DP_r + C_r * CP_y_right_of_CD))
-    t25 = ops.select(failed, ops.nan, t6 * DP_r_right_of_CD + D_r * CP_y)
+    t23 = ops.select(failed, ops.nan, -(C_y * DP_r + C_r * CP_y_right_of_CD))
+    t24 = ops.select(failed, ops.nan, t5 * DP_r_right_of_CD + D_r * CP_y)
     return (
-        t19,
+        t18,
+        t21,
         t22,
-        t23,
         ops.select(failed, ops.nan, side),
         ops.select(failed, ops.nan, C_r - DP_r),
+        t23,
         t24,
-        t25,
         ops.select(failed, ops.nan, -side),
     )
 
@@ -991,30 +998,31 @@ def _condition_number(ops, theta1, theta2, theta3, L0, L1, L2):
     c3 = ops.cos(theta3)
     t1 = ops.finite(L0, L1, L2) & (0.0 <= L0) & (0.0 <= L1)
     t2 = t1 & (0.0 <= L2) & ops.finite(theta1, theta2, theta3)
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
-    t5 = L1 * s2 - L1 * s3
-    t6 = L1 * c2 - (L0 + L1 * c3)
-    t7 = t5 * t5 + t6 * t6
-    apart = ops.sqrt(t7)
-    t8 = t4 - apart
-    failed = ops.opposite(t2) | ops.opposite(-(ops.feasibility * t3) <= t8)
-    t9 = t3 * ops.vanishing
-    coincide = apart <= t9
-    t10 = ops.opposite(failed)
-    touching = ops.max(t8, 0.0) <= t9
-    t11 = t10 & ops.opposite(touching)
-    t12 = ops.select((t10 & ops.opposite(coincide)) | t11, t7, 1.0)
-    apart_2 = ops.sqrt(t12)
-    t13 = ops.select(coincide, 0.0, apart_2) * 0.5
-    t14 = ops.select(t11, ops.max(t4 - apart_2, 0.0) * (apart_2 + t4), 1.0)
-    height = ops.select(touching, 0.0, ops.sqrt(t14) * 0.5)
-    t15 = ops.select(coincide, 1.0, ops.max(t13, height))
-    t16 = t15 / ops.select(t10, ops.min(t13, height), 1.0)
-    t17 = ops.select(failed, ops.nan, t16)
+    size = L0 + L1 + L2
+    t3 = L2 * 2.0
+    t4 = L1 * s2 - L1 * s3
+    t5 = L1 * c2 - (L0 + L1 * c3)
+    t6 = t4 * t4 + t5 * t5
+    apart = ops.sqrt(t6)
+    t7 = t3 - apart
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    failed = ops.opposite(t2) | unreachable
+    t8 = size * ops.vanishing
+    coincide = apart <= t8
+    t9 = ops.opposite(failed)
+    touching = ops.max(t7, 0.0) <= t8
+    t10 = t9 & ops.opposite(touching)
+    t11 = ops.select((t9 & ops.opposite(coincide)) | t10, t6, 1.0)
+    apart_2 = ops.sqrt(t11)
+    t12 = ops.select(coincide, 0.0, apart_2) * 0.5
+    t13 = ops.select(t10, ops.max(t3 - apart_2, 0.0) * (apart_2 + t3), 1.0)
+    height = ops.select(touching, 0.0, ops.sqrt(t13) * 0.5)
+    t14 = ops.select(coincide, 1.0, ops.max(t12, height))
+    t15 = t14 / ops.select(t9, ops.min(t12, height), 1.0)
+    t16 = ops.select(failed, ops.nan, t15)
     return (
-        t17,
-        t17,
+        t16,
+        t16,
     )
 
 

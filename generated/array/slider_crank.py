@@ -2,13 +2,13 @@
 # derivations/slider_crank.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 21 compare and select, 7 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   skeleton: 25 compare and select, 12 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   jacobian_parallel: 20 compare and select, 9 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   jacobian_serial: 20 compare and select, 11 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
-#   jacobian: 22 compare and select, 11 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
-#   determinant: 22 compare and select, 11 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
-#   singularities: 22 compare and select, 11 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
+#   fk: 21 compare and select, 7 add, 5 multiply, 1 sincos, 1 sqrt
+#   skeleton: 25 compare and select, 12 add, 5 multiply, 1 sincos, 1 sqrt
+#   jacobian_parallel: 20 compare and select, 9 add, 5 multiply, 1 sincos, 1 sqrt
+#   jacobian_serial: 20 compare and select, 11 add, 8 multiply, 1 sincos, 1 sqrt
+#   jacobian: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+#   determinant: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+#   singularities: 22 compare and select, 11 add, 8 multiply, 1 sincos, 1 sqrt
 #   ik: 52 compare and select, 24 add, 2 atan2, 2 divide, 22 multiply, 4 sqrt
 #   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
 """Slider-crank.
@@ -103,7 +103,7 @@ def _fk(ops, theta, r, l, e):
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
     invalid = ops.opposite(t1 & ops.finite(theta))
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     aside_2 = e - r * s
     t3 = l - aside_2
     t4 = l + aside_2
@@ -173,7 +173,7 @@ def _skeleton(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -263,7 +263,7 @@ def _jacobian_parallel(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     aside_2 = e - r * s
     t3 = l - aside_2
     t4 = l + aside_2
@@ -325,7 +325,7 @@ def _jacobian_serial(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -389,7 +389,7 @@ def _jacobian(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -457,7 +457,7 @@ def _determinant(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -524,7 +524,7 @@ def _singularities(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.5)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2

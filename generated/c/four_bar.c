@@ -3,13 +3,13 @@
  * derivations/four_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 17 add, 33 compare and select, 2 atan2, 1 divide, 14 multiply, 1 sincos, 2 sqrt
- *   skeleton: 32 add, 31 compare and select, 2 divide, 19 multiply, 1 sincos, 2 sqrt
- *   jacobian_parallel: 28 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
- *   jacobian_serial: 24 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
- *   jacobian: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
- *   determinant: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
- *   singularities: 32 add, 31 compare and select, 2 divide, 27 multiply, 1 sincos, 2 sqrt
+ *   fk: 17 add, 33 compare and select, 2 atan2, 15 multiply, 1 sincos, 2 sqrt
+ *   skeleton: 32 add, 31 compare and select, 1 divide, 20 multiply, 1 sincos, 2 sqrt
+ *   jacobian_parallel: 28 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+ *   jacobian_serial: 24 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+ *   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+ *   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+ *   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
  *   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
  *   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
  */
@@ -52,7 +52,7 @@ CF_INLINE void four_bar_fk_kernel(const int single, const real_t one,
     const int t19 = t18 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t20 = cf_nought(theta) == 0;
     const int invalid = !(t19 & t20);
-    const real_t t21 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t21 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t21 <= t6) & (-t21 <= t10) & (-t21 <= t8));
     const real_t t22 = cf_poison(single, invalid | unreachable);
     const real_t t23 = cf_status(single, invalid, unreachable, t5);
@@ -172,7 +172,7 @@ CF_INLINE void four_bar_skeleton_kernel(const int single, const four_bar_params 
     const int t4 = cf_nought(theta) == 0;
     const real_t t5 = L3 + L4;
     const real_t size = L1 + L2 + t5;
-    const real_t t6 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t6 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const real_t t7 = L2 * c;
     const real_t t8 = L1 - t7;
     const real_t wv_2 = L2 * s;
@@ -360,7 +360,7 @@ CF_INLINE void four_bar_jacobian_parallel_kernel(const int single, const four_ba
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t22 = cf_nought(theta) == 0;
-    const real_t t23 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t23 <= t5) & (-t23 <= t9) & (-t23 <= t7));
     const real_t t24 = cf_poison(single, (!(t21 & t22)) | unreachable);
     const real_t t25 = share_2 * cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13);
@@ -480,7 +480,7 @@ CF_INLINE void four_bar_jacobian_serial_kernel(const int single, const four_bar_
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t22 = cf_nought(theta) == 0;
-    const real_t t23 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t23 <= t6) & (-t23 <= t10) & (-t23 <= t8));
     const real_t t24 = cf_poison(single, (!(t21 & t22)) | unreachable);
     const real_t t25 = -(wv_2 * (t2 + t15) + t1 * (wv_2 + t18)) + t24;
@@ -602,7 +602,7 @@ CF_INLINE void four_bar_jacobian_kernel(const int single, const four_bar_params 
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t24 = cf_nought(theta) == 0;
-    const real_t t25 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t25 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
@@ -722,7 +722,7 @@ CF_INLINE void four_bar_determinant_kernel(const int single, const four_bar_para
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t24 = cf_nought(theta) == 0;
-    const real_t t25 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t25 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
@@ -841,7 +841,7 @@ CF_INLINE void four_bar_singularities_kernel(const int single, const four_bar_pa
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t23 = cf_nought(theta) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
     const int unreachable = !((-t24 <= t6) & (-t24 <= t10) & (-t24 <= t8));
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
     const real_t t26 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);

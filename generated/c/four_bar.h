@@ -3,13 +3,13 @@
  * derivations/four_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 17 add, 33 compare and select, 2 atan2, 1 divide, 14 multiply, 1 sincos, 2 sqrt
- *   skeleton: 32 add, 31 compare and select, 2 divide, 19 multiply, 1 sincos, 2 sqrt
- *   jacobian_parallel: 28 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
- *   jacobian_serial: 24 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
- *   jacobian: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
- *   determinant: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
- *   singularities: 32 add, 31 compare and select, 2 divide, 27 multiply, 1 sincos, 2 sqrt
+ *   fk: 17 add, 33 compare and select, 2 atan2, 15 multiply, 1 sincos, 2 sqrt
+ *   skeleton: 32 add, 31 compare and select, 1 divide, 20 multiply, 1 sincos, 2 sqrt
+ *   jacobian_parallel: 28 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+ *   jacobian_serial: 24 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+ *   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+ *   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+ *   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
  *   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
  *   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
  *

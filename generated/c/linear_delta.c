@@ -78,7 +78,7 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t t25 = cf_rounded(single, one, nu * (t24 * t24)) + mu * CLOSEDFORM_C(0.25);
     const real_t t26 = cf_rounded(single, one, l * l) - cf_select(all_same, CLOSEDFORM_C(0.0), t25);
     const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t27 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t28 = t20 * h;
     const real_t t29 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
@@ -172,7 +172,7 @@ CF_INLINE void linear_delta_fk_common_kernel(const int single, const real_t one,
     const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int invalid = !(t27 & (CLOSEDFORM_C(0.0) <= l) & t28);
     const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const real_t t30 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t30 = l * size * CLOSEDFORM_C(0.1875);
     const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t24);
     const int unreachable = !t31;
     const real_t t32 = cf_poison(single, invalid | unreachable);
@@ -382,7 +382,7 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t21 = t15 * (d_y - t15) + t17 * (t16 - t17);
     const real_t t22 = cf_rarely(single, in_line, -t21, CLOSEDFORM_C(0.0));
     const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t t25 = size * t16;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = size * (d_y + a_x * s_w);
@@ -838,7 +838,7 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = t21 * h;
     const real_t t26 = t20 - t25;
@@ -1025,7 +1025,7 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t22 = l * l - t21;
     const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t23 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t24 = w_z * h;
     const real_t A_13 = t20 - t24;
@@ -1103,7 +1103,7 @@ CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, cons
     const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t31 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t31 = l * size * CLOSEDFORM_C(0.1875);
     const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
     const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
     const real_t t33 = cf_poison(single, failed);
@@ -1291,7 +1291,7 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1502,7 +1502,7 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1644,7 +1644,7 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1801,7 +1801,7 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t24 = l * l - t23;
     const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t t25 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t25 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t26 = t22 * h;
     const real_t t27 = t21 - t26;
@@ -1995,7 +1995,7 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(2.0);
+    const real_t t24 = l * size * CLOSEDFORM_C(0.1875);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = t21 * h;
     const real_t t26 = t20 - t25;

@@ -40,7 +40,7 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const int t9 = cf_nought(b) == 0;
     const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const int invalid = !(t9 & (CLOSEDFORM_C(0.0) <= b) & t10);
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t11 <= t6) & (-t11 <= t4) & (-t11 <= t5));
     const real_t t12 = cf_poison(single, invalid | unreachable);
     const real_t t13 = n_1 * t8 + t12;
@@ -174,7 +174,7 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t A_11 = n_1 * t9;
     const int t10 = cf_nought(b) == 0;
     const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t12 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t12 <= t3) & (-t12 <= t5) & (-t12 <= t6));
     const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | unreachable;
     const real_t t13 = cf_poison(single, failed);
@@ -273,7 +273,7 @@ CF_INLINE void rpr_planar_skeleton_kernel(const int single, const rpr_planar_par
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
     const real_t size = b + t3;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const real_t t5 = t3 - b;
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
@@ -427,7 +427,7 @@ CF_INLINE void rpr_planar_jacobian_parallel_kernel(const int single, const rpr_p
     const real_t A_11 = n_1 * t8;
     const int t9 = cf_nought(b) == 0;
     const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t11 <= t6) & (-t11 <= t4) & (-t11 <= t5));
     const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
     const real_t t12 = cf_poison(single, failed);
@@ -535,7 +535,7 @@ CF_INLINE void rpr_planar_jacobian_serial_kernel(const int single, const rpr_pla
     const int t1 = cf_nought(b) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * (b + t3));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * (b + t3));
     const real_t t5 = rho1 - rho2;
     const int t6 = (-t4 <= t3 - b) & (-t4 <= b + t5) & (-t4 <= b - t5);
     const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!t6);
@@ -602,7 +602,7 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t t8 = cf_nonzero(single, Delta);
     const int t9 = cf_nought(b) == 0;
     const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t11 <= t3) & (-t11 <= t5) & (-t11 <= t6));
     const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
     const real_t t12 = cf_poison(single, failed);
@@ -719,7 +719,7 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t8 = cf_quotient(single, rho1 * rho2, b * height);
     const int t9 = cf_nought(b) == 0;
     const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t11 <= t2) & (-t11 <= t5) & (-t11 <= t6));
     const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
     const real_t t12 = cf_poison(single, failed);
@@ -805,7 +805,7 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
     const real_t size = b + t3;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const real_t t5 = t3 - b;
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
@@ -941,7 +941,7 @@ CF_INLINE void rpr_planar_condition_number_kernel(const int single, const rpr_pl
     const real_t t15 = cf_quotient(single, square1 + square2 + t14, CLOSEDFORM_C(2.0) * (b * height));
     const int t16 = cf_nought(b) == 0;
     const int t17 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t18 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t18 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.1875) * size);
     const int unreachable = !((-t18 <= t6) & (-t18 <= t4) & (-t18 <= t5));
     const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= b) & t17)) | unreachable;
     const real_t t19 = t15 + cf_poison(single, failed);

@@ -3,13 +3,13 @@
  * derivations/slider_crank.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 18 compare and select, 9 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   skeleton: 17 compare and select, 19 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   jacobian_parallel: 17 compare and select, 11 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   jacobian_serial: 17 compare and select, 13 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
- *   jacobian: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
- *   determinant: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
- *   singularities: 17 compare and select, 15 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
+ *   fk: 18 compare and select, 9 add, 5 multiply, 1 sincos, 1 sqrt
+ *   skeleton: 17 compare and select, 19 add, 5 multiply, 1 sincos, 1 sqrt
+ *   jacobian_parallel: 17 compare and select, 11 add, 5 multiply, 1 sincos, 1 sqrt
+ *   jacobian_serial: 17 compare and select, 13 add, 8 multiply, 1 sincos, 1 sqrt
+ *   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+ *   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+ *   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
  *   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
  *   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
  */
@@ -36,7 +36,7 @@ CF_INLINE void slider_crank_fk_kernel(const int single, const real_t one,
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t6 = cf_nought(theta) == 0;
     const int invalid = !(t5 & t6);
-    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int unreachable = !((-t7 <= t1) & (-t7 <= t2));
     const real_t t8 = cf_poison(single, invalid | unreachable);
     const real_t t9 = cf_status(single, invalid, unreachable, 0);
@@ -146,7 +146,7 @@ CF_INLINE void slider_crank_skeleton_kernel(const int single, const slider_crank
     const int t1 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t3 = cf_nought(theta) == 0;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const real_t t5 = r * s;
     const real_t aside_2 = e - t5;
     const real_t t6 = l - aside_2;
@@ -296,7 +296,7 @@ CF_INLINE void slider_crank_jacobian_parallel_kernel(const int single, const sli
     const int t4 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t6 = cf_nought(theta) == 0;
-    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int failed = (!(t5 & t6)) | (!((-t7 <= t1) & (-t7 <= t2)));
     const real_t t8 = cf_poison(single, failed);
     A[0] = m_2 - root_2 - m_2 + t8;
@@ -392,7 +392,7 @@ CF_INLINE void slider_crank_jacobian_serial_kernel(const int single, const slide
     const int t6 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t7 = t6 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t8 = cf_nought(theta) == 0;
-    const real_t t9 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t9 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int failed = (!(t7 & t8)) | (!((-t9 <= t3) & (-t9 <= t4)));
     const real_t t10 = cf_poison(single, failed);
     B[0] = t2 + t1 * (m_2 - (m_2 - root_2)) + t10;
@@ -489,7 +489,7 @@ CF_INLINE void slider_crank_jacobian_kernel(const int single, const slider_crank
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);
@@ -588,7 +588,7 @@ CF_INLINE void slider_crank_determinant_kernel(const int single, const slider_cr
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);
@@ -687,7 +687,7 @@ CF_INLINE void slider_crank_singularities_kernel(const int single, const slider_
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.5));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);

@@ -3,13 +3,13 @@
  * derivations/slider_crank.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 18 compare and select, 9 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   skeleton: 17 compare and select, 19 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   jacobian_parallel: 17 compare and select, 11 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
- *   jacobian_serial: 17 compare and select, 13 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
- *   jacobian: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
- *   determinant: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
- *   singularities: 17 compare and select, 15 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
+ *   fk: 18 compare and select, 9 add, 5 multiply, 1 sincos, 1 sqrt
+ *   skeleton: 17 compare and select, 19 add, 5 multiply, 1 sincos, 1 sqrt
+ *   jacobian_parallel: 17 compare and select, 11 add, 5 multiply, 1 sincos, 1 sqrt
+ *   jacobian_serial: 17 compare and select, 13 add, 8 multiply, 1 sincos, 1 sqrt
+ *   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+ *   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+ *   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
  *   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
  *   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
  *

@@ -2,13 +2,13 @@
 // derivations/four_bar.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 17 add, 33 compare and select, 2 atan2, 1 divide, 14 multiply, 1 sincos, 2 sqrt
-//   skeleton: 32 add, 31 compare and select, 2 divide, 19 multiply, 1 sincos, 2 sqrt
-//   jacobian_parallel: 28 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
-//   jacobian_serial: 24 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
-//   jacobian: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
-//   determinant: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
-//   singularities: 32 add, 31 compare and select, 2 divide, 27 multiply, 1 sincos, 2 sqrt
+//   fk: 17 add, 33 compare and select, 2 atan2, 15 multiply, 1 sincos, 2 sqrt
+//   skeleton: 32 add, 31 compare and select, 1 divide, 20 multiply, 1 sincos, 2 sqrt
+//   jacobian_parallel: 28 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+//   jacobian_serial: 24 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+//   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+//   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+//   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
 //   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
 //   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 
@@ -109,7 +109,7 @@ function _fk(v, o) {
         Number.isFinite(L4);
     const t19 = t18 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const invalid = !(t19 && Number.isFinite(theta));
-    const t20 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t20 = -(_runtime.FEASIBILITY * (0.375 * size));
     const unreachable = !(t20 <= t5 && t20 <= t9 && t20 <= t7);
     const t21 = invalid || unreachable ? NaN : 0;
     const t22 = Math.atan2(t4 ? 0.0 : t12 + t13, t4 ? 1.0 : t14 - t15);
@@ -194,7 +194,7 @@ function _skeleton(v, o) {
     const t2 = t1 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const t3 = L3 + L4;
     const size = L1 + L2 + t3;
-    const t4 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t4 = -(_runtime.FEASIBILITY * (0.375 * size));
     const t5 = L2 * c;
     const t6 = L1 - t5;
     const wv_2 = L2 * s;
@@ -335,7 +335,7 @@ function _jacobian_parallel(v, o) {
     const t17 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t18 = t17 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t19 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t19 = -(_runtime.FEASIBILITY * (0.375 * size));
     const failed = !(t18 && Number.isFinite(theta)) || !(t19 <= t5 && t19 <= t9 && t19 <= t7);
     const t20 = failed ? NaN : 0;
     const t21 = wv_2 + share_2 * (t4 ? 0.0 : t12 + t13);
@@ -430,7 +430,7 @@ function _jacobian_serial(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const t23 = wv_2 * (t2 + share_2 * (t5 ? 1.0 : t13 - t14));
@@ -526,7 +526,7 @@ function _jacobian(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
@@ -623,7 +623,7 @@ function _determinant(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
@@ -719,7 +719,7 @@ function _singularities(v, o) {
     const t18 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t19 = t18 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t20 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t20 = -(_runtime.FEASIBILITY * (0.375 * size));
     const failed = !(t19 && Number.isFinite(theta)) || !(t20 <= t6 && t20 <= t10 && t20 <= t8);
     const t21 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);

@@ -2,13 +2,13 @@
 # derivations/four_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 17 add, 33 compare and select, 2 atan2, 1 divide, 14 multiply, 1 sincos, 2 sqrt
-#   skeleton: 32 add, 31 compare and select, 2 divide, 19 multiply, 1 sincos, 2 sqrt
-#   jacobian_parallel: 28 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
-#   jacobian_serial: 24 add, 31 compare and select, 2 divide, 23 multiply, 1 sincos, 2 sqrt
-#   jacobian: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
-#   determinant: 30 add, 31 compare and select, 4 divide, 27 multiply, 1 sincos, 2 sqrt
-#   singularities: 32 add, 31 compare and select, 2 divide, 27 multiply, 1 sincos, 2 sqrt
+#   fk: 17 add, 33 compare and select, 2 atan2, 15 multiply, 1 sincos, 2 sqrt
+#   skeleton: 32 add, 31 compare and select, 1 divide, 20 multiply, 1 sincos, 2 sqrt
+#   jacobian_parallel: 28 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+#   jacobian_serial: 24 add, 31 compare and select, 1 divide, 24 multiply, 1 sincos, 2 sqrt
+#   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+#   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
+#   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
 #   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
 #   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 """Planar four-bar linkage.
@@ -135,7 +135,7 @@ def _fk(theta, L1, L2, L3, L4):
     del t17
     invalid = np.logical_not(t18 & (0.0 <= L4) & np.isfinite(theta))
     del t18
-    t19 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t19 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t19 <= t5) & (t19 <= t9) & (t19 <= t7))
     del t19, t5, t7, t9
@@ -211,7 +211,7 @@ def _skeleton(theta, L1, L2, L3, L4):
     del t1
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t4 = -(_runtime.FEASIBILITY * (0.375 * size))
     t5 = L2 * c
     del c
     t6 = L1 - t5
@@ -372,7 +372,7 @@ def _jacobian_parallel(theta, L1, L2, L3, L4):
     del t19
     invalid = np.logical_not(t20 & (0.0 <= L4) & np.isfinite(theta))
     del t20
-    t21 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t21 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t21 <= t5) & (t21 <= t9) & (t21 <= t7))
     del t21, t5, t7, t9
@@ -477,7 +477,7 @@ def _jacobian_serial(theta, L1, L2, L3, L4):
     del t19
     invalid = np.logical_not(t20 & (0.0 <= L4) & np.isfinite(theta))
     del t20
-    t21 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t21 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t21 <= t6) & (t21 <= t10) & (t21 <= t8))
     del t10, t21, t6, t8
@@ -586,7 +586,7 @@ def _jacobian(theta, L1, L2, L3, L4):
     del t21
     invalid = np.logical_not(t22 & (0.0 <= L4) & np.isfinite(theta))
     del t22
-    t23 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t23 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t23 <= t6) & (t23 <= t10) & (t23 <= t8))
     del t10, t23, t6, t8
@@ -698,7 +698,7 @@ def _determinant(theta, L1, L2, L3, L4):
     del t21
     invalid = np.logical_not(t22 & (0.0 <= L4) & np.isfinite(theta))
     del t22
-    t23 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t23 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t23 <= t6) & (t23 <= t10) & (t23 <= t8))
     del t10, t23, t6, t8
@@ -807,7 +807,7 @@ def _singularities(theta, L1, L2, L3, L4):
     del t20
     invalid = np.logical_not(t21 & (0.0 <= L4) & np.isfinite(theta))
     del t21
-    t22 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t22 = -(_runtime.FEASIBILITY * (0.375 * size))
     del size
     unreachable = np.logical_not((t22 <= t6) & (t22 <= t10) & (t22 <= t8))
     del t10, t22, t6, t8

@@ -2,13 +2,13 @@
 # derivations/slider_crank.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 18 compare and select, 9 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   skeleton: 17 compare and select, 19 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   jacobian_parallel: 17 compare and select, 11 add, 1 divide, 4 multiply, 1 sincos, 1 sqrt
-#   jacobian_serial: 17 compare and select, 13 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
-#   jacobian: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
-#   determinant: 17 compare and select, 13 add, 3 divide, 7 multiply, 1 sincos, 1 sqrt
-#   singularities: 17 compare and select, 15 add, 1 divide, 7 multiply, 1 sincos, 1 sqrt
+#   fk: 18 compare and select, 9 add, 5 multiply, 1 sincos, 1 sqrt
+#   skeleton: 17 compare and select, 19 add, 5 multiply, 1 sincos, 1 sqrt
+#   jacobian_parallel: 17 compare and select, 11 add, 5 multiply, 1 sincos, 1 sqrt
+#   jacobian_serial: 17 compare and select, 13 add, 8 multiply, 1 sincos, 1 sqrt
+#   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+#   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
+#   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
 #   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
 #   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
 """Slider-crank.
@@ -111,7 +111,7 @@ def _fk(theta, r, l, e):
     del t3
     invalid = np.logical_not(t4)
     del t4
-    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     unreachable = np.logical_not((-t5 <= t1) & (-t5 <= t2))
     del t1, t2, t5
     t6 = _runtime.poison(invalid | unreachable)
@@ -180,7 +180,7 @@ def _skeleton(theta, r, l, e):
     t1 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t2 = t1 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t1
-    t3 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t3 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     t4 = r * s
     del s
     aside_2 = e - t4
@@ -285,7 +285,7 @@ def _jacobian_parallel(theta, r, l, e):
     t3 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t4 = t3 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t3
-    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     failed = np.logical_not(t4) | np.logical_not((-t5 <= t1) & (-t5 <= t2))
     del t1, t2, t4, t5
     t6 = _runtime.poison(failed)
@@ -355,7 +355,7 @@ def _jacobian_serial(theta, r, l, e):
     t5 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t6 = t5 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t5
-    t7 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t7 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     failed = np.logical_not(t6) | np.logical_not((-t7 <= t3) & (-t7 <= t4))
     del t3, t4, t6, t7
     t8 = _runtime.poison(failed)
@@ -426,7 +426,7 @@ def _jacobian(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)
@@ -500,7 +500,7 @@ def _determinant(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)
@@ -573,7 +573,7 @@ def _singularities(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.5)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)

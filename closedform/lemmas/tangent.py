@@ -305,9 +305,11 @@ class LinksAndWrist(Links):
                 place = moved(place, step(place))
             return place
 
-        best = follow(_Place(self, turn), [_Place.closer] * 3)
-        for detour in _DETOURS:
-            other = follow(best, detour)
+        start = _Place(self, turn)
+        best = follow(start, [_Place.closer] * 3)
+        # steps may lead away from where the axis reverses, so the last detour begins anew
+        for detour, begin in zip(_DETOURS, (best, moved(start, start.turn.pair)), strict=True):
+            other = follow(begin, detour)
             best = moved(best, best.unless(other.miss < best.miss, other))
         return best.turn.pair
 

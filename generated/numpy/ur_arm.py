@@ -10,7 +10,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 2275 compare and select, 1815 add, 32 atan2, 346 divide, 3102 multiply, 220 sqrt
+#   ik: 2243 compare and select, 1783 add, 32 atan2, 334 divide, 3036 multiply, 210 sqrt
 #   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 218 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
@@ -841,6151 +841,6017 @@ def _ik(
     del t7, t9
     t13 = _runtime.select(free1, 0.0, t11 + t12)
     axisx_1_1 = T13 * c_1_1 - T23 * t13
-    h_1_1 = np.sqrt(t5 + axisx_1_1 * axisx_1_1)
-    t14 = h_1_1 <= 1.4210854715202004e-14
-    qx_1_1 = w_x * c_1_1 - w_y * t13
-    t15 = h_1_1 == 0.0
-    t16 = 1.0 / h_1_1
-    uc_1_1 = _runtime.select(t15, 0.0, T33 * t16)
-    t17 = d5 * uc_1_1
-    x_1_1 = _runtime.select(t14, qx_1_1, qx_1_1 - t17)
-    dqx_1_1 = w_y * c_1_1 + w_x * t13
-    t18 = T33 * (T13 * t13 + T23 * c_1_1) / (h_1_1 * h_1_1)
-    del h_1_1
-    t19 = _runtime.select(t14, 0.0, t18)
-    del t18
-    t20 = d5 * t19
-    t21 = axisx_1_1 * t16
-    del axisx_1_1, t16
-    t22 = _runtime.select(t15, 1.0, t21)
-    dx_1_1 = _runtime.select(t14, dqx_1_1, dqx_1_1 + t20 * t22)
-    t23 = d1 - (T34 - T33 * d6)
-    t24 = _runtime.select(t14, t23, t23 - d5 * t22)
-    dy_1_1 = _runtime.select(t14, 0.0, t20 * uc_1_1)
-    slope_1_1 = x_1_1 * dx_1_1 - t24 * dy_1_1
-    del dx_1_1
-    straight_1_1 = dqx_1_1 * dqx_1_1
-    t25 = 2.0 * dqx_1_1
-    t26 = qx_1_1 * uc_1_1
-    del uc_1_1
-    t27 = straight_1_1 + t20 * (t25 * t22 + t19 * (t26 + t23 * t22))
-    del t22
-    bends_1_1 = _runtime.select(t14, straight_1_1, t27)
-    del t27
-    square_1_1 = x_1_1 * x_1_1 + t24 * t24
-    del t24, x_1_1
-    t28 = L2 - L3
-    fold_1_1 = np.abs(t28)
-    t29 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
+    t14 = axisx_1_1 * axisx_1_1
+    daxisx_1_1 = T13 * t13 + T23 * c_1_1
+    most_1_1_5 = np.sqrt(t14 + daxisx_1_1 * daxisx_1_1)
+    t15 = most_1_1_5 <= 8.881784197001252e-16
+    margin_1_1_5 = most_1_1_5 * most_1_1_5
+    del most_1_1_5
+    rest_1_1_5 = np.sqrt(margin_1_1_5) * _runtime.sign(daxisx_1_1)
+    t16 = 1.0 / margin_1_1_5
+    del margin_1_1_5
+    by_c_1_1_5 = _runtime.select(t15, 1.0, daxisx_1_1 * rest_1_1_5 * t16)
+    t17 = _runtime.select(t15, 0.0, t16 * (axisx_1_1 * rest_1_1_5))
+    del rest_1_1_5, t15, t16
+    versine_1_1_5 = _runtime.select(0.0 < by_c_1_1_5, t17 * t17 / (1.0 + np.abs(by_c_1_1_5)), 1.0 - by_c_1_1_5)
     whole_1_1 = size * 5.684341886080802e-14
-    t30 = _runtime.select(t14, t29, fold_1_1) - whole_1_1
-    t31 = np.maximum(0.0, t30)
-    del t30
-    low_1_1 = t31 * t31
-    del t31
-    t32 = whole_1_1 + _runtime.select(t14, t3, full_1_1)
-    high_1_1 = t32 * t32
-    del t32
-    t33 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
-    miss_1_1 = square_1_1 - t33
-    del square_1_1, t33
-    inner_1_1 = slope_1_1 * slope_1_1 - bends_1_1 * miss_1_1
-    t34 = inner_1_1 < 0.0
-    t35 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
-    del inner_1_1
-    below_1_1 = _runtime.select(t34, 2.0 * bends_1_1, 2.0 * (slope_1_1 + t35))
-    del bends_1_1, t35
-    above_1_1 = _runtime.select(t34, slope_1_1, miss_1_1)
-    del miss_1_1, slope_1_1, t34
-    t36 = _runtime.select(np.abs(below_1_1) <= np.abs(above_1_1), 0.0, above_1_1 / below_1_1)
-    del above_1_1, below_1_1
-    t37 = t36 * t36
-    t38 = 1.0 / (1.0 + t37)
-    by_c_1_1 = (1.0 - t37) * t38
-    del t37
-    t39 = t38 * (2.0 * t36)
-    del t36, t38
-    versine_1_1 = _runtime.select(0.0 < by_c_1_1, t39 * t39 / (1.0 + np.abs(by_c_1_1)), 1.0 - by_c_1_1)
-    t40 = d4 * versine_1_1 + root1 * np.abs(t39) <= whole_1_1
-    del versine_1_1
-    cosine_1_1 = _runtime.select(t40, by_c_1_1, 1.0)
-    del by_c_1_1
-    sine_1_1 = _runtime.select(t40, -t39, 0.0)
-    del t39, t40
-    c_1_1_2 = c_1_1 * cosine_1_1 + t13 * sine_1_1
-    s_1_1_2 = c_1_1 * sine_1_1 - t13 * cosine_1_1
-    del cosine_1_1, sine_1_1
-    axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
-    h_1_1_2 = np.sqrt(t5 + axisx_1_1_2 * axisx_1_1_2)
-    t41 = h_1_1_2 <= 1.4210854715202004e-14
-    qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    t42 = h_1_1_2 == 0.0
-    t43 = 1.0 / h_1_1_2
-    uc_1_1_2 = _runtime.select(t42, 0.0, T33 * t43)
-    x_1_1_2 = _runtime.select(t41, qx_1_1_2, qx_1_1_2 - d5 * uc_1_1_2)
-    dqx_1_1_2 = w_y * c_1_1_2 - w_x * s_1_1_2
-    t44 = T33 * (T13 * s_1_1_2 - T23 * c_1_1_2) / (h_1_1_2 * h_1_1_2)
-    del h_1_1_2
-    spin_1_1_2 = _runtime.select(t41, 0.0, t44)
-    del t44
-    rate_1_1_2 = d5 * spin_1_1_2
-    t45 = _runtime.select(t42, 1.0, axisx_1_1_2 * t43)
-    del axisx_1_1_2, t42, t43
-    dx_1_1_2 = _runtime.select(t41, dqx_1_1_2, dqx_1_1_2 - rate_1_1_2 * t45)
-    t46 = _runtime.select(t41, t23, t23 - d5 * t45)
-    t47 = _runtime.select(t41, 0.0, rate_1_1_2 * uc_1_1_2)
-    slope_1_1_2 = x_1_1_2 * dx_1_1_2 + t46 * t47
-    del dx_1_1_2, t47
-    straight_1_1_2 = dqx_1_1_2 * dqx_1_1_2
-    t48 = spin_1_1_2 * (qx_1_1_2 * uc_1_1_2 + t23 * t45)
-    del qx_1_1_2, spin_1_1_2, uc_1_1_2
-    t49 = straight_1_1_2 - rate_1_1_2 * (2.0 * dqx_1_1_2 * t45 - t48)
-    del dqx_1_1_2, rate_1_1_2, t45, t48
-    bends_1_1_2 = _runtime.select(t41, straight_1_1_2, t49)
-    del straight_1_1_2, t49
-    square_1_1_2 = x_1_1_2 * x_1_1_2 + t46 * t46
-    del t46, x_1_1_2
-    t50 = _runtime.select(t41, t29, fold_1_1) - whole_1_1
-    t51 = np.maximum(0.0, t50)
-    del t50
-    t52 = whole_1_1 + _runtime.select(t41, t3, full_1_1)
-    del t41
-    t53 = np.maximum(t51 * t51, np.minimum(t52 * t52, square_1_1_2))
-    del t51, t52
-    miss_1_1_2 = square_1_1_2 - t53
-    del square_1_1_2, t53
-    inner_1_1_2 = slope_1_1_2 * slope_1_1_2 - bends_1_1_2 * miss_1_1_2
-    t54 = inner_1_1_2 < 0.0
-    t55 = _runtime.sign(slope_1_1_2) * np.sqrt(np.maximum(0.0, inner_1_1_2))
-    del inner_1_1_2
-    below_1_1_2 = _runtime.select(t54, 2.0 * bends_1_1_2, 2.0 * (slope_1_1_2 + t55))
-    del bends_1_1_2, t55
-    above_1_1_2 = _runtime.select(t54, slope_1_1_2, miss_1_1_2)
-    del miss_1_1_2, slope_1_1_2, t54
-    t56 = _runtime.select(np.abs(below_1_1_2) <= np.abs(above_1_1_2), 0.0, above_1_1_2 / below_1_1_2)
-    del above_1_1_2, below_1_1_2
-    t57 = t56 * t56
-    t58 = 1.0 / (1.0 + t57)
-    by_c_1_1_2 = (1.0 - t57) * t58
-    del t57
-    t59 = t58 * (2.0 * t56)
-    del t56, t58
-    versine_1_1_2 = _runtime.select(0.0 < by_c_1_1_2, t59 * t59 / (1.0 + np.abs(by_c_1_1_2)), 1.0 - by_c_1_1_2)
-    t60 = d4 * versine_1_1_2 + root1 * np.abs(t59) <= whole_1_1
-    del versine_1_1_2
-    cosine_1_1_2 = _runtime.select(t60, by_c_1_1_2, 1.0)
-    del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t60, -t59, 0.0)
-    del t59, t60
-    c_1_1_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
-    s_1_1_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
-    del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
-    axisx_1_1_3 = T13 * c_1_1_3 + T23 * s_1_1_3
-    h_1_1_3 = np.sqrt(t5 + axisx_1_1_3 * axisx_1_1_3)
-    t61 = h_1_1_3 <= 1.4210854715202004e-14
-    qx_1_1_3 = w_x * c_1_1_3 + w_y * s_1_1_3
-    t62 = h_1_1_3 == 0.0
-    t63 = 1.0 / h_1_1_3
-    uc_1_1_3 = _runtime.select(t62, 0.0, T33 * t63)
-    x_1_1_3 = _runtime.select(t61, qx_1_1_3, qx_1_1_3 - d5 * uc_1_1_3)
-    dqx_1_1_3 = w_y * c_1_1_3 - w_x * s_1_1_3
-    t64 = T33 * (T13 * s_1_1_3 - T23 * c_1_1_3) / (h_1_1_3 * h_1_1_3)
-    del h_1_1_3
-    spin_1_1_3 = _runtime.select(t61, 0.0, t64)
-    del t64
-    rate_1_1_3 = d5 * spin_1_1_3
-    t65 = _runtime.select(t62, 1.0, axisx_1_1_3 * t63)
-    del axisx_1_1_3, t62, t63
-    dx_1_1_3 = _runtime.select(t61, dqx_1_1_3, dqx_1_1_3 - rate_1_1_3 * t65)
-    t66 = _runtime.select(t61, t23, t23 - d5 * t65)
-    t67 = _runtime.select(t61, 0.0, rate_1_1_3 * uc_1_1_3)
-    slope_1_1_3 = x_1_1_3 * dx_1_1_3 + t66 * t67
-    del dx_1_1_3, t67
-    straight_1_1_3 = dqx_1_1_3 * dqx_1_1_3
-    t68 = spin_1_1_3 * (qx_1_1_3 * uc_1_1_3 + t23 * t65)
-    del qx_1_1_3, spin_1_1_3, uc_1_1_3
-    t69 = straight_1_1_3 - rate_1_1_3 * (2.0 * dqx_1_1_3 * t65 - t68)
-    del dqx_1_1_3, rate_1_1_3, t65, t68
-    bends_1_1_3 = _runtime.select(t61, straight_1_1_3, t69)
-    del straight_1_1_3, t69
-    square_1_1_3 = x_1_1_3 * x_1_1_3 + t66 * t66
-    del t66, x_1_1_3
-    t70 = _runtime.select(t61, t29, fold_1_1) - whole_1_1
-    t71 = np.maximum(0.0, t70)
-    del t70
-    t72 = whole_1_1 + _runtime.select(t61, t3, full_1_1)
-    del t61
-    t73 = np.maximum(t71 * t71, np.minimum(t72 * t72, square_1_1_3))
-    del t71, t72
-    miss_1_1_3 = square_1_1_3 - t73
-    del square_1_1_3, t73
-    inner_1_1_3 = slope_1_1_3 * slope_1_1_3 - bends_1_1_3 * miss_1_1_3
-    t74 = inner_1_1_3 < 0.0
-    t75 = _runtime.sign(slope_1_1_3) * np.sqrt(np.maximum(0.0, inner_1_1_3))
-    del inner_1_1_3
-    below_1_1_3 = _runtime.select(t74, 2.0 * bends_1_1_3, 2.0 * (slope_1_1_3 + t75))
-    del bends_1_1_3, t75
-    above_1_1_3 = _runtime.select(t74, slope_1_1_3, miss_1_1_3)
-    del miss_1_1_3, slope_1_1_3, t74
-    t76 = _runtime.select(np.abs(below_1_1_3) <= np.abs(above_1_1_3), 0.0, above_1_1_3 / below_1_1_3)
-    del above_1_1_3, below_1_1_3
-    t77 = t76 * t76
-    t78 = 1.0 / (1.0 + t77)
-    by_c_1_1_3 = (1.0 - t77) * t78
-    del t77
-    t79 = t78 * (2.0 * t76)
-    del t76, t78
-    versine_1_1_3 = _runtime.select(0.0 < by_c_1_1_3, t79 * t79 / (1.0 + np.abs(by_c_1_1_3)), 1.0 - by_c_1_1_3)
-    t80 = d4 * versine_1_1_3 + root1 * np.abs(t79) <= whole_1_1
-    del versine_1_1_3
-    cosine_1_1_3 = _runtime.select(t80, by_c_1_1_3, 1.0)
-    del by_c_1_1_3
-    sine_1_1_3 = _runtime.select(t80, -t79, 0.0)
-    del t79, t80
-    c_1_1_4 = c_1_1_3 * cosine_1_1_3 - s_1_1_3 * sine_1_1_3
-    s_1_1_4 = c_1_1_3 * sine_1_1_3 + s_1_1_3 * cosine_1_1_3
-    del c_1_1_3, cosine_1_1_3, s_1_1_3, sine_1_1_3
-    axisx_1_1_4 = T13 * c_1_1_4 + T23 * s_1_1_4
-    t81 = axisx_1_1_4 * axisx_1_1_4
-    t82 = T13 * s_1_1_4 - T23 * c_1_1_4
-    most_1_1_4 = np.sqrt(t81 + t82 * t82)
-    t83 = most_1_1_4 <= 8.881784197001252e-16
-    t84 = np.abs(T33) <= 1.4210854715202004e-14
-    t85 = t23 * t23
-    qx_1_1_4 = w_x * c_1_1_4 + w_y * s_1_1_4
-    r_1_1_4 = np.sqrt(t85 + qx_1_1_4 * qx_1_1_4)
-    t86 = size * 8.881784197001252e-16
-    t87 = r_1_1_4 <= t86
-    t88 = d5 + r_1_1_4
-    h_1_1_4 = np.sqrt(t5 + t81)
-    del t81
-    t89 = h_1_1_4 == 0.0
-    t90 = 1.0 / h_1_1_4
-    uc_1_1_4 = _runtime.select(t89, 0.0, T33 * t90)
-    t91 = qx_1_1_4 - d5 * uc_1_1_4
-    t92 = _runtime.select(t89, 1.0, axisx_1_1_4 * t90)
-    del t89, t90
-    t93 = t23 - d5 * t92
-    t94 = np.maximum(np.sqrt(t91 * t91 + t93 * t93), fold_1_1)
-    goal_1_1_4 = np.minimum(full_1_1, t94)
-    del t94
-    k_v_1_1_4 = np.maximum(0.0, (t88 - goal_1_1_4) * (t88 + goal_1_1_4))
-    t95 = d5 - r_1_1_4
-    d_v_1_1_4 = np.maximum(0.0, (goal_1_1_4 - t95) * (goal_1_1_4 + t95))
-    del goal_1_1_4, t95
-    n_v_1_1_4 = k_v_1_1_4 + d_v_1_1_4
-    t96 = n_v_1_1_4 <= size * t88 * 8.881784197001252e-16
-    del t88
-    t97 = 1.0 / n_v_1_1_4
-    del n_v_1_1_4
-    uc_v_1_1_4 = _runtime.select(t96, 1.0, (k_v_1_1_4 - d_v_1_1_4) * t97)
-    t98 = qx_1_1_4 * uc_v_1_1_4
-    side_1_1_4 = _runtime.sign(t23 * uc_1_1_4 - qx_1_1_4 * t92)
-    del t92, uc_1_1_4
-    t99 = 2.0 * side_1_1_4 * np.sqrt(k_v_1_1_4 * d_v_1_1_4)
-    del d_v_1_1_4, k_v_1_1_4, side_1_1_4
-    us_v_1_1_4 = _runtime.select(t96, 0.0, t97 * t99)
-    del t96, t97, t99
-    t100 = t23 * us_v_1_1_4
-    t101 = 1.0 / r_1_1_4
-    del r_1_1_4
-    c_v_1_1_4 = _runtime.select(t87, 1.0, (t98 + t100) * t101)
-    t102 = T33 * c_v_1_1_4 < 0.0
-    t103 = qx_1_1_4 * us_v_1_1_4
-    del us_v_1_1_4
-    t104 = t23 * uc_v_1_1_4
-    del uc_v_1_1_4
-    wc_1_1_4 = _runtime.select(t87, 0.0, t101 * (t103 + t104))
-    s_v_1_1_4 = _runtime.select(t87, 0.0, t101 * (t103 - t104))
-    del t103, t104
-    t105 = T33 * _runtime.select(t102, wc_1_1_4, -s_v_1_1_4)
-    del s_v_1_1_4, wc_1_1_4
-    c_w_1_1_4 = _runtime.select(t87, 1.0, t101 * (t98 - t100))
-    del t100, t101, t87, t98
-    to_s_1_1_4 = _runtime.select(t102, c_w_1_1_4, c_v_1_1_4)
-    del c_v_1_1_4, c_w_1_1_4, t102
-    across_1_1_4 = _runtime.select(t84, 0.0, t105 * _runtime.sign(to_s_1_1_4))
-    del t105
-    t106 = np.abs(to_s_1_1_4)
-    del to_s_1_1_4
-    t107 = _runtime.select(most_1_1_4 * t106 <= np.abs(across_1_1_4), most_1_1_4 * _runtime.sign(across_1_1_4), across_1_1_4 / t106)
-    del t106
-    wanted_1_1_4 = _runtime.select(across_1_1_4 == 0.0, 0.0, t107)
-    del across_1_1_4, t107
-    t108 = (most_1_1_4 - wanted_1_1_4) * (most_1_1_4 + wanted_1_1_4)
-    rest_1_1_4 = np.sqrt(np.maximum(0.0, t108)) * _runtime.sign(-t82)
-    del t108
-    t109 = axisx_1_1_4 * wanted_1_1_4 - t82 * rest_1_1_4
-    t110 = 1.0 / (most_1_1_4 * most_1_1_4)
-    del most_1_1_4
-    by_c_1_1_4 = _runtime.select(t83, 1.0, t109 * t110)
-    del t109
-    t111 = axisx_1_1_4 * rest_1_1_4 + t82 * wanted_1_1_4
-    del axisx_1_1_4, rest_1_1_4, t82, wanted_1_1_4
-    t112 = _runtime.select(t83, 0.0, t110 * t111)
-    del t110, t111, t83
-    versine_1_1_4 = _runtime.select(0.0 < by_c_1_1_4, t112 * t112 / (1.0 + np.abs(by_c_1_1_4)), 1.0 - by_c_1_1_4)
-    t113 = d4 * versine_1_1_4 + root1 * np.abs(t112) <= whole_1_1
-    del versine_1_1_4
-    cosine_1_1_4 = _runtime.select(t113, by_c_1_1_4, 1.0)
-    del by_c_1_1_4
-    sine_1_1_4 = _runtime.select(t113, -t112, 0.0)
-    del t112, t113
-    c_1_1_5 = c_1_1_4 * cosine_1_1_4 - s_1_1_4 * sine_1_1_4
-    s_1_1_5 = c_1_1_4 * sine_1_1_4 + s_1_1_4 * cosine_1_1_4
-    del cosine_1_1_4, sine_1_1_4
-    axisx_1_1_5 = T13 * c_1_1_5 + T23 * s_1_1_5
-    h_1_1_5 = np.sqrt(t5 + axisx_1_1_5 * axisx_1_1_5)
-    t114 = h_1_1_5 <= 1.4210854715202004e-14
-    qx_1_1_5 = w_x * c_1_1_5 + w_y * s_1_1_5
-    t115 = h_1_1_5 == 0.0
-    t116 = 1.0 / h_1_1_5
-    uc_1_1_5 = _runtime.select(t115, 0.0, T33 * t116)
-    x_1_1_5 = _runtime.select(t114, qx_1_1_5, qx_1_1_5 - d5 * uc_1_1_5)
-    dqx_1_1_5 = w_y * c_1_1_5 - w_x * s_1_1_5
-    t117 = T33 * (T13 * s_1_1_5 - T23 * c_1_1_5) / (h_1_1_5 * h_1_1_5)
-    del h_1_1_5
-    spin_1_1_5 = _runtime.select(t114, 0.0, t117)
-    del t117
-    rate_1_1_5 = d5 * spin_1_1_5
-    t118 = _runtime.select(t115, 1.0, axisx_1_1_5 * t116)
-    del axisx_1_1_5, t115, t116
-    dx_1_1_5 = _runtime.select(t114, dqx_1_1_5, dqx_1_1_5 - rate_1_1_5 * t118)
-    t119 = _runtime.select(t114, t23, t23 - d5 * t118)
-    t120 = _runtime.select(t114, 0.0, rate_1_1_5 * uc_1_1_5)
-    slope_1_1_5 = x_1_1_5 * dx_1_1_5 + t119 * t120
-    del dx_1_1_5, t120
-    straight_1_1_5 = dqx_1_1_5 * dqx_1_1_5
-    t121 = spin_1_1_5 * (qx_1_1_5 * uc_1_1_5 + t23 * t118)
-    del qx_1_1_5, spin_1_1_5, uc_1_1_5
-    t122 = straight_1_1_5 - rate_1_1_5 * (2.0 * dqx_1_1_5 * t118 - t121)
-    del dqx_1_1_5, rate_1_1_5, t118, t121
-    bends_1_1_5 = _runtime.select(t114, straight_1_1_5, t122)
-    del straight_1_1_5, t122
-    square_1_1_5 = x_1_1_5 * x_1_1_5 + t119 * t119
-    del t119, x_1_1_5
-    t123 = _runtime.select(t114, t29, fold_1_1) - whole_1_1
-    t124 = np.maximum(0.0, t123)
-    del t123
-    t125 = whole_1_1 + _runtime.select(t114, t3, full_1_1)
-    del t114
-    t126 = np.maximum(t124 * t124, np.minimum(t125 * t125, square_1_1_5))
-    del t124, t125
-    miss_1_1_5 = square_1_1_5 - t126
-    del square_1_1_5, t126
-    inner_1_1_5 = slope_1_1_5 * slope_1_1_5 - bends_1_1_5 * miss_1_1_5
-    t127 = inner_1_1_5 < 0.0
-    t128 = _runtime.sign(slope_1_1_5) * np.sqrt(np.maximum(0.0, inner_1_1_5))
-    del inner_1_1_5
-    below_1_1_5 = _runtime.select(t127, 2.0 * bends_1_1_5, 2.0 * (slope_1_1_5 + t128))
-    del bends_1_1_5, t128
-    above_1_1_5 = _runtime.select(t127, slope_1_1_5, miss_1_1_5)
-    del miss_1_1_5, slope_1_1_5, t127
-    t129 = _runtime.select(np.abs(below_1_1_5) <= np.abs(above_1_1_5), 0.0, above_1_1_5 / below_1_1_5)
-    del above_1_1_5, below_1_1_5
-    t130 = t129 * t129
-    t131 = 1.0 / (1.0 + t130)
-    by_c_1_1_5 = (1.0 - t130) * t131
-    del t130
-    t132 = t131 * (2.0 * t129)
-    del t129, t131
-    versine_1_1_5 = _runtime.select(0.0 < by_c_1_1_5, t132 * t132 / (1.0 + np.abs(by_c_1_1_5)), 1.0 - by_c_1_1_5)
-    t133 = d4 * versine_1_1_5 + root1 * np.abs(t132) <= whole_1_1
+    t18 = d4 * versine_1_1_5 + root1 * np.abs(t17) <= whole_1_1
     del versine_1_1_5
-    cosine_1_1_5 = _runtime.select(t133, by_c_1_1_5, 1.0)
+    cosine_1_1_5 = _runtime.select(t18, by_c_1_1_5, 1.0)
     del by_c_1_1_5
-    sine_1_1_5 = _runtime.select(t133, -t132, 0.0)
-    del t132, t133
-    c_1_1_6 = c_1_1_5 * cosine_1_1_5 - s_1_1_5 * sine_1_1_5
-    s_1_1_6 = c_1_1_5 * sine_1_1_5 + s_1_1_5 * cosine_1_1_5
-    del c_1_1_5, cosine_1_1_5, s_1_1_5, sine_1_1_5
-    axisx_1_1_6 = T13 * c_1_1_6 + T23 * s_1_1_6
-    h_1_1_6 = np.sqrt(t5 + axisx_1_1_6 * axisx_1_1_6)
-    t134 = h_1_1_6 <= 1.4210854715202004e-14
-    qx_1_1_6 = w_x * c_1_1_6 + w_y * s_1_1_6
-    t135 = h_1_1_6 == 0.0
-    t136 = 1.0 / h_1_1_6
-    uc_1_1_6 = _runtime.select(t135, 0.0, T33 * t136)
-    x_1_1_6 = _runtime.select(t134, qx_1_1_6, qx_1_1_6 - d5 * uc_1_1_6)
-    dqx_1_1_6 = w_y * c_1_1_6 - w_x * s_1_1_6
-    t137 = T33 * (T13 * s_1_1_6 - T23 * c_1_1_6) / (h_1_1_6 * h_1_1_6)
-    del h_1_1_6
-    spin_1_1_6 = _runtime.select(t134, 0.0, t137)
-    del t137
-    rate_1_1_6 = d5 * spin_1_1_6
-    t138 = _runtime.select(t135, 1.0, axisx_1_1_6 * t136)
-    del axisx_1_1_6, t135, t136
-    dx_1_1_6 = _runtime.select(t134, dqx_1_1_6, dqx_1_1_6 - rate_1_1_6 * t138)
-    t139 = _runtime.select(t134, t23, t23 - d5 * t138)
-    t140 = _runtime.select(t134, 0.0, rate_1_1_6 * uc_1_1_6)
-    slope_1_1_6 = x_1_1_6 * dx_1_1_6 + t139 * t140
-    del dx_1_1_6, t140
-    straight_1_1_6 = dqx_1_1_6 * dqx_1_1_6
-    t141 = spin_1_1_6 * (qx_1_1_6 * uc_1_1_6 + t23 * t138)
-    del qx_1_1_6, spin_1_1_6, uc_1_1_6
-    t142 = straight_1_1_6 - rate_1_1_6 * (2.0 * dqx_1_1_6 * t138 - t141)
-    del dqx_1_1_6, rate_1_1_6, t138, t141
-    bends_1_1_6 = _runtime.select(t134, straight_1_1_6, t142)
-    del straight_1_1_6, t142
-    square_1_1_6 = x_1_1_6 * x_1_1_6 + t139 * t139
-    del t139, x_1_1_6
-    t143 = _runtime.select(t134, t29, fold_1_1) - whole_1_1
-    t144 = np.maximum(0.0, t143)
-    del t143
-    t145 = whole_1_1 + _runtime.select(t134, t3, full_1_1)
-    del t134
-    t146 = np.maximum(t144 * t144, np.minimum(t145 * t145, square_1_1_6))
-    del t144, t145
-    miss_1_1_6 = square_1_1_6 - t146
-    del square_1_1_6, t146
-    inner_1_1_6 = slope_1_1_6 * slope_1_1_6 - bends_1_1_6 * miss_1_1_6
-    t147 = inner_1_1_6 < 0.0
-    t148 = _runtime.sign(slope_1_1_6) * np.sqrt(np.maximum(0.0, inner_1_1_6))
-    del inner_1_1_6
-    below_1_1_6 = _runtime.select(t147, 2.0 * bends_1_1_6, 2.0 * (slope_1_1_6 + t148))
-    del bends_1_1_6, t148
-    above_1_1_6 = _runtime.select(t147, slope_1_1_6, miss_1_1_6)
-    del miss_1_1_6, slope_1_1_6, t147
-    t149 = _runtime.select(np.abs(below_1_1_6) <= np.abs(above_1_1_6), 0.0, above_1_1_6 / below_1_1_6)
-    del above_1_1_6, below_1_1_6
-    t150 = t149 * t149
-    t151 = 1.0 / (1.0 + t150)
-    by_c_1_1_6 = (1.0 - t150) * t151
-    del t150
-    t152 = t151 * (2.0 * t149)
-    del t149, t151
-    versine_1_1_6 = _runtime.select(0.0 < by_c_1_1_6, t152 * t152 / (1.0 + np.abs(by_c_1_1_6)), 1.0 - by_c_1_1_6)
-    t153 = d4 * versine_1_1_6 + root1 * np.abs(t152) <= whole_1_1
-    del versine_1_1_6
-    cosine_1_1_6 = _runtime.select(t153, by_c_1_1_6, 1.0)
-    del by_c_1_1_6
-    sine_1_1_6 = _runtime.select(t153, -t152, 0.0)
-    del t152, t153
-    c_1_1_7 = c_1_1_6 * cosine_1_1_6 - s_1_1_6 * sine_1_1_6
-    s_1_1_7 = c_1_1_6 * sine_1_1_6 + s_1_1_6 * cosine_1_1_6
-    del c_1_1_6, cosine_1_1_6, s_1_1_6, sine_1_1_6
-    axisx_1_1_7 = T13 * c_1_1_7 + T23 * s_1_1_7
-    h_1_1_7 = np.sqrt(t5 + axisx_1_1_7 * axisx_1_1_7)
-    t154 = h_1_1_7 <= 1.4210854715202004e-14
-    qx_1_1_7 = w_x * c_1_1_7 + w_y * s_1_1_7
-    t155 = h_1_1_7 == 0.0
-    t156 = 1.0 / h_1_1_7
-    del h_1_1_7
-    t157 = qx_1_1_7 - d5 * _runtime.select(t155, 0.0, T33 * t156)
-    x_1_1_7 = _runtime.select(t154, qx_1_1_7, t157)
-    del qx_1_1_7, t157
-    t158 = _runtime.select(t155, 1.0, axisx_1_1_7 * t156)
-    del axisx_1_1_7, t155, t156
-    t159 = _runtime.select(t154, t23, t23 - d5 * t158)
-    del t158
-    t160 = np.sqrt(x_1_1_7 * x_1_1_7 + t159 * t159)
-    del t159, x_1_1_7
-    t161 = np.maximum(0.0, t160 - _runtime.select(t154, t3, full_1_1))
-    missed_1_1_7 = np.maximum(t161, _runtime.select(t154, t29, fold_1_1) - t160)
-    del t154, t160, t161
-    t162 = h_1_1_4 <= 1.4210854715202004e-14
-    del h_1_1_4
-    x_1_1_4 = _runtime.select(t162, qx_1_1_4, t91)
-    del qx_1_1_4, t91
-    t163 = _runtime.select(t162, t23, t93)
-    del t93
-    t164 = np.sqrt(x_1_1_4 * x_1_1_4 + t163 * t163)
-    del t163, x_1_1_4
-    t165 = np.maximum(0.0, t164 - _runtime.select(t162, t3, full_1_1))
-    missed_1_1_4 = np.maximum(t165, _runtime.select(t162, t29, fold_1_1) - t164)
-    del t162, t164, t165
-    t166 = missed_1_1_7 < missed_1_1_4
-    del missed_1_1_4, missed_1_1_7
-    c_1_1_8 = _runtime.select(t166, c_1_1_7, c_1_1_4)
-    del c_1_1_4, c_1_1_7
-    s_1_1_8 = _runtime.select(t166, s_1_1_7, s_1_1_4)
-    del s_1_1_4, s_1_1_7, t166
-    axisx_1_1_8 = T13 * c_1_1_8 + T23 * s_1_1_8
-    t167 = axisx_1_1_8 * axisx_1_1_8
-    t168 = T13 * s_1_1_8 - T23 * c_1_1_8
-    most_1_1_8 = np.sqrt(t167 + t168 * t168)
-    t169 = most_1_1_8 <= 8.881784197001252e-16
-    margin_1_1_8 = most_1_1_8 * most_1_1_8
-    del most_1_1_8
-    rest_1_1_8 = np.sqrt(margin_1_1_8) * _runtime.sign(-t168)
-    t170 = 1.0 / margin_1_1_8
-    del margin_1_1_8
-    by_c_1_1_8 = _runtime.select(t169, 1.0, -(t168 * rest_1_1_8 * t170))
-    del t168
-    t171 = _runtime.select(t169, 0.0, t170 * (axisx_1_1_8 * rest_1_1_8))
-    del rest_1_1_8, t169, t170
-    versine_1_1_8 = _runtime.select(0.0 < by_c_1_1_8, t171 * t171 / (1.0 + np.abs(by_c_1_1_8)), 1.0 - by_c_1_1_8)
-    t172 = d4 * versine_1_1_8 + root1 * np.abs(t171) <= whole_1_1
-    del versine_1_1_8
-    cosine_1_1_8 = _runtime.select(t172, by_c_1_1_8, 1.0)
-    del by_c_1_1_8
-    sine_1_1_8 = _runtime.select(t172, -t171, 0.0)
-    del t171, t172
-    c_1_1_9 = c_1_1_8 * cosine_1_1_8 - s_1_1_8 * sine_1_1_8
-    s_1_1_9 = c_1_1_8 * sine_1_1_8 + s_1_1_8 * cosine_1_1_8
-    del cosine_1_1_8, sine_1_1_8
-    axisx_1_1_9 = T13 * c_1_1_9 + T23 * s_1_1_9
-    t173 = axisx_1_1_9 * axisx_1_1_9
-    t174 = T13 * s_1_1_9 - T23 * c_1_1_9
-    most_1_1_9 = np.sqrt(t173 + t174 * t174)
-    t175 = most_1_1_9 <= 8.881784197001252e-16
-    qx_1_1_9 = w_x * c_1_1_9 + w_y * s_1_1_9
-    r_1_1_9 = np.sqrt(t85 + qx_1_1_9 * qx_1_1_9)
-    t176 = r_1_1_9 <= t86
-    t177 = d5 + r_1_1_9
-    h_1_1_9 = np.sqrt(t5 + t173)
-    del t173
-    t178 = h_1_1_9 == 0.0
-    t179 = 1.0 / h_1_1_9
-    del h_1_1_9
-    uc_1_1_9 = _runtime.select(t178, 0.0, T33 * t179)
-    t180 = qx_1_1_9 - d5 * uc_1_1_9
-    t181 = _runtime.select(t178, 1.0, axisx_1_1_9 * t179)
-    del t178, t179
-    t182 = t23 - d5 * t181
-    t183 = np.maximum(np.sqrt(t180 * t180 + t182 * t182), fold_1_1)
-    del t180, t182
-    goal_1_1_9 = np.minimum(full_1_1, t183)
-    del t183
-    k_v_1_1_9 = np.maximum(0.0, (t177 - goal_1_1_9) * (t177 + goal_1_1_9))
-    t184 = d5 - r_1_1_9
-    d_v_1_1_9 = np.maximum(0.0, (goal_1_1_9 - t184) * (goal_1_1_9 + t184))
-    del goal_1_1_9, t184
-    n_v_1_1_9 = k_v_1_1_9 + d_v_1_1_9
-    t185 = n_v_1_1_9 <= size * t177 * 8.881784197001252e-16
-    del t177
-    t186 = 1.0 / n_v_1_1_9
-    del n_v_1_1_9
-    uc_v_1_1_9 = _runtime.select(t185, 1.0, (k_v_1_1_9 - d_v_1_1_9) * t186)
-    t187 = qx_1_1_9 * uc_v_1_1_9
-    side_1_1_9 = _runtime.sign(t23 * uc_1_1_9 - qx_1_1_9 * t181)
-    del t181, uc_1_1_9
-    t188 = 2.0 * side_1_1_9 * np.sqrt(k_v_1_1_9 * d_v_1_1_9)
-    del d_v_1_1_9, k_v_1_1_9, side_1_1_9
-    us_v_1_1_9 = _runtime.select(t185, 0.0, t186 * t188)
-    del t185, t186, t188
-    t189 = t23 * us_v_1_1_9
-    t190 = 1.0 / r_1_1_9
-    del r_1_1_9
-    c_v_1_1_9 = _runtime.select(t176, 1.0, (t187 + t189) * t190)
-    t191 = T33 * c_v_1_1_9 < 0.0
-    t192 = qx_1_1_9 * us_v_1_1_9
-    del qx_1_1_9, us_v_1_1_9
-    t193 = t23 * uc_v_1_1_9
-    del uc_v_1_1_9
-    wc_1_1_9 = _runtime.select(t176, 0.0, t190 * (t192 + t193))
-    s_v_1_1_9 = _runtime.select(t176, 0.0, t190 * (t192 - t193))
-    del t192, t193
-    t194 = T33 * _runtime.select(t191, wc_1_1_9, -s_v_1_1_9)
-    del s_v_1_1_9, wc_1_1_9
-    c_w_1_1_9 = _runtime.select(t176, 1.0, t190 * (t187 - t189))
-    del t176, t187, t189, t190
-    to_s_1_1_9 = _runtime.select(t191, c_w_1_1_9, c_v_1_1_9)
-    del c_v_1_1_9, c_w_1_1_9, t191
-    across_1_1_9 = _runtime.select(t84, 0.0, t194 * _runtime.sign(to_s_1_1_9))
-    del t194
-    t195 = np.abs(to_s_1_1_9)
-    del to_s_1_1_9
-    t196 = _runtime.select(most_1_1_9 * t195 <= np.abs(across_1_1_9), most_1_1_9 * _runtime.sign(across_1_1_9), across_1_1_9 / t195)
-    del t195
-    wanted_1_1_9 = _runtime.select(across_1_1_9 == 0.0, 0.0, t196)
-    del across_1_1_9, t196
-    t197 = (most_1_1_9 - wanted_1_1_9) * (most_1_1_9 + wanted_1_1_9)
-    rest_1_1_9 = np.sqrt(np.maximum(0.0, t197)) * _runtime.sign(-t174)
-    del t197
-    t198 = axisx_1_1_9 * wanted_1_1_9 - t174 * rest_1_1_9
-    t199 = 1.0 / (most_1_1_9 * most_1_1_9)
-    del most_1_1_9
-    by_c_1_1_9 = _runtime.select(t175, 1.0, t198 * t199)
-    del t198
-    t200 = axisx_1_1_9 * rest_1_1_9 + t174 * wanted_1_1_9
-    del axisx_1_1_9, rest_1_1_9, t174, wanted_1_1_9
-    t201 = _runtime.select(t175, 0.0, t199 * t200)
-    del t175, t199, t200
-    versine_1_1_9 = _runtime.select(0.0 < by_c_1_1_9, t201 * t201 / (1.0 + np.abs(by_c_1_1_9)), 1.0 - by_c_1_1_9)
-    t202 = d4 * versine_1_1_9 + root1 * np.abs(t201) <= whole_1_1
-    del versine_1_1_9
-    cosine_1_1_9 = _runtime.select(t202, by_c_1_1_9, 1.0)
-    del by_c_1_1_9
-    sine_1_1_9 = _runtime.select(t202, -t201, 0.0)
-    del t201, t202
-    c_1_1_10 = c_1_1_9 * cosine_1_1_9 - s_1_1_9 * sine_1_1_9
-    s_1_1_10 = c_1_1_9 * sine_1_1_9 + s_1_1_9 * cosine_1_1_9
-    del c_1_1_9, cosine_1_1_9, s_1_1_9, sine_1_1_9
+    sine_1_1_5 = _runtime.select(t18, -t17, 0.0)
+    del t17, t18
+    c_1_1_10 = c_1_1 * cosine_1_1_5 + t13 * sine_1_1_5
+    s_1_1_10 = c_1_1 * sine_1_1_5 - t13 * cosine_1_1_5
+    del cosine_1_1_5, sine_1_1_5
     axisx_1_1_10 = T13 * c_1_1_10 + T23 * s_1_1_10
-    t203 = axisx_1_1_10 * axisx_1_1_10
-    t204 = T13 * s_1_1_10 - T23 * c_1_1_10
-    most_1_1_10 = np.sqrt(t203 + t204 * t204)
-    t205 = most_1_1_10 <= 8.881784197001252e-16
+    t19 = axisx_1_1_10 * axisx_1_1_10
+    t20 = T13 * s_1_1_10 - T23 * c_1_1_10
+    most_1_1_10 = np.sqrt(t19 + t20 * t20)
+    t21 = most_1_1_10 <= 8.881784197001252e-16
+    t22 = np.abs(T33) <= 1.4210854715202004e-14
+    t23 = d1 - (T34 - T33 * d6)
+    t24 = t23 * t23
     qx_1_1_10 = w_x * c_1_1_10 + w_y * s_1_1_10
-    r_1_1_10 = np.sqrt(t85 + qx_1_1_10 * qx_1_1_10)
-    t206 = r_1_1_10 <= t86
-    t207 = d5 + r_1_1_10
-    h_1_1_10 = np.sqrt(t5 + t203)
-    del t203
-    t208 = h_1_1_10 == 0.0
-    t209 = 1.0 / h_1_1_10
+    r_1_1_10 = np.sqrt(t24 + qx_1_1_10 * qx_1_1_10)
+    t25 = size * 8.881784197001252e-16
+    t26 = r_1_1_10 <= t25
+    t27 = d5 + r_1_1_10
+    h_1_1_10 = np.sqrt(t5 + t19)
+    del t19
+    t28 = h_1_1_10 == 0.0
+    t29 = 1.0 / h_1_1_10
     del h_1_1_10
-    uc_1_1_10 = _runtime.select(t208, 0.0, T33 * t209)
-    t210 = qx_1_1_10 - d5 * uc_1_1_10
-    t211 = _runtime.select(t208, 1.0, axisx_1_1_10 * t209)
-    del t208, t209
-    t212 = t23 - d5 * t211
-    t213 = np.maximum(np.sqrt(t210 * t210 + t212 * t212), fold_1_1)
-    del t210, t212
-    goal_1_1_10 = np.minimum(full_1_1, t213)
-    del t213
-    k_v_1_1_10 = np.maximum(0.0, (t207 - goal_1_1_10) * (t207 + goal_1_1_10))
-    t214 = d5 - r_1_1_10
-    d_v_1_1_10 = np.maximum(0.0, (goal_1_1_10 - t214) * (goal_1_1_10 + t214))
-    del goal_1_1_10, t214
+    uc_1_1_10 = _runtime.select(t28, 0.0, T33 * t29)
+    t30 = d5 * uc_1_1_10
+    t31 = qx_1_1_10 - t30
+    t32 = axisx_1_1_10 * t29
+    del t29
+    t33 = _runtime.select(t28, 1.0, t32)
+    t34 = t23 - d5 * t33
+    t35 = L2 - L3
+    fold_1_1 = np.abs(t35)
+    t36 = np.maximum(np.sqrt(t31 * t31 + t34 * t34), fold_1_1)
+    del t31, t34
+    goal_1_1_10 = np.minimum(full_1_1, t36)
+    del t36
+    k_v_1_1_10 = np.maximum(0.0, (t27 - goal_1_1_10) * (t27 + goal_1_1_10))
+    t37 = d5 - r_1_1_10
+    d_v_1_1_10 = np.maximum(0.0, (goal_1_1_10 - t37) * (goal_1_1_10 + t37))
+    del goal_1_1_10
     n_v_1_1_10 = k_v_1_1_10 + d_v_1_1_10
-    t215 = n_v_1_1_10 <= size * t207 * 8.881784197001252e-16
-    del t207
-    t216 = 1.0 / n_v_1_1_10
+    t38 = size * t27 * 8.881784197001252e-16
+    t39 = n_v_1_1_10 <= t38
+    t40 = 1.0 / n_v_1_1_10
     del n_v_1_1_10
-    uc_v_1_1_10 = _runtime.select(t215, 1.0, (k_v_1_1_10 - d_v_1_1_10) * t216)
-    t217 = qx_1_1_10 * uc_v_1_1_10
-    side_1_1_10 = _runtime.sign(t23 * uc_1_1_10 - qx_1_1_10 * t211)
-    del t211, uc_1_1_10
-    t218 = 2.0 * side_1_1_10 * np.sqrt(k_v_1_1_10 * d_v_1_1_10)
-    del d_v_1_1_10, k_v_1_1_10, side_1_1_10
-    us_v_1_1_10 = _runtime.select(t215, 0.0, t216 * t218)
-    del t215, t216, t218
-    t219 = t23 * us_v_1_1_10
-    t220 = 1.0 / r_1_1_10
+    uc_v_1_1_10 = _runtime.select(t39, 1.0, (k_v_1_1_10 - d_v_1_1_10) * t40)
+    t41 = qx_1_1_10 * uc_v_1_1_10
+    t42 = t23 * uc_1_1_10
+    del uc_1_1_10
+    t43 = 2.0 * _runtime.sign(t42 - qx_1_1_10 * t33) * np.sqrt(k_v_1_1_10 * d_v_1_1_10)
+    del d_v_1_1_10, k_v_1_1_10, t33
+    us_v_1_1_10 = _runtime.select(t39, 0.0, t40 * t43)
+    del t39, t40, t43
+    t44 = t23 * us_v_1_1_10
+    t45 = 1.0 / r_1_1_10
     del r_1_1_10
-    c_v_1_1_10 = _runtime.select(t206, 1.0, (t217 + t219) * t220)
-    t221 = T33 * c_v_1_1_10 < 0.0
-    t222 = qx_1_1_10 * us_v_1_1_10
-    del qx_1_1_10, us_v_1_1_10
-    t223 = t23 * uc_v_1_1_10
+    c_v_1_1_10 = _runtime.select(t26, 1.0, (t41 + t44) * t45)
+    t46 = T33 * c_v_1_1_10 < 0.0
+    t47 = qx_1_1_10 * us_v_1_1_10
+    del us_v_1_1_10
+    t48 = t23 * uc_v_1_1_10
     del uc_v_1_1_10
-    wc_1_1_10 = _runtime.select(t206, 0.0, t220 * (t222 + t223))
-    s_v_1_1_10 = _runtime.select(t206, 0.0, t220 * (t222 - t223))
-    del t222, t223
-    to_c_1_1_10 = _runtime.select(t221, wc_1_1_10, -s_v_1_1_10)
-    del s_v_1_1_10, wc_1_1_10
-    c_w_1_1_10 = _runtime.select(t206, 1.0, t220 * (t217 - t219))
-    del t206, t217, t219, t220
-    to_s_1_1_10 = _runtime.select(t221, c_w_1_1_10, c_v_1_1_10)
-    del c_v_1_1_10, c_w_1_1_10, t221
-    t224 = T33 * to_c_1_1_10 * _runtime.sign(to_s_1_1_10)
+    to_c_1_1_10 = _runtime.select(t46, _runtime.select(t26, 0.0, t45 * (t47 + t48)), -_runtime.select(t26, 0.0, t45 * (t47 - t48)))
+    del t47, t48
+    to_s_1_1_10 = _runtime.select(t46, _runtime.select(t26, 1.0, t45 * (t41 - t44)), c_v_1_1_10)
+    del c_v_1_1_10, t41, t44, t46
+    t49 = T33 * to_c_1_1_10 * _runtime.sign(to_s_1_1_10)
     del to_c_1_1_10
-    across_1_1_10 = _runtime.select(t84, 0.0, t224)
-    del t224
-    t225 = np.abs(to_s_1_1_10)
+    across_1_1_10 = _runtime.select(t22, 0.0, t49)
+    del t49
+    t50 = np.abs(to_s_1_1_10)
     del to_s_1_1_10
-    t226 = _runtime.select(most_1_1_10 * t225 <= np.abs(across_1_1_10), most_1_1_10 * _runtime.sign(across_1_1_10), across_1_1_10 / t225)
-    del t225
-    wanted_1_1_10 = _runtime.select(across_1_1_10 == 0.0, 0.0, t226)
-    del across_1_1_10, t226
-    t227 = (most_1_1_10 - wanted_1_1_10) * (most_1_1_10 + wanted_1_1_10)
-    rest_1_1_10 = np.sqrt(np.maximum(0.0, t227)) * _runtime.sign(-t204)
-    del t227
-    t228 = axisx_1_1_10 * wanted_1_1_10 - t204 * rest_1_1_10
-    t229 = 1.0 / (most_1_1_10 * most_1_1_10)
-    del most_1_1_10
-    by_c_1_1_10 = _runtime.select(t205, 1.0, t228 * t229)
-    del t228
-    t230 = axisx_1_1_10 * rest_1_1_10 + t204 * wanted_1_1_10
-    del axisx_1_1_10, rest_1_1_10, t204, wanted_1_1_10
-    t231 = _runtime.select(t205, 0.0, t229 * t230)
-    del t205, t229, t230
-    versine_1_1_10 = _runtime.select(0.0 < by_c_1_1_10, t231 * t231 / (1.0 + np.abs(by_c_1_1_10)), 1.0 - by_c_1_1_10)
-    t232 = d4 * versine_1_1_10 + root1 * np.abs(t231) <= whole_1_1
+    t51 = _runtime.select(most_1_1_10 * t50 <= np.abs(across_1_1_10), most_1_1_10 * _runtime.sign(across_1_1_10), across_1_1_10 / t50)
+    del t50
+    wanted_1_1_10 = _runtime.select(across_1_1_10 == 0.0, 0.0, t51)
+    del across_1_1_10, t51
+    t52 = (most_1_1_10 - wanted_1_1_10) * (most_1_1_10 + wanted_1_1_10)
+    t53 = _runtime.sign(-t20)
+    rest_1_1_10 = np.sqrt(np.maximum(0.0, t52)) * t53
+    del t52
+    t54 = axisx_1_1_10 * wanted_1_1_10 - t20 * rest_1_1_10
+    t55 = 1.0 / (most_1_1_10 * most_1_1_10)
+    by_c_1_1_10 = _runtime.select(t21, 1.0, t54 * t55)
+    del t54
+    t56 = axisx_1_1_10 * rest_1_1_10 + t20 * wanted_1_1_10
+    del rest_1_1_10, wanted_1_1_10
+    t57 = _runtime.select(t21, 0.0, t55 * t56)
+    del t56
+    versine_1_1_10 = _runtime.select(0.0 < by_c_1_1_10, t57 * t57 / (1.0 + np.abs(by_c_1_1_10)), 1.0 - by_c_1_1_10)
+    t58 = d4 * versine_1_1_10 + root1 * np.abs(t57) <= whole_1_1
     del versine_1_1_10
-    cosine_1_1_10 = _runtime.select(t232, by_c_1_1_10, 1.0)
+    cosine_1_1_10 = _runtime.select(t58, by_c_1_1_10, 1.0)
     del by_c_1_1_10
-    sine_1_1_10 = _runtime.select(t232, -t231, 0.0)
-    del t231, t232
+    sine_1_1_10 = _runtime.select(t58, -t57, 0.0)
+    del t57, t58
     c_1_1_11 = c_1_1_10 * cosine_1_1_10 - s_1_1_10 * sine_1_1_10
     s_1_1_11 = c_1_1_10 * sine_1_1_10 + s_1_1_10 * cosine_1_1_10
-    del c_1_1_10, cosine_1_1_10, s_1_1_10, sine_1_1_10
+    del cosine_1_1_10, sine_1_1_10
     axisx_1_1_11 = T13 * c_1_1_11 + T23 * s_1_1_11
-    h_1_1_11 = np.sqrt(t5 + axisx_1_1_11 * axisx_1_1_11)
-    t233 = h_1_1_11 <= 1.4210854715202004e-14
+    t59 = axisx_1_1_11 * axisx_1_1_11
+    t60 = T13 * s_1_1_11 - T23 * c_1_1_11
+    most_1_1_11 = np.sqrt(t59 + t60 * t60)
+    t61 = most_1_1_11 <= 8.881784197001252e-16
     qx_1_1_11 = w_x * c_1_1_11 + w_y * s_1_1_11
-    t234 = h_1_1_11 == 0.0
-    t235 = 1.0 / h_1_1_11
-    uc_1_1_11 = _runtime.select(t234, 0.0, T33 * t235)
-    x_1_1_11 = _runtime.select(t233, qx_1_1_11, qx_1_1_11 - d5 * uc_1_1_11)
-    dqx_1_1_11 = w_y * c_1_1_11 - w_x * s_1_1_11
-    t236 = T33 * (T13 * s_1_1_11 - T23 * c_1_1_11) / (h_1_1_11 * h_1_1_11)
+    r_1_1_11 = np.sqrt(t24 + qx_1_1_11 * qx_1_1_11)
+    t62 = r_1_1_11 <= t25
+    t63 = d5 + r_1_1_11
+    h_1_1_11 = np.sqrt(t5 + t59)
+    del t59
+    t64 = h_1_1_11 == 0.0
+    t65 = 1.0 / h_1_1_11
     del h_1_1_11
-    spin_1_1_11 = _runtime.select(t233, 0.0, t236)
-    del t236
-    rate_1_1_11 = d5 * spin_1_1_11
-    t237 = _runtime.select(t234, 1.0, axisx_1_1_11 * t235)
-    del axisx_1_1_11, t234, t235
-    dx_1_1_11 = _runtime.select(t233, dqx_1_1_11, dqx_1_1_11 - rate_1_1_11 * t237)
-    t238 = _runtime.select(t233, t23, t23 - d5 * t237)
-    t239 = _runtime.select(t233, 0.0, rate_1_1_11 * uc_1_1_11)
-    slope_1_1_11 = x_1_1_11 * dx_1_1_11 + t238 * t239
-    del dx_1_1_11, t239
-    straight_1_1_11 = dqx_1_1_11 * dqx_1_1_11
-    t240 = spin_1_1_11 * (qx_1_1_11 * uc_1_1_11 + t23 * t237)
-    del qx_1_1_11, spin_1_1_11, uc_1_1_11
-    t241 = rate_1_1_11 * (2.0 * dqx_1_1_11 * t237 - t240)
-    del dqx_1_1_11, rate_1_1_11, t237, t240
-    bends_1_1_11 = _runtime.select(t233, straight_1_1_11, straight_1_1_11 - t241)
-    del straight_1_1_11, t241
-    square_1_1_11 = x_1_1_11 * x_1_1_11 + t238 * t238
-    del t238, x_1_1_11
-    t242 = _runtime.select(t233, t29, fold_1_1) - whole_1_1
-    t243 = np.maximum(0.0, t242)
-    del t242
-    t244 = whole_1_1 + _runtime.select(t233, t3, full_1_1)
-    del t233
-    t245 = np.maximum(t243 * t243, np.minimum(t244 * t244, square_1_1_11))
-    del t243, t244
-    miss_1_1_11 = square_1_1_11 - t245
-    del square_1_1_11, t245
-    inner_1_1_11 = slope_1_1_11 * slope_1_1_11 - bends_1_1_11 * miss_1_1_11
-    t246 = inner_1_1_11 < 0.0
-    t247 = _runtime.sign(slope_1_1_11) * np.sqrt(np.maximum(0.0, inner_1_1_11))
-    del inner_1_1_11
-    below_1_1_11 = _runtime.select(t246, 2.0 * bends_1_1_11, 2.0 * (slope_1_1_11 + t247))
-    del bends_1_1_11, t247
-    above_1_1_11 = _runtime.select(t246, slope_1_1_11, miss_1_1_11)
-    del miss_1_1_11, slope_1_1_11, t246
-    t248 = _runtime.select(np.abs(below_1_1_11) <= np.abs(above_1_1_11), 0.0, above_1_1_11 / below_1_1_11)
-    del above_1_1_11, below_1_1_11
-    t249 = t248 * t248
-    t250 = 1.0 / (1.0 + t249)
-    by_c_1_1_11 = (1.0 - t249) * t250
-    del t249
-    t251 = t250 * (2.0 * t248)
-    del t248, t250
-    versine_1_1_11 = _runtime.select(0.0 < by_c_1_1_11, t251 * t251 / (1.0 + np.abs(by_c_1_1_11)), 1.0 - by_c_1_1_11)
-    t252 = d4 * versine_1_1_11 + root1 * np.abs(t251) <= whole_1_1
+    uc_1_1_11 = _runtime.select(t64, 0.0, T33 * t65)
+    t66 = qx_1_1_11 - d5 * uc_1_1_11
+    t67 = _runtime.select(t64, 1.0, axisx_1_1_11 * t65)
+    del t64, t65
+    t68 = t23 - d5 * t67
+    t69 = np.maximum(np.sqrt(t66 * t66 + t68 * t68), fold_1_1)
+    del t66, t68
+    goal_1_1_11 = np.minimum(full_1_1, t69)
+    del t69
+    k_v_1_1_11 = np.maximum(0.0, (t63 - goal_1_1_11) * (t63 + goal_1_1_11))
+    t70 = d5 - r_1_1_11
+    d_v_1_1_11 = np.maximum(0.0, (goal_1_1_11 - t70) * (goal_1_1_11 + t70))
+    del goal_1_1_11, t70
+    n_v_1_1_11 = k_v_1_1_11 + d_v_1_1_11
+    t71 = n_v_1_1_11 <= size * t63 * 8.881784197001252e-16
+    del t63
+    t72 = 1.0 / n_v_1_1_11
+    del n_v_1_1_11
+    uc_v_1_1_11 = _runtime.select(t71, 1.0, (k_v_1_1_11 - d_v_1_1_11) * t72)
+    t73 = qx_1_1_11 * uc_v_1_1_11
+    side_1_1_11 = _runtime.sign(t23 * uc_1_1_11 - qx_1_1_11 * t67)
+    del t67, uc_1_1_11
+    t74 = 2.0 * side_1_1_11 * np.sqrt(k_v_1_1_11 * d_v_1_1_11)
+    del d_v_1_1_11, k_v_1_1_11, side_1_1_11
+    us_v_1_1_11 = _runtime.select(t71, 0.0, t72 * t74)
+    del t71, t72, t74
+    t75 = t23 * us_v_1_1_11
+    t76 = 1.0 / r_1_1_11
+    del r_1_1_11
+    c_v_1_1_11 = _runtime.select(t62, 1.0, (t73 + t75) * t76)
+    t77 = T33 * c_v_1_1_11 < 0.0
+    t78 = qx_1_1_11 * us_v_1_1_11
+    del qx_1_1_11, us_v_1_1_11
+    t79 = t23 * uc_v_1_1_11
+    del uc_v_1_1_11
+    to_c_1_1_11 = _runtime.select(t77, _runtime.select(t62, 0.0, t76 * (t78 + t79)), -_runtime.select(t62, 0.0, t76 * (t78 - t79)))
+    del t78, t79
+    to_s_1_1_11 = _runtime.select(t77, _runtime.select(t62, 1.0, t76 * (t73 - t75)), c_v_1_1_11)
+    del c_v_1_1_11, t62, t73, t75, t76, t77
+    t80 = T33 * to_c_1_1_11 * _runtime.sign(to_s_1_1_11)
+    del to_c_1_1_11
+    across_1_1_11 = _runtime.select(t22, 0.0, t80)
+    del t80
+    t81 = np.abs(to_s_1_1_11)
+    del to_s_1_1_11
+    t82 = _runtime.select(most_1_1_11 * t81 <= np.abs(across_1_1_11), most_1_1_11 * _runtime.sign(across_1_1_11), across_1_1_11 / t81)
+    del t81
+    wanted_1_1_11 = _runtime.select(across_1_1_11 == 0.0, 0.0, t82)
+    del across_1_1_11, t82
+    t83 = (most_1_1_11 - wanted_1_1_11) * (most_1_1_11 + wanted_1_1_11)
+    rest_1_1_11 = np.sqrt(np.maximum(0.0, t83)) * _runtime.sign(-t60)
+    del t83
+    t84 = axisx_1_1_11 * wanted_1_1_11 - t60 * rest_1_1_11
+    t85 = 1.0 / (most_1_1_11 * most_1_1_11)
+    del most_1_1_11
+    by_c_1_1_11 = _runtime.select(t61, 1.0, t84 * t85)
+    del t84
+    t86 = axisx_1_1_11 * rest_1_1_11 + t60 * wanted_1_1_11
+    del axisx_1_1_11, rest_1_1_11, t60, wanted_1_1_11
+    t87 = _runtime.select(t61, 0.0, t85 * t86)
+    del t61, t85, t86
+    versine_1_1_11 = _runtime.select(0.0 < by_c_1_1_11, t87 * t87 / (1.0 + np.abs(by_c_1_1_11)), 1.0 - by_c_1_1_11)
+    t88 = d4 * versine_1_1_11 + root1 * np.abs(t87) <= whole_1_1
     del versine_1_1_11
-    cosine_1_1_11 = _runtime.select(t252, by_c_1_1_11, 1.0)
+    cosine_1_1_11 = _runtime.select(t88, by_c_1_1_11, 1.0)
     del by_c_1_1_11
-    sine_1_1_11 = _runtime.select(t252, -t251, 0.0)
-    del t251, t252
+    sine_1_1_11 = _runtime.select(t88, -t87, 0.0)
+    del t87, t88
     c_1_1_12 = c_1_1_11 * cosine_1_1_11 - s_1_1_11 * sine_1_1_11
     s_1_1_12 = c_1_1_11 * sine_1_1_11 + s_1_1_11 * cosine_1_1_11
     del c_1_1_11, cosine_1_1_11, s_1_1_11, sine_1_1_11
     axisx_1_1_12 = T13 * c_1_1_12 + T23 * s_1_1_12
     h_1_1_12 = np.sqrt(t5 + axisx_1_1_12 * axisx_1_1_12)
-    t253 = h_1_1_12 <= 1.4210854715202004e-14
+    t89 = h_1_1_12 <= 1.4210854715202004e-14
     qx_1_1_12 = w_x * c_1_1_12 + w_y * s_1_1_12
-    t254 = h_1_1_12 == 0.0
-    t255 = 1.0 / h_1_1_12
-    uc_1_1_12 = _runtime.select(t254, 0.0, T33 * t255)
-    x_1_1_12 = _runtime.select(t253, qx_1_1_12, qx_1_1_12 - d5 * uc_1_1_12)
+    t90 = h_1_1_12 == 0.0
+    t91 = 1.0 / h_1_1_12
+    uc_1_1_12 = _runtime.select(t90, 0.0, T33 * t91)
+    x_1_1_12 = _runtime.select(t89, qx_1_1_12, qx_1_1_12 - d5 * uc_1_1_12)
     dqx_1_1_12 = w_y * c_1_1_12 - w_x * s_1_1_12
-    t256 = T33 * (T13 * s_1_1_12 - T23 * c_1_1_12) / (h_1_1_12 * h_1_1_12)
+    t92 = T33 * (T13 * s_1_1_12 - T23 * c_1_1_12) / (h_1_1_12 * h_1_1_12)
     del h_1_1_12
-    spin_1_1_12 = _runtime.select(t253, 0.0, t256)
-    del t256
+    spin_1_1_12 = _runtime.select(t89, 0.0, t92)
+    del t92
     rate_1_1_12 = d5 * spin_1_1_12
-    t257 = _runtime.select(t254, 1.0, axisx_1_1_12 * t255)
-    del axisx_1_1_12, t254, t255
-    dx_1_1_12 = _runtime.select(t253, dqx_1_1_12, dqx_1_1_12 - rate_1_1_12 * t257)
-    t258 = _runtime.select(t253, t23, t23 - d5 * t257)
-    t259 = _runtime.select(t253, 0.0, rate_1_1_12 * uc_1_1_12)
-    slope_1_1_12 = x_1_1_12 * dx_1_1_12 + t258 * t259
-    del dx_1_1_12, t259
+    t93 = _runtime.select(t90, 1.0, axisx_1_1_12 * t91)
+    del axisx_1_1_12, t90, t91
+    dx_1_1_12 = _runtime.select(t89, dqx_1_1_12, dqx_1_1_12 - rate_1_1_12 * t93)
+    t94 = _runtime.select(t89, t23, t23 - d5 * t93)
+    t95 = _runtime.select(t89, 0.0, rate_1_1_12 * uc_1_1_12)
+    slope_1_1_12 = x_1_1_12 * dx_1_1_12 + t94 * t95
+    del dx_1_1_12, t95
     straight_1_1_12 = dqx_1_1_12 * dqx_1_1_12
-    t260 = spin_1_1_12 * (qx_1_1_12 * uc_1_1_12 + t23 * t257)
+    t96 = spin_1_1_12 * (qx_1_1_12 * uc_1_1_12 + t23 * t93)
     del qx_1_1_12, spin_1_1_12, uc_1_1_12
-    t261 = rate_1_1_12 * (2.0 * dqx_1_1_12 * t257 - t260)
-    del dqx_1_1_12, rate_1_1_12, t257, t260
-    bends_1_1_12 = _runtime.select(t253, straight_1_1_12, straight_1_1_12 - t261)
-    del straight_1_1_12, t261
-    square_1_1_12 = x_1_1_12 * x_1_1_12 + t258 * t258
-    del t258, x_1_1_12
-    t262 = _runtime.select(t253, t29, fold_1_1) - whole_1_1
-    t263 = np.maximum(0.0, t262)
-    del t262
-    t264 = whole_1_1 + _runtime.select(t253, t3, full_1_1)
-    del t253
-    t265 = np.maximum(t263 * t263, np.minimum(t264 * t264, square_1_1_12))
-    del t263, t264
-    miss_1_1_12 = square_1_1_12 - t265
-    del square_1_1_12, t265
+    t97 = straight_1_1_12 - rate_1_1_12 * (2.0 * dqx_1_1_12 * t93 - t96)
+    del dqx_1_1_12, rate_1_1_12, t93, t96
+    bends_1_1_12 = _runtime.select(t89, straight_1_1_12, t97)
+    del straight_1_1_12, t97
+    square_1_1_12 = x_1_1_12 * x_1_1_12 + t94 * t94
+    del t94, x_1_1_12
+    t98 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
+    t99 = _runtime.select(t89, t98, fold_1_1) - whole_1_1
+    t100 = np.maximum(0.0, t99)
+    del t99
+    t101 = whole_1_1 + _runtime.select(t89, t3, full_1_1)
+    del t89
+    t102 = np.maximum(t100 * t100, np.minimum(t101 * t101, square_1_1_12))
+    del t100, t101
+    miss_1_1_12 = square_1_1_12 - t102
+    del square_1_1_12, t102
     inner_1_1_12 = slope_1_1_12 * slope_1_1_12 - bends_1_1_12 * miss_1_1_12
-    t266 = inner_1_1_12 < 0.0
-    t267 = _runtime.sign(slope_1_1_12) * np.sqrt(np.maximum(0.0, inner_1_1_12))
+    t103 = inner_1_1_12 < 0.0
+    t104 = _runtime.sign(slope_1_1_12) * np.sqrt(np.maximum(0.0, inner_1_1_12))
     del inner_1_1_12
-    below_1_1_12 = _runtime.select(t266, 2.0 * bends_1_1_12, 2.0 * (slope_1_1_12 + t267))
-    del bends_1_1_12, t267
-    above_1_1_12 = _runtime.select(t266, slope_1_1_12, miss_1_1_12)
-    del miss_1_1_12, slope_1_1_12, t266
-    t268 = _runtime.select(np.abs(below_1_1_12) <= np.abs(above_1_1_12), 0.0, above_1_1_12 / below_1_1_12)
+    below_1_1_12 = _runtime.select(t103, 2.0 * bends_1_1_12, 2.0 * (slope_1_1_12 + t104))
+    del bends_1_1_12, t104
+    above_1_1_12 = _runtime.select(t103, slope_1_1_12, miss_1_1_12)
+    del miss_1_1_12, slope_1_1_12, t103
+    t105 = _runtime.select(np.abs(below_1_1_12) <= np.abs(above_1_1_12), 0.0, above_1_1_12 / below_1_1_12)
     del above_1_1_12, below_1_1_12
-    t269 = t268 * t268
-    t270 = 1.0 / (1.0 + t269)
-    by_c_1_1_12 = (1.0 - t269) * t270
-    del t269
-    t271 = t270 * (2.0 * t268)
-    del t268, t270
-    versine_1_1_12 = _runtime.select(0.0 < by_c_1_1_12, t271 * t271 / (1.0 + np.abs(by_c_1_1_12)), 1.0 - by_c_1_1_12)
-    t272 = d4 * versine_1_1_12 + root1 * np.abs(t271) <= whole_1_1
+    t106 = t105 * t105
+    t107 = 1.0 / (1.0 + t106)
+    by_c_1_1_12 = (1.0 - t106) * t107
+    del t106
+    t108 = t107 * (2.0 * t105)
+    del t105, t107
+    versine_1_1_12 = _runtime.select(0.0 < by_c_1_1_12, t108 * t108 / (1.0 + np.abs(by_c_1_1_12)), 1.0 - by_c_1_1_12)
+    t109 = d4 * versine_1_1_12 + root1 * np.abs(t108) <= whole_1_1
     del versine_1_1_12
-    cosine_1_1_12 = _runtime.select(t272, by_c_1_1_12, 1.0)
+    cosine_1_1_12 = _runtime.select(t109, by_c_1_1_12, 1.0)
     del by_c_1_1_12
-    sine_1_1_12 = _runtime.select(t272, -t271, 0.0)
-    del t271, t272
+    sine_1_1_12 = _runtime.select(t109, -t108, 0.0)
+    del t108, t109
     c_1_1_13 = c_1_1_12 * cosine_1_1_12 - s_1_1_12 * sine_1_1_12
     s_1_1_13 = c_1_1_12 * sine_1_1_12 + s_1_1_12 * cosine_1_1_12
     del c_1_1_12, cosine_1_1_12, s_1_1_12, sine_1_1_12
     axisx_1_1_13 = T13 * c_1_1_13 + T23 * s_1_1_13
     h_1_1_13 = np.sqrt(t5 + axisx_1_1_13 * axisx_1_1_13)
-    t273 = h_1_1_13 <= 1.4210854715202004e-14
+    t110 = h_1_1_13 <= 1.4210854715202004e-14
     qx_1_1_13 = w_x * c_1_1_13 + w_y * s_1_1_13
-    t274 = h_1_1_13 == 0.0
-    t275 = 1.0 / h_1_1_13
-    uc_1_1_13 = _runtime.select(t274, 0.0, T33 * t275)
-    x_1_1_13 = _runtime.select(t273, qx_1_1_13, qx_1_1_13 - d5 * uc_1_1_13)
+    t111 = h_1_1_13 == 0.0
+    t112 = 1.0 / h_1_1_13
+    uc_1_1_13 = _runtime.select(t111, 0.0, T33 * t112)
+    x_1_1_13 = _runtime.select(t110, qx_1_1_13, qx_1_1_13 - d5 * uc_1_1_13)
     dqx_1_1_13 = w_y * c_1_1_13 - w_x * s_1_1_13
-    t276 = T33 * (T13 * s_1_1_13 - T23 * c_1_1_13) / (h_1_1_13 * h_1_1_13)
+    t113 = T33 * (T13 * s_1_1_13 - T23 * c_1_1_13) / (h_1_1_13 * h_1_1_13)
     del h_1_1_13
-    spin_1_1_13 = _runtime.select(t273, 0.0, t276)
-    del t276
+    spin_1_1_13 = _runtime.select(t110, 0.0, t113)
+    del t113
     rate_1_1_13 = d5 * spin_1_1_13
-    t277 = _runtime.select(t274, 1.0, axisx_1_1_13 * t275)
-    del axisx_1_1_13, t274, t275
-    dx_1_1_13 = _runtime.select(t273, dqx_1_1_13, dqx_1_1_13 - rate_1_1_13 * t277)
-    t278 = _runtime.select(t273, t23, t23 - d5 * t277)
-    t279 = _runtime.select(t273, 0.0, rate_1_1_13 * uc_1_1_13)
-    slope_1_1_13 = x_1_1_13 * dx_1_1_13 + t278 * t279
-    del dx_1_1_13, t279
+    t114 = _runtime.select(t111, 1.0, axisx_1_1_13 * t112)
+    del axisx_1_1_13, t111, t112
+    dx_1_1_13 = _runtime.select(t110, dqx_1_1_13, dqx_1_1_13 - rate_1_1_13 * t114)
+    t115 = _runtime.select(t110, t23, t23 - d5 * t114)
+    t116 = _runtime.select(t110, 0.0, rate_1_1_13 * uc_1_1_13)
+    slope_1_1_13 = x_1_1_13 * dx_1_1_13 + t115 * t116
+    del dx_1_1_13, t116
     straight_1_1_13 = dqx_1_1_13 * dqx_1_1_13
-    t280 = spin_1_1_13 * (qx_1_1_13 * uc_1_1_13 + t23 * t277)
+    t117 = spin_1_1_13 * (qx_1_1_13 * uc_1_1_13 + t23 * t114)
     del qx_1_1_13, spin_1_1_13, uc_1_1_13
-    t281 = rate_1_1_13 * (2.0 * dqx_1_1_13 * t277 - t280)
-    del dqx_1_1_13, rate_1_1_13, t277, t280
-    bends_1_1_13 = _runtime.select(t273, straight_1_1_13, straight_1_1_13 - t281)
-    del straight_1_1_13, t281
-    square_1_1_13 = x_1_1_13 * x_1_1_13 + t278 * t278
-    del t278, x_1_1_13
-    t282 = _runtime.select(t273, t29, fold_1_1) - whole_1_1
-    t283 = np.maximum(0.0, t282)
-    del t282
-    t284 = whole_1_1 + _runtime.select(t273, t3, full_1_1)
-    del t273
-    t285 = np.maximum(t283 * t283, np.minimum(t284 * t284, square_1_1_13))
-    del t283, t284
-    miss_1_1_13 = square_1_1_13 - t285
-    del square_1_1_13, t285
+    t118 = rate_1_1_13 * (2.0 * dqx_1_1_13 * t114 - t117)
+    del dqx_1_1_13, rate_1_1_13, t114, t117
+    bends_1_1_13 = _runtime.select(t110, straight_1_1_13, straight_1_1_13 - t118)
+    del straight_1_1_13, t118
+    square_1_1_13 = x_1_1_13 * x_1_1_13 + t115 * t115
+    del t115, x_1_1_13
+    t119 = _runtime.select(t110, t98, fold_1_1) - whole_1_1
+    t120 = np.maximum(0.0, t119)
+    del t119
+    t121 = whole_1_1 + _runtime.select(t110, t3, full_1_1)
+    del t110
+    t122 = np.maximum(t120 * t120, np.minimum(t121 * t121, square_1_1_13))
+    del t120, t121
+    miss_1_1_13 = square_1_1_13 - t122
+    del square_1_1_13, t122
     inner_1_1_13 = slope_1_1_13 * slope_1_1_13 - bends_1_1_13 * miss_1_1_13
-    t286 = inner_1_1_13 < 0.0
-    t287 = _runtime.sign(slope_1_1_13) * np.sqrt(np.maximum(0.0, inner_1_1_13))
+    t123 = inner_1_1_13 < 0.0
+    t124 = _runtime.sign(slope_1_1_13) * np.sqrt(np.maximum(0.0, inner_1_1_13))
     del inner_1_1_13
-    below_1_1_13 = _runtime.select(t286, 2.0 * bends_1_1_13, 2.0 * (slope_1_1_13 + t287))
-    del bends_1_1_13, t287
-    above_1_1_13 = _runtime.select(t286, slope_1_1_13, miss_1_1_13)
-    del miss_1_1_13, slope_1_1_13, t286
-    t288 = _runtime.select(np.abs(below_1_1_13) <= np.abs(above_1_1_13), 0.0, above_1_1_13 / below_1_1_13)
+    below_1_1_13 = _runtime.select(t123, 2.0 * bends_1_1_13, 2.0 * (slope_1_1_13 + t124))
+    del bends_1_1_13, t124
+    above_1_1_13 = _runtime.select(t123, slope_1_1_13, miss_1_1_13)
+    del miss_1_1_13, slope_1_1_13, t123
+    t125 = _runtime.select(np.abs(below_1_1_13) <= np.abs(above_1_1_13), 0.0, above_1_1_13 / below_1_1_13)
     del above_1_1_13, below_1_1_13
-    t289 = t288 * t288
-    t290 = 1.0 / (1.0 + t289)
-    by_c_1_1_13 = (1.0 - t289) * t290
-    del t289
-    t291 = t290 * (2.0 * t288)
-    del t288, t290
-    versine_1_1_13 = _runtime.select(0.0 < by_c_1_1_13, t291 * t291 / (1.0 + np.abs(by_c_1_1_13)), 1.0 - by_c_1_1_13)
-    t292 = d4 * versine_1_1_13 + root1 * np.abs(t291) <= whole_1_1
+    t126 = t125 * t125
+    t127 = 1.0 / (1.0 + t126)
+    by_c_1_1_13 = (1.0 - t126) * t127
+    del t126
+    t128 = t127 * (2.0 * t125)
+    del t125, t127
+    versine_1_1_13 = _runtime.select(0.0 < by_c_1_1_13, t128 * t128 / (1.0 + np.abs(by_c_1_1_13)), 1.0 - by_c_1_1_13)
+    t129 = d4 * versine_1_1_13 + root1 * np.abs(t128) <= whole_1_1
     del versine_1_1_13
-    cosine_1_1_13 = _runtime.select(t292, by_c_1_1_13, 1.0)
+    cosine_1_1_13 = _runtime.select(t129, by_c_1_1_13, 1.0)
     del by_c_1_1_13
-    sine_1_1_13 = _runtime.select(t292, -t291, 0.0)
-    del t291, t292
+    sine_1_1_13 = _runtime.select(t129, -t128, 0.0)
+    del t128, t129
     c_1_1_14 = c_1_1_13 * cosine_1_1_13 - s_1_1_13 * sine_1_1_13
     s_1_1_14 = c_1_1_13 * sine_1_1_13 + s_1_1_13 * cosine_1_1_13
     del c_1_1_13, cosine_1_1_13, s_1_1_13, sine_1_1_13
     axisx_1_1_14 = T13 * c_1_1_14 + T23 * s_1_1_14
     h_1_1_14 = np.sqrt(t5 + axisx_1_1_14 * axisx_1_1_14)
-    t293 = h_1_1_14 <= 1.4210854715202004e-14
+    t130 = h_1_1_14 <= 1.4210854715202004e-14
     qx_1_1_14 = w_x * c_1_1_14 + w_y * s_1_1_14
-    t294 = h_1_1_14 == 0.0
-    t295 = 1.0 / h_1_1_14
-    uc_1_1_14 = _runtime.select(t294, 0.0, T33 * t295)
-    x_1_1_14 = _runtime.select(t293, qx_1_1_14, qx_1_1_14 - d5 * uc_1_1_14)
+    t131 = h_1_1_14 == 0.0
+    t132 = 1.0 / h_1_1_14
+    uc_1_1_14 = _runtime.select(t131, 0.0, T33 * t132)
+    x_1_1_14 = _runtime.select(t130, qx_1_1_14, qx_1_1_14 - d5 * uc_1_1_14)
     dqx_1_1_14 = w_y * c_1_1_14 - w_x * s_1_1_14
-    t296 = T33 * (T13 * s_1_1_14 - T23 * c_1_1_14) / (h_1_1_14 * h_1_1_14)
+    t133 = T33 * (T13 * s_1_1_14 - T23 * c_1_1_14) / (h_1_1_14 * h_1_1_14)
     del h_1_1_14
-    spin_1_1_14 = _runtime.select(t293, 0.0, t296)
-    del t296
+    spin_1_1_14 = _runtime.select(t130, 0.0, t133)
+    del t133
     rate_1_1_14 = d5 * spin_1_1_14
-    t297 = _runtime.select(t294, 1.0, axisx_1_1_14 * t295)
-    del axisx_1_1_14, t294, t295
-    dx_1_1_14 = _runtime.select(t293, dqx_1_1_14, dqx_1_1_14 - rate_1_1_14 * t297)
-    t298 = _runtime.select(t293, t23, t23 - d5 * t297)
-    t299 = _runtime.select(t293, 0.0, rate_1_1_14 * uc_1_1_14)
-    slope_1_1_14 = x_1_1_14 * dx_1_1_14 + t298 * t299
-    del dx_1_1_14, t299
+    t134 = _runtime.select(t131, 1.0, axisx_1_1_14 * t132)
+    del axisx_1_1_14, t131, t132
+    dx_1_1_14 = _runtime.select(t130, dqx_1_1_14, dqx_1_1_14 - rate_1_1_14 * t134)
+    t135 = _runtime.select(t130, t23, t23 - d5 * t134)
+    t136 = _runtime.select(t130, 0.0, rate_1_1_14 * uc_1_1_14)
+    slope_1_1_14 = x_1_1_14 * dx_1_1_14 + t135 * t136
+    del dx_1_1_14, t136
     straight_1_1_14 = dqx_1_1_14 * dqx_1_1_14
-    t300 = spin_1_1_14 * (qx_1_1_14 * uc_1_1_14 + t23 * t297)
+    t137 = spin_1_1_14 * (qx_1_1_14 * uc_1_1_14 + t23 * t134)
     del qx_1_1_14, spin_1_1_14, uc_1_1_14
-    t301 = rate_1_1_14 * (2.0 * dqx_1_1_14 * t297 - t300)
-    del dqx_1_1_14, rate_1_1_14, t297, t300
-    bends_1_1_14 = _runtime.select(t293, straight_1_1_14, straight_1_1_14 - t301)
-    del straight_1_1_14, t301
-    square_1_1_14 = x_1_1_14 * x_1_1_14 + t298 * t298
-    del t298, x_1_1_14
-    t302 = _runtime.select(t293, t29, fold_1_1) - whole_1_1
-    t303 = np.maximum(0.0, t302)
-    del t302
-    t304 = whole_1_1 + _runtime.select(t293, t3, full_1_1)
-    del t293
-    t305 = np.maximum(t303 * t303, np.minimum(t304 * t304, square_1_1_14))
-    del t303, t304
-    miss_1_1_14 = square_1_1_14 - t305
-    del square_1_1_14, t305
+    t138 = rate_1_1_14 * (2.0 * dqx_1_1_14 * t134 - t137)
+    del dqx_1_1_14, rate_1_1_14, t134, t137
+    bends_1_1_14 = _runtime.select(t130, straight_1_1_14, straight_1_1_14 - t138)
+    del straight_1_1_14, t138
+    square_1_1_14 = x_1_1_14 * x_1_1_14 + t135 * t135
+    del t135, x_1_1_14
+    t139 = _runtime.select(t130, t98, fold_1_1) - whole_1_1
+    t140 = np.maximum(0.0, t139)
+    del t139
+    t141 = whole_1_1 + _runtime.select(t130, t3, full_1_1)
+    del t130
+    t142 = np.maximum(t140 * t140, np.minimum(t141 * t141, square_1_1_14))
+    del t140, t141
+    miss_1_1_14 = square_1_1_14 - t142
+    del square_1_1_14, t142
     inner_1_1_14 = slope_1_1_14 * slope_1_1_14 - bends_1_1_14 * miss_1_1_14
-    t306 = inner_1_1_14 < 0.0
-    t307 = _runtime.sign(slope_1_1_14) * np.sqrt(np.maximum(0.0, inner_1_1_14))
+    t143 = inner_1_1_14 < 0.0
+    t144 = _runtime.sign(slope_1_1_14) * np.sqrt(np.maximum(0.0, inner_1_1_14))
     del inner_1_1_14
-    below_1_1_14 = _runtime.select(t306, 2.0 * bends_1_1_14, 2.0 * (slope_1_1_14 + t307))
-    del bends_1_1_14, t307
-    above_1_1_14 = _runtime.select(t306, slope_1_1_14, miss_1_1_14)
-    del miss_1_1_14, slope_1_1_14, t306
-    t308 = _runtime.select(np.abs(below_1_1_14) <= np.abs(above_1_1_14), 0.0, above_1_1_14 / below_1_1_14)
+    below_1_1_14 = _runtime.select(t143, 2.0 * bends_1_1_14, 2.0 * (slope_1_1_14 + t144))
+    del bends_1_1_14, t144
+    above_1_1_14 = _runtime.select(t143, slope_1_1_14, miss_1_1_14)
+    del miss_1_1_14, slope_1_1_14, t143
+    t145 = _runtime.select(np.abs(below_1_1_14) <= np.abs(above_1_1_14), 0.0, above_1_1_14 / below_1_1_14)
     del above_1_1_14, below_1_1_14
-    t309 = t308 * t308
-    t310 = 1.0 / (1.0 + t309)
-    by_c_1_1_14 = (1.0 - t309) * t310
-    del t309
-    t311 = t310 * (2.0 * t308)
-    del t308, t310
-    versine_1_1_14 = _runtime.select(0.0 < by_c_1_1_14, t311 * t311 / (1.0 + np.abs(by_c_1_1_14)), 1.0 - by_c_1_1_14)
-    t312 = d4 * versine_1_1_14 + root1 * np.abs(t311) <= whole_1_1
+    t146 = t145 * t145
+    t147 = 1.0 / (1.0 + t146)
+    by_c_1_1_14 = (1.0 - t146) * t147
+    del t146
+    t148 = t147 * (2.0 * t145)
+    del t145, t147
+    versine_1_1_14 = _runtime.select(0.0 < by_c_1_1_14, t148 * t148 / (1.0 + np.abs(by_c_1_1_14)), 1.0 - by_c_1_1_14)
+    t149 = d4 * versine_1_1_14 + root1 * np.abs(t148) <= whole_1_1
     del versine_1_1_14
-    cosine_1_1_14 = _runtime.select(t312, by_c_1_1_14, 1.0)
+    cosine_1_1_14 = _runtime.select(t149, by_c_1_1_14, 1.0)
     del by_c_1_1_14
-    sine_1_1_14 = _runtime.select(t312, -t311, 0.0)
-    del t311, t312
+    sine_1_1_14 = _runtime.select(t149, -t148, 0.0)
+    del t148, t149
     c_1_1_15 = c_1_1_14 * cosine_1_1_14 - s_1_1_14 * sine_1_1_14
     s_1_1_15 = c_1_1_14 * sine_1_1_14 + s_1_1_14 * cosine_1_1_14
     del c_1_1_14, cosine_1_1_14, s_1_1_14, sine_1_1_14
     axisx_1_1_15 = T13 * c_1_1_15 + T23 * s_1_1_15
     h_1_1_15 = np.sqrt(t5 + axisx_1_1_15 * axisx_1_1_15)
-    t313 = h_1_1_15 <= 1.4210854715202004e-14
+    t150 = h_1_1_15 <= 1.4210854715202004e-14
     qx_1_1_15 = w_x * c_1_1_15 + w_y * s_1_1_15
-    t314 = h_1_1_15 == 0.0
-    t315 = 1.0 / h_1_1_15
-    uc_1_1_15 = _runtime.select(t314, 0.0, T33 * t315)
-    x_1_1_15 = _runtime.select(t313, qx_1_1_15, qx_1_1_15 - d5 * uc_1_1_15)
+    t151 = h_1_1_15 == 0.0
+    t152 = 1.0 / h_1_1_15
+    uc_1_1_15 = _runtime.select(t151, 0.0, T33 * t152)
+    x_1_1_15 = _runtime.select(t150, qx_1_1_15, qx_1_1_15 - d5 * uc_1_1_15)
     dqx_1_1_15 = w_y * c_1_1_15 - w_x * s_1_1_15
-    t316 = T33 * (T13 * s_1_1_15 - T23 * c_1_1_15) / (h_1_1_15 * h_1_1_15)
+    t153 = T33 * (T13 * s_1_1_15 - T23 * c_1_1_15) / (h_1_1_15 * h_1_1_15)
     del h_1_1_15
-    spin_1_1_15 = _runtime.select(t313, 0.0, t316)
-    del t316
+    spin_1_1_15 = _runtime.select(t150, 0.0, t153)
+    del t153
     rate_1_1_15 = d5 * spin_1_1_15
-    t317 = _runtime.select(t314, 1.0, axisx_1_1_15 * t315)
-    del axisx_1_1_15, t314, t315
-    dx_1_1_15 = _runtime.select(t313, dqx_1_1_15, dqx_1_1_15 - rate_1_1_15 * t317)
-    t318 = _runtime.select(t313, t23, t23 - d5 * t317)
-    t319 = _runtime.select(t313, 0.0, rate_1_1_15 * uc_1_1_15)
-    slope_1_1_15 = x_1_1_15 * dx_1_1_15 + t318 * t319
-    del dx_1_1_15, t319
+    t154 = _runtime.select(t151, 1.0, axisx_1_1_15 * t152)
+    del axisx_1_1_15, t151, t152
+    dx_1_1_15 = _runtime.select(t150, dqx_1_1_15, dqx_1_1_15 - rate_1_1_15 * t154)
+    t155 = _runtime.select(t150, t23, t23 - d5 * t154)
+    t156 = _runtime.select(t150, 0.0, rate_1_1_15 * uc_1_1_15)
+    slope_1_1_15 = x_1_1_15 * dx_1_1_15 + t155 * t156
+    del dx_1_1_15, t156
     straight_1_1_15 = dqx_1_1_15 * dqx_1_1_15
-    t320 = spin_1_1_15 * (qx_1_1_15 * uc_1_1_15 + t23 * t317)
+    t157 = spin_1_1_15 * (qx_1_1_15 * uc_1_1_15 + t23 * t154)
     del qx_1_1_15, spin_1_1_15, uc_1_1_15
-    t321 = rate_1_1_15 * (2.0 * dqx_1_1_15 * t317 - t320)
-    del dqx_1_1_15, rate_1_1_15, t317, t320
-    bends_1_1_15 = _runtime.select(t313, straight_1_1_15, straight_1_1_15 - t321)
-    del straight_1_1_15, t321
-    square_1_1_15 = x_1_1_15 * x_1_1_15 + t318 * t318
-    del t318, x_1_1_15
-    t322 = _runtime.select(t313, t29, fold_1_1) - whole_1_1
-    t323 = np.maximum(0.0, t322)
-    del t322
-    t324 = whole_1_1 + _runtime.select(t313, t3, full_1_1)
-    del t313
-    t325 = np.maximum(t323 * t323, np.minimum(t324 * t324, square_1_1_15))
-    del t323, t324
-    miss_1_1_15 = square_1_1_15 - t325
-    del square_1_1_15, t325
+    t158 = rate_1_1_15 * (2.0 * dqx_1_1_15 * t154 - t157)
+    del dqx_1_1_15, rate_1_1_15, t154, t157
+    bends_1_1_15 = _runtime.select(t150, straight_1_1_15, straight_1_1_15 - t158)
+    del straight_1_1_15, t158
+    square_1_1_15 = x_1_1_15 * x_1_1_15 + t155 * t155
+    del t155, x_1_1_15
+    t159 = _runtime.select(t150, t98, fold_1_1) - whole_1_1
+    t160 = np.maximum(0.0, t159)
+    del t159
+    t161 = whole_1_1 + _runtime.select(t150, t3, full_1_1)
+    del t150
+    t162 = np.maximum(t160 * t160, np.minimum(t161 * t161, square_1_1_15))
+    del t160, t161
+    miss_1_1_15 = square_1_1_15 - t162
+    del square_1_1_15, t162
     inner_1_1_15 = slope_1_1_15 * slope_1_1_15 - bends_1_1_15 * miss_1_1_15
-    t326 = inner_1_1_15 < 0.0
-    t327 = _runtime.sign(slope_1_1_15) * np.sqrt(np.maximum(0.0, inner_1_1_15))
+    t163 = inner_1_1_15 < 0.0
+    t164 = _runtime.sign(slope_1_1_15) * np.sqrt(np.maximum(0.0, inner_1_1_15))
     del inner_1_1_15
-    below_1_1_15 = _runtime.select(t326, 2.0 * bends_1_1_15, 2.0 * (slope_1_1_15 + t327))
-    del bends_1_1_15, t327
-    above_1_1_15 = _runtime.select(t326, slope_1_1_15, miss_1_1_15)
-    del miss_1_1_15, slope_1_1_15, t326
-    t328 = _runtime.select(np.abs(below_1_1_15) <= np.abs(above_1_1_15), 0.0, above_1_1_15 / below_1_1_15)
+    below_1_1_15 = _runtime.select(t163, 2.0 * bends_1_1_15, 2.0 * (slope_1_1_15 + t164))
+    del bends_1_1_15, t164
+    above_1_1_15 = _runtime.select(t163, slope_1_1_15, miss_1_1_15)
+    del miss_1_1_15, slope_1_1_15, t163
+    t165 = _runtime.select(np.abs(below_1_1_15) <= np.abs(above_1_1_15), 0.0, above_1_1_15 / below_1_1_15)
     del above_1_1_15, below_1_1_15
-    t329 = t328 * t328
-    t330 = 1.0 / (1.0 + t329)
-    by_c_1_1_15 = (1.0 - t329) * t330
-    del t329
-    t331 = t330 * (2.0 * t328)
-    del t328, t330
-    versine_1_1_15 = _runtime.select(0.0 < by_c_1_1_15, t331 * t331 / (1.0 + np.abs(by_c_1_1_15)), 1.0 - by_c_1_1_15)
-    t332 = d4 * versine_1_1_15 + root1 * np.abs(t331) <= whole_1_1
+    t166 = t165 * t165
+    t167 = 1.0 / (1.0 + t166)
+    by_c_1_1_15 = (1.0 - t166) * t167
+    del t166
+    t168 = t167 * (2.0 * t165)
+    del t165, t167
+    versine_1_1_15 = _runtime.select(0.0 < by_c_1_1_15, t168 * t168 / (1.0 + np.abs(by_c_1_1_15)), 1.0 - by_c_1_1_15)
+    t169 = d4 * versine_1_1_15 + root1 * np.abs(t168) <= whole_1_1
     del versine_1_1_15
-    cosine_1_1_15 = _runtime.select(t332, by_c_1_1_15, 1.0)
+    cosine_1_1_15 = _runtime.select(t169, by_c_1_1_15, 1.0)
     del by_c_1_1_15
-    sine_1_1_15 = _runtime.select(t332, -t331, 0.0)
-    del t331, t332
+    sine_1_1_15 = _runtime.select(t169, -t168, 0.0)
+    del t168, t169
     c_1_1_16 = c_1_1_15 * cosine_1_1_15 - s_1_1_15 * sine_1_1_15
     s_1_1_16 = c_1_1_15 * sine_1_1_15 + s_1_1_15 * cosine_1_1_15
     del c_1_1_15, cosine_1_1_15, s_1_1_15, sine_1_1_15
     axisx_1_1_16 = T13 * c_1_1_16 + T23 * s_1_1_16
     h_1_1_16 = np.sqrt(t5 + axisx_1_1_16 * axisx_1_1_16)
-    t333 = h_1_1_16 <= 1.4210854715202004e-14
+    t170 = h_1_1_16 <= 1.4210854715202004e-14
     qx_1_1_16 = w_x * c_1_1_16 + w_y * s_1_1_16
-    t334 = h_1_1_16 == 0.0
-    t335 = 1.0 / h_1_1_16
+    t171 = h_1_1_16 == 0.0
+    t172 = 1.0 / h_1_1_16
+    uc_1_1_16 = _runtime.select(t171, 0.0, T33 * t172)
+    x_1_1_16 = _runtime.select(t170, qx_1_1_16, qx_1_1_16 - d5 * uc_1_1_16)
+    dqx_1_1_16 = w_y * c_1_1_16 - w_x * s_1_1_16
+    t173 = T33 * (T13 * s_1_1_16 - T23 * c_1_1_16) / (h_1_1_16 * h_1_1_16)
     del h_1_1_16
-    t336 = qx_1_1_16 - d5 * _runtime.select(t334, 0.0, T33 * t335)
-    x_1_1_16 = _runtime.select(t333, qx_1_1_16, t336)
-    del qx_1_1_16, t336
-    t337 = _runtime.select(t334, 1.0, axisx_1_1_16 * t335)
-    del axisx_1_1_16, t334, t335
-    t338 = _runtime.select(t333, t23, t23 - d5 * t337)
-    del t337
-    t339 = np.sqrt(x_1_1_16 * x_1_1_16 + t338 * t338)
-    del t338, x_1_1_16
-    t340 = np.maximum(0.0, t339 - _runtime.select(t333, t3, full_1_1))
-    missed_1_1_16 = np.maximum(t340, _runtime.select(t333, t29, fold_1_1) - t339)
-    del t333, t339, t340
-    h_1_1_8 = np.sqrt(t5 + t167)
-    del t167
-    t341 = h_1_1_8 <= 1.4210854715202004e-14
+    spin_1_1_16 = _runtime.select(t170, 0.0, t173)
+    del t173
+    rate_1_1_16 = d5 * spin_1_1_16
+    t174 = _runtime.select(t171, 1.0, axisx_1_1_16 * t172)
+    del axisx_1_1_16, t171, t172
+    dx_1_1_16 = _runtime.select(t170, dqx_1_1_16, dqx_1_1_16 - rate_1_1_16 * t174)
+    t175 = _runtime.select(t170, t23, t23 - d5 * t174)
+    t176 = _runtime.select(t170, 0.0, rate_1_1_16 * uc_1_1_16)
+    slope_1_1_16 = x_1_1_16 * dx_1_1_16 + t175 * t176
+    del dx_1_1_16, t176
+    straight_1_1_16 = dqx_1_1_16 * dqx_1_1_16
+    t177 = spin_1_1_16 * (qx_1_1_16 * uc_1_1_16 + t23 * t174)
+    del qx_1_1_16, spin_1_1_16, uc_1_1_16
+    t178 = rate_1_1_16 * (2.0 * dqx_1_1_16 * t174 - t177)
+    del dqx_1_1_16, rate_1_1_16, t174, t177
+    bends_1_1_16 = _runtime.select(t170, straight_1_1_16, straight_1_1_16 - t178)
+    del straight_1_1_16, t178
+    square_1_1_16 = x_1_1_16 * x_1_1_16 + t175 * t175
+    del t175, x_1_1_16
+    t179 = _runtime.select(t170, t98, fold_1_1) - whole_1_1
+    t180 = np.maximum(0.0, t179)
+    del t179
+    t181 = whole_1_1 + _runtime.select(t170, t3, full_1_1)
+    del t170
+    t182 = np.maximum(t180 * t180, np.minimum(t181 * t181, square_1_1_16))
+    del t180, t181
+    miss_1_1_16 = square_1_1_16 - t182
+    del square_1_1_16, t182
+    inner_1_1_16 = slope_1_1_16 * slope_1_1_16 - bends_1_1_16 * miss_1_1_16
+    t183 = inner_1_1_16 < 0.0
+    t184 = _runtime.sign(slope_1_1_16) * np.sqrt(np.maximum(0.0, inner_1_1_16))
+    del inner_1_1_16
+    below_1_1_16 = _runtime.select(t183, 2.0 * bends_1_1_16, 2.0 * (slope_1_1_16 + t184))
+    del bends_1_1_16, t184
+    above_1_1_16 = _runtime.select(t183, slope_1_1_16, miss_1_1_16)
+    del miss_1_1_16, slope_1_1_16, t183
+    t185 = _runtime.select(np.abs(below_1_1_16) <= np.abs(above_1_1_16), 0.0, above_1_1_16 / below_1_1_16)
+    del above_1_1_16, below_1_1_16
+    t186 = t185 * t185
+    t187 = 1.0 / (1.0 + t186)
+    by_c_1_1_16 = (1.0 - t186) * t187
+    del t186
+    t188 = t187 * (2.0 * t185)
+    del t185, t187
+    versine_1_1_16 = _runtime.select(0.0 < by_c_1_1_16, t188 * t188 / (1.0 + np.abs(by_c_1_1_16)), 1.0 - by_c_1_1_16)
+    t189 = d4 * versine_1_1_16 + root1 * np.abs(t188) <= whole_1_1
+    del versine_1_1_16
+    cosine_1_1_16 = _runtime.select(t189, by_c_1_1_16, 1.0)
+    del by_c_1_1_16
+    sine_1_1_16 = _runtime.select(t189, -t188, 0.0)
+    del t188, t189
+    c_1_1_17 = c_1_1_16 * cosine_1_1_16 - s_1_1_16 * sine_1_1_16
+    s_1_1_17 = c_1_1_16 * sine_1_1_16 + s_1_1_16 * cosine_1_1_16
+    del c_1_1_16, cosine_1_1_16, s_1_1_16, sine_1_1_16
+    axisx_1_1_17 = T13 * c_1_1_17 + T23 * s_1_1_17
+    h_1_1_17 = np.sqrt(t5 + axisx_1_1_17 * axisx_1_1_17)
+    t190 = h_1_1_17 <= 1.4210854715202004e-14
+    qx_1_1_17 = w_x * c_1_1_17 + w_y * s_1_1_17
+    t191 = h_1_1_17 == 0.0
+    t192 = 1.0 / h_1_1_17
+    del h_1_1_17
+    t193 = qx_1_1_17 - d5 * _runtime.select(t191, 0.0, T33 * t192)
+    x_1_1_17 = _runtime.select(t190, qx_1_1_17, t193)
+    del qx_1_1_17, t193
+    t194 = _runtime.select(t191, 1.0, axisx_1_1_17 * t192)
+    del axisx_1_1_17, t191, t192
+    t195 = _runtime.select(t190, t23, t23 - d5 * t194)
+    del t194
+    t196 = np.sqrt(x_1_1_17 * x_1_1_17 + t195 * t195)
+    del t195, x_1_1_17
+    t197 = np.maximum(0.0, t196 - _runtime.select(t190, t3, full_1_1))
+    missed_1_1_17 = np.maximum(t197, _runtime.select(t190, t98, fold_1_1) - t196)
+    del t190, t196, t197
+    h_1_1 = np.sqrt(t5 + t14)
+    del t14
+    t198 = h_1_1 <= 1.4210854715202004e-14
+    qx_1_1 = w_x * c_1_1 - w_y * t13
+    t199 = h_1_1 == 0.0
+    t200 = 1.0 / h_1_1
+    uc_1_1 = _runtime.select(t199, 0.0, T33 * t200)
+    t201 = d5 * uc_1_1
+    x_1_1 = _runtime.select(t198, qx_1_1, qx_1_1 - t201)
+    dqx_1_1 = w_y * c_1_1 + w_x * t13
+    t202 = _runtime.select(t198, 0.0, T33 * daxisx_1_1 / (h_1_1 * h_1_1))
+    del daxisx_1_1, h_1_1
+    t203 = d5 * t202
+    t204 = axisx_1_1 * t200
+    del axisx_1_1, t200
+    t205 = _runtime.select(t199, 1.0, t204)
+    dx_1_1 = _runtime.select(t198, dqx_1_1, dqx_1_1 + t203 * t205)
+    t206 = _runtime.select(t198, t23, t23 - d5 * t205)
+    dy_1_1 = _runtime.select(t198, 0.0, t203 * uc_1_1)
+    slope_1_1 = x_1_1 * dx_1_1 - t206 * dy_1_1
+    del dx_1_1
+    straight_1_1 = dqx_1_1 * dqx_1_1
+    t207 = 2.0 * dqx_1_1
+    t208 = qx_1_1 * uc_1_1
+    del uc_1_1
+    t209 = t203 * (t207 * t205 + t202 * (t208 + t23 * t205))
+    del t205
+    bends_1_1 = _runtime.select(t198, straight_1_1, straight_1_1 + t209)
+    del t209
+    square_1_1 = x_1_1 * x_1_1 + t206 * t206
+    del t206, x_1_1
+    t210 = _runtime.select(t198, t98, fold_1_1) - whole_1_1
+    t211 = np.maximum(0.0, t210)
+    del t210
+    low_1_1 = t211 * t211
+    del t211
+    t212 = whole_1_1 + _runtime.select(t198, t3, full_1_1)
+    high_1_1 = t212 * t212
+    del t212
+    t213 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
+    miss_1_1 = square_1_1 - t213
+    del square_1_1, t213
+    inner_1_1 = slope_1_1 * slope_1_1 - bends_1_1 * miss_1_1
+    t214 = inner_1_1 < 0.0
+    t215 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
+    del inner_1_1
+    below_1_1 = _runtime.select(t214, 2.0 * bends_1_1, 2.0 * (slope_1_1 + t215))
+    del bends_1_1, t215
+    above_1_1 = _runtime.select(t214, slope_1_1, miss_1_1)
+    del miss_1_1, slope_1_1, t214
+    t216 = _runtime.select(np.abs(below_1_1) <= np.abs(above_1_1), 0.0, above_1_1 / below_1_1)
+    del above_1_1, below_1_1
+    t217 = t216 * t216
+    t218 = 1.0 / (1.0 + t217)
+    by_c_1_1 = (1.0 - t217) * t218
+    del t217
+    t219 = t218 * (2.0 * t216)
+    del t216, t218
+    versine_1_1 = _runtime.select(0.0 < by_c_1_1, t219 * t219 / (1.0 + np.abs(by_c_1_1)), 1.0 - by_c_1_1)
+    t220 = d4 * versine_1_1 + root1 * np.abs(t219) <= whole_1_1
+    del versine_1_1
+    cosine_1_1 = _runtime.select(t220, by_c_1_1, 1.0)
+    del by_c_1_1
+    sine_1_1 = _runtime.select(t220, -t219, 0.0)
+    del t219, t220
+    c_1_1_2 = c_1_1 * cosine_1_1 + t13 * sine_1_1
+    s_1_1_2 = c_1_1 * sine_1_1 - t13 * cosine_1_1
+    del cosine_1_1, sine_1_1
+    axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
+    h_1_1_2 = np.sqrt(t5 + axisx_1_1_2 * axisx_1_1_2)
+    t221 = h_1_1_2 <= 1.4210854715202004e-14
+    qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
+    t222 = h_1_1_2 == 0.0
+    t223 = 1.0 / h_1_1_2
+    uc_1_1_2 = _runtime.select(t222, 0.0, T33 * t223)
+    x_1_1_2 = _runtime.select(t221, qx_1_1_2, qx_1_1_2 - d5 * uc_1_1_2)
+    dqx_1_1_2 = w_y * c_1_1_2 - w_x * s_1_1_2
+    t224 = T33 * (T13 * s_1_1_2 - T23 * c_1_1_2) / (h_1_1_2 * h_1_1_2)
+    del h_1_1_2
+    spin_1_1_2 = _runtime.select(t221, 0.0, t224)
+    del t224
+    rate_1_1_2 = d5 * spin_1_1_2
+    t225 = _runtime.select(t222, 1.0, axisx_1_1_2 * t223)
+    del axisx_1_1_2, t222, t223
+    dx_1_1_2 = _runtime.select(t221, dqx_1_1_2, dqx_1_1_2 - rate_1_1_2 * t225)
+    t226 = _runtime.select(t221, t23, t23 - d5 * t225)
+    t227 = _runtime.select(t221, 0.0, rate_1_1_2 * uc_1_1_2)
+    slope_1_1_2 = x_1_1_2 * dx_1_1_2 + t226 * t227
+    del dx_1_1_2, t227
+    straight_1_1_2 = dqx_1_1_2 * dqx_1_1_2
+    t228 = spin_1_1_2 * (qx_1_1_2 * uc_1_1_2 + t23 * t225)
+    del qx_1_1_2, spin_1_1_2, uc_1_1_2
+    t229 = straight_1_1_2 - rate_1_1_2 * (2.0 * dqx_1_1_2 * t225 - t228)
+    del dqx_1_1_2, rate_1_1_2, t225, t228
+    bends_1_1_2 = _runtime.select(t221, straight_1_1_2, t229)
+    del straight_1_1_2, t229
+    square_1_1_2 = x_1_1_2 * x_1_1_2 + t226 * t226
+    del t226, x_1_1_2
+    t230 = _runtime.select(t221, t98, fold_1_1) - whole_1_1
+    t231 = np.maximum(0.0, t230)
+    del t230
+    t232 = whole_1_1 + _runtime.select(t221, t3, full_1_1)
+    del t221
+    t233 = np.maximum(t231 * t231, np.minimum(t232 * t232, square_1_1_2))
+    del t231, t232
+    miss_1_1_2 = square_1_1_2 - t233
+    del square_1_1_2, t233
+    inner_1_1_2 = slope_1_1_2 * slope_1_1_2 - bends_1_1_2 * miss_1_1_2
+    t234 = inner_1_1_2 < 0.0
+    t235 = _runtime.sign(slope_1_1_2) * np.sqrt(np.maximum(0.0, inner_1_1_2))
+    del inner_1_1_2
+    below_1_1_2 = _runtime.select(t234, 2.0 * bends_1_1_2, 2.0 * (slope_1_1_2 + t235))
+    del bends_1_1_2, t235
+    above_1_1_2 = _runtime.select(t234, slope_1_1_2, miss_1_1_2)
+    del miss_1_1_2, slope_1_1_2, t234
+    t236 = _runtime.select(np.abs(below_1_1_2) <= np.abs(above_1_1_2), 0.0, above_1_1_2 / below_1_1_2)
+    del above_1_1_2, below_1_1_2
+    t237 = t236 * t236
+    t238 = 1.0 / (1.0 + t237)
+    by_c_1_1_2 = (1.0 - t237) * t238
+    del t237
+    t239 = t238 * (2.0 * t236)
+    del t236, t238
+    versine_1_1_2 = _runtime.select(0.0 < by_c_1_1_2, t239 * t239 / (1.0 + np.abs(by_c_1_1_2)), 1.0 - by_c_1_1_2)
+    t240 = d4 * versine_1_1_2 + root1 * np.abs(t239) <= whole_1_1
+    del versine_1_1_2
+    cosine_1_1_2 = _runtime.select(t240, by_c_1_1_2, 1.0)
+    del by_c_1_1_2
+    sine_1_1_2 = _runtime.select(t240, -t239, 0.0)
+    del t239, t240
+    c_1_1_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
+    s_1_1_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
+    del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
+    axisx_1_1_3 = T13 * c_1_1_3 + T23 * s_1_1_3
+    h_1_1_3 = np.sqrt(t5 + axisx_1_1_3 * axisx_1_1_3)
+    t241 = h_1_1_3 <= 1.4210854715202004e-14
+    qx_1_1_3 = w_x * c_1_1_3 + w_y * s_1_1_3
+    t242 = h_1_1_3 == 0.0
+    t243 = 1.0 / h_1_1_3
+    uc_1_1_3 = _runtime.select(t242, 0.0, T33 * t243)
+    x_1_1_3 = _runtime.select(t241, qx_1_1_3, qx_1_1_3 - d5 * uc_1_1_3)
+    dqx_1_1_3 = w_y * c_1_1_3 - w_x * s_1_1_3
+    t244 = T33 * (T13 * s_1_1_3 - T23 * c_1_1_3) / (h_1_1_3 * h_1_1_3)
+    del h_1_1_3
+    spin_1_1_3 = _runtime.select(t241, 0.0, t244)
+    del t244
+    rate_1_1_3 = d5 * spin_1_1_3
+    t245 = _runtime.select(t242, 1.0, axisx_1_1_3 * t243)
+    del axisx_1_1_3, t242, t243
+    dx_1_1_3 = _runtime.select(t241, dqx_1_1_3, dqx_1_1_3 - rate_1_1_3 * t245)
+    t246 = _runtime.select(t241, t23, t23 - d5 * t245)
+    t247 = _runtime.select(t241, 0.0, rate_1_1_3 * uc_1_1_3)
+    slope_1_1_3 = x_1_1_3 * dx_1_1_3 + t246 * t247
+    del dx_1_1_3, t247
+    straight_1_1_3 = dqx_1_1_3 * dqx_1_1_3
+    t248 = spin_1_1_3 * (qx_1_1_3 * uc_1_1_3 + t23 * t245)
+    del qx_1_1_3, spin_1_1_3, uc_1_1_3
+    t249 = straight_1_1_3 - rate_1_1_3 * (2.0 * dqx_1_1_3 * t245 - t248)
+    del dqx_1_1_3, rate_1_1_3, t245, t248
+    bends_1_1_3 = _runtime.select(t241, straight_1_1_3, t249)
+    del straight_1_1_3, t249
+    square_1_1_3 = x_1_1_3 * x_1_1_3 + t246 * t246
+    del t246, x_1_1_3
+    t250 = _runtime.select(t241, t98, fold_1_1) - whole_1_1
+    t251 = np.maximum(0.0, t250)
+    del t250
+    t252 = whole_1_1 + _runtime.select(t241, t3, full_1_1)
+    del t241
+    t253 = np.maximum(t251 * t251, np.minimum(t252 * t252, square_1_1_3))
+    del t251, t252
+    miss_1_1_3 = square_1_1_3 - t253
+    del square_1_1_3, t253
+    inner_1_1_3 = slope_1_1_3 * slope_1_1_3 - bends_1_1_3 * miss_1_1_3
+    t254 = inner_1_1_3 < 0.0
+    t255 = _runtime.sign(slope_1_1_3) * np.sqrt(np.maximum(0.0, inner_1_1_3))
+    del inner_1_1_3
+    below_1_1_3 = _runtime.select(t254, 2.0 * bends_1_1_3, 2.0 * (slope_1_1_3 + t255))
+    del bends_1_1_3, t255
+    above_1_1_3 = _runtime.select(t254, slope_1_1_3, miss_1_1_3)
+    del miss_1_1_3, slope_1_1_3, t254
+    t256 = _runtime.select(np.abs(below_1_1_3) <= np.abs(above_1_1_3), 0.0, above_1_1_3 / below_1_1_3)
+    del above_1_1_3, below_1_1_3
+    t257 = t256 * t256
+    t258 = 1.0 / (1.0 + t257)
+    by_c_1_1_3 = (1.0 - t257) * t258
+    del t257
+    t259 = t258 * (2.0 * t256)
+    del t256, t258
+    versine_1_1_3 = _runtime.select(0.0 < by_c_1_1_3, t259 * t259 / (1.0 + np.abs(by_c_1_1_3)), 1.0 - by_c_1_1_3)
+    t260 = d4 * versine_1_1_3 + root1 * np.abs(t259) <= whole_1_1
+    del versine_1_1_3
+    cosine_1_1_3 = _runtime.select(t260, by_c_1_1_3, 1.0)
+    del by_c_1_1_3
+    sine_1_1_3 = _runtime.select(t260, -t259, 0.0)
+    del t259, t260
+    c_1_1_4 = c_1_1_3 * cosine_1_1_3 - s_1_1_3 * sine_1_1_3
+    s_1_1_4 = c_1_1_3 * sine_1_1_3 + s_1_1_3 * cosine_1_1_3
+    del c_1_1_3, cosine_1_1_3, s_1_1_3, sine_1_1_3
+    axisx_1_1_4 = T13 * c_1_1_4 + T23 * s_1_1_4
+    t261 = axisx_1_1_4 * axisx_1_1_4
+    t262 = T13 * s_1_1_4 - T23 * c_1_1_4
+    most_1_1_4 = np.sqrt(t261 + t262 * t262)
+    t263 = most_1_1_4 <= 8.881784197001252e-16
+    qx_1_1_4 = w_x * c_1_1_4 + w_y * s_1_1_4
+    r_1_1_4 = np.sqrt(t24 + qx_1_1_4 * qx_1_1_4)
+    t264 = r_1_1_4 <= t25
+    t265 = d5 + r_1_1_4
+    h_1_1_4 = np.sqrt(t5 + t261)
+    del t261
+    t266 = h_1_1_4 == 0.0
+    t267 = 1.0 / h_1_1_4
+    uc_1_1_4 = _runtime.select(t266, 0.0, T33 * t267)
+    t268 = qx_1_1_4 - d5 * uc_1_1_4
+    t269 = _runtime.select(t266, 1.0, axisx_1_1_4 * t267)
+    del t266, t267
+    t270 = t23 - d5 * t269
+    t271 = np.maximum(np.sqrt(t268 * t268 + t270 * t270), fold_1_1)
+    goal_1_1_4 = np.minimum(full_1_1, t271)
+    del t271
+    k_v_1_1_4 = np.maximum(0.0, (t265 - goal_1_1_4) * (t265 + goal_1_1_4))
+    t272 = d5 - r_1_1_4
+    d_v_1_1_4 = np.maximum(0.0, (goal_1_1_4 - t272) * (goal_1_1_4 + t272))
+    del goal_1_1_4, t272
+    n_v_1_1_4 = k_v_1_1_4 + d_v_1_1_4
+    t273 = n_v_1_1_4 <= size * t265 * 8.881784197001252e-16
+    del t265
+    t274 = 1.0 / n_v_1_1_4
+    del n_v_1_1_4
+    uc_v_1_1_4 = _runtime.select(t273, 1.0, (k_v_1_1_4 - d_v_1_1_4) * t274)
+    t275 = qx_1_1_4 * uc_v_1_1_4
+    side_1_1_4 = _runtime.sign(t23 * uc_1_1_4 - qx_1_1_4 * t269)
+    del t269, uc_1_1_4
+    t276 = 2.0 * side_1_1_4 * np.sqrt(k_v_1_1_4 * d_v_1_1_4)
+    del d_v_1_1_4, k_v_1_1_4, side_1_1_4
+    us_v_1_1_4 = _runtime.select(t273, 0.0, t274 * t276)
+    del t273, t274, t276
+    t277 = t23 * us_v_1_1_4
+    t278 = 1.0 / r_1_1_4
+    del r_1_1_4
+    c_v_1_1_4 = _runtime.select(t264, 1.0, (t275 + t277) * t278)
+    t279 = T33 * c_v_1_1_4 < 0.0
+    t280 = qx_1_1_4 * us_v_1_1_4
+    del us_v_1_1_4
+    t281 = t23 * uc_v_1_1_4
+    del uc_v_1_1_4
+    wc_1_1_4 = _runtime.select(t264, 0.0, t278 * (t280 + t281))
+    s_v_1_1_4 = _runtime.select(t264, 0.0, t278 * (t280 - t281))
+    del t280, t281
+    t282 = T33 * _runtime.select(t279, wc_1_1_4, -s_v_1_1_4)
+    del s_v_1_1_4, wc_1_1_4
+    c_w_1_1_4 = _runtime.select(t264, 1.0, t278 * (t275 - t277))
+    del t264, t275, t277, t278
+    to_s_1_1_4 = _runtime.select(t279, c_w_1_1_4, c_v_1_1_4)
+    del c_v_1_1_4, c_w_1_1_4, t279
+    across_1_1_4 = _runtime.select(t22, 0.0, t282 * _runtime.sign(to_s_1_1_4))
+    del t282
+    t283 = np.abs(to_s_1_1_4)
+    del to_s_1_1_4
+    t284 = _runtime.select(most_1_1_4 * t283 <= np.abs(across_1_1_4), most_1_1_4 * _runtime.sign(across_1_1_4), across_1_1_4 / t283)
+    del t283
+    wanted_1_1_4 = _runtime.select(across_1_1_4 == 0.0, 0.0, t284)
+    del across_1_1_4, t284
+    t285 = (most_1_1_4 - wanted_1_1_4) * (most_1_1_4 + wanted_1_1_4)
+    rest_1_1_4 = np.sqrt(np.maximum(0.0, t285)) * _runtime.sign(-t262)
+    del t285
+    t286 = axisx_1_1_4 * wanted_1_1_4 - t262 * rest_1_1_4
+    t287 = 1.0 / (most_1_1_4 * most_1_1_4)
+    del most_1_1_4
+    by_c_1_1_4 = _runtime.select(t263, 1.0, t286 * t287)
+    del t286
+    t288 = axisx_1_1_4 * rest_1_1_4 + t262 * wanted_1_1_4
+    del axisx_1_1_4, rest_1_1_4, t262, wanted_1_1_4
+    t289 = _runtime.select(t263, 0.0, t287 * t288)
+    del t263, t287, t288
+    versine_1_1_4 = _runtime.select(0.0 < by_c_1_1_4, t289 * t289 / (1.0 + np.abs(by_c_1_1_4)), 1.0 - by_c_1_1_4)
+    t290 = d4 * versine_1_1_4 + root1 * np.abs(t289) <= whole_1_1
+    del versine_1_1_4
+    cosine_1_1_4 = _runtime.select(t290, by_c_1_1_4, 1.0)
+    del by_c_1_1_4
+    sine_1_1_4 = _runtime.select(t290, -t289, 0.0)
+    del t289, t290
+    c_1_1_6 = c_1_1_4 * cosine_1_1_4 - s_1_1_4 * sine_1_1_4
+    s_1_1_6 = c_1_1_4 * sine_1_1_4 + s_1_1_4 * cosine_1_1_4
+    del cosine_1_1_4, sine_1_1_4
+    axisx_1_1_6 = T13 * c_1_1_6 + T23 * s_1_1_6
+    h_1_1_6 = np.sqrt(t5 + axisx_1_1_6 * axisx_1_1_6)
+    t291 = h_1_1_6 <= 1.4210854715202004e-14
+    qx_1_1_6 = w_x * c_1_1_6 + w_y * s_1_1_6
+    t292 = h_1_1_6 == 0.0
+    t293 = 1.0 / h_1_1_6
+    uc_1_1_6 = _runtime.select(t292, 0.0, T33 * t293)
+    x_1_1_6 = _runtime.select(t291, qx_1_1_6, qx_1_1_6 - d5 * uc_1_1_6)
+    dqx_1_1_6 = w_y * c_1_1_6 - w_x * s_1_1_6
+    t294 = T33 * (T13 * s_1_1_6 - T23 * c_1_1_6) / (h_1_1_6 * h_1_1_6)
+    del h_1_1_6
+    spin_1_1_6 = _runtime.select(t291, 0.0, t294)
+    del t294
+    rate_1_1_6 = d5 * spin_1_1_6
+    t295 = _runtime.select(t292, 1.0, axisx_1_1_6 * t293)
+    del axisx_1_1_6, t292, t293
+    dx_1_1_6 = _runtime.select(t291, dqx_1_1_6, dqx_1_1_6 - rate_1_1_6 * t295)
+    t296 = _runtime.select(t291, t23, t23 - d5 * t295)
+    t297 = _runtime.select(t291, 0.0, rate_1_1_6 * uc_1_1_6)
+    slope_1_1_6 = x_1_1_6 * dx_1_1_6 + t296 * t297
+    del dx_1_1_6, t297
+    straight_1_1_6 = dqx_1_1_6 * dqx_1_1_6
+    t298 = spin_1_1_6 * (qx_1_1_6 * uc_1_1_6 + t23 * t295)
+    del qx_1_1_6, spin_1_1_6, uc_1_1_6
+    t299 = straight_1_1_6 - rate_1_1_6 * (2.0 * dqx_1_1_6 * t295 - t298)
+    del dqx_1_1_6, rate_1_1_6, t295, t298
+    bends_1_1_6 = _runtime.select(t291, straight_1_1_6, t299)
+    del straight_1_1_6, t299
+    square_1_1_6 = x_1_1_6 * x_1_1_6 + t296 * t296
+    del t296, x_1_1_6
+    t300 = _runtime.select(t291, t98, fold_1_1) - whole_1_1
+    t301 = np.maximum(0.0, t300)
+    del t300
+    t302 = whole_1_1 + _runtime.select(t291, t3, full_1_1)
+    del t291
+    t303 = np.maximum(t301 * t301, np.minimum(t302 * t302, square_1_1_6))
+    del t301, t302
+    miss_1_1_6 = square_1_1_6 - t303
+    del square_1_1_6, t303
+    inner_1_1_6 = slope_1_1_6 * slope_1_1_6 - bends_1_1_6 * miss_1_1_6
+    t304 = inner_1_1_6 < 0.0
+    t305 = _runtime.sign(slope_1_1_6) * np.sqrt(np.maximum(0.0, inner_1_1_6))
+    del inner_1_1_6
+    below_1_1_6 = _runtime.select(t304, 2.0 * bends_1_1_6, 2.0 * (slope_1_1_6 + t305))
+    del bends_1_1_6, t305
+    above_1_1_6 = _runtime.select(t304, slope_1_1_6, miss_1_1_6)
+    del miss_1_1_6, slope_1_1_6, t304
+    t306 = _runtime.select(np.abs(below_1_1_6) <= np.abs(above_1_1_6), 0.0, above_1_1_6 / below_1_1_6)
+    del above_1_1_6, below_1_1_6
+    t307 = t306 * t306
+    t308 = 1.0 / (1.0 + t307)
+    by_c_1_1_6 = (1.0 - t307) * t308
+    del t307
+    t309 = t308 * (2.0 * t306)
+    del t306, t308
+    versine_1_1_6 = _runtime.select(0.0 < by_c_1_1_6, t309 * t309 / (1.0 + np.abs(by_c_1_1_6)), 1.0 - by_c_1_1_6)
+    t310 = d4 * versine_1_1_6 + root1 * np.abs(t309) <= whole_1_1
+    del versine_1_1_6
+    cosine_1_1_6 = _runtime.select(t310, by_c_1_1_6, 1.0)
+    del by_c_1_1_6
+    sine_1_1_6 = _runtime.select(t310, -t309, 0.0)
+    del t309, t310
+    c_1_1_7 = c_1_1_6 * cosine_1_1_6 - s_1_1_6 * sine_1_1_6
+    s_1_1_7 = c_1_1_6 * sine_1_1_6 + s_1_1_6 * cosine_1_1_6
+    del c_1_1_6, cosine_1_1_6, s_1_1_6, sine_1_1_6
+    axisx_1_1_7 = T13 * c_1_1_7 + T23 * s_1_1_7
+    h_1_1_7 = np.sqrt(t5 + axisx_1_1_7 * axisx_1_1_7)
+    t311 = h_1_1_7 <= 1.4210854715202004e-14
+    qx_1_1_7 = w_x * c_1_1_7 + w_y * s_1_1_7
+    t312 = h_1_1_7 == 0.0
+    t313 = 1.0 / h_1_1_7
+    uc_1_1_7 = _runtime.select(t312, 0.0, T33 * t313)
+    x_1_1_7 = _runtime.select(t311, qx_1_1_7, qx_1_1_7 - d5 * uc_1_1_7)
+    dqx_1_1_7 = w_y * c_1_1_7 - w_x * s_1_1_7
+    t314 = T33 * (T13 * s_1_1_7 - T23 * c_1_1_7) / (h_1_1_7 * h_1_1_7)
+    del h_1_1_7
+    spin_1_1_7 = _runtime.select(t311, 0.0, t314)
+    del t314
+    rate_1_1_7 = d5 * spin_1_1_7
+    t315 = _runtime.select(t312, 1.0, axisx_1_1_7 * t313)
+    del axisx_1_1_7, t312, t313
+    dx_1_1_7 = _runtime.select(t311, dqx_1_1_7, dqx_1_1_7 - rate_1_1_7 * t315)
+    t316 = _runtime.select(t311, t23, t23 - d5 * t315)
+    t317 = _runtime.select(t311, 0.0, rate_1_1_7 * uc_1_1_7)
+    slope_1_1_7 = x_1_1_7 * dx_1_1_7 + t316 * t317
+    del dx_1_1_7, t317
+    straight_1_1_7 = dqx_1_1_7 * dqx_1_1_7
+    t318 = spin_1_1_7 * (qx_1_1_7 * uc_1_1_7 + t23 * t315)
+    del qx_1_1_7, spin_1_1_7, uc_1_1_7
+    t319 = straight_1_1_7 - rate_1_1_7 * (2.0 * dqx_1_1_7 * t315 - t318)
+    del dqx_1_1_7, rate_1_1_7, t315, t318
+    bends_1_1_7 = _runtime.select(t311, straight_1_1_7, t319)
+    del straight_1_1_7, t319
+    square_1_1_7 = x_1_1_7 * x_1_1_7 + t316 * t316
+    del t316, x_1_1_7
+    t320 = _runtime.select(t311, t98, fold_1_1) - whole_1_1
+    t321 = np.maximum(0.0, t320)
+    del t320
+    t322 = whole_1_1 + _runtime.select(t311, t3, full_1_1)
+    del t311
+    t323 = np.maximum(t321 * t321, np.minimum(t322 * t322, square_1_1_7))
+    del t321, t322
+    miss_1_1_7 = square_1_1_7 - t323
+    del square_1_1_7, t323
+    inner_1_1_7 = slope_1_1_7 * slope_1_1_7 - bends_1_1_7 * miss_1_1_7
+    t324 = inner_1_1_7 < 0.0
+    t325 = _runtime.sign(slope_1_1_7) * np.sqrt(np.maximum(0.0, inner_1_1_7))
+    del inner_1_1_7
+    below_1_1_7 = _runtime.select(t324, 2.0 * bends_1_1_7, 2.0 * (slope_1_1_7 + t325))
+    del bends_1_1_7, t325
+    above_1_1_7 = _runtime.select(t324, slope_1_1_7, miss_1_1_7)
+    del miss_1_1_7, slope_1_1_7, t324
+    t326 = _runtime.select(np.abs(below_1_1_7) <= np.abs(above_1_1_7), 0.0, above_1_1_7 / below_1_1_7)
+    del above_1_1_7, below_1_1_7
+    t327 = t326 * t326
+    t328 = 1.0 / (1.0 + t327)
+    by_c_1_1_7 = (1.0 - t327) * t328
+    del t327
+    t329 = t328 * (2.0 * t326)
+    del t326, t328
+    versine_1_1_7 = _runtime.select(0.0 < by_c_1_1_7, t329 * t329 / (1.0 + np.abs(by_c_1_1_7)), 1.0 - by_c_1_1_7)
+    t330 = d4 * versine_1_1_7 + root1 * np.abs(t329) <= whole_1_1
+    del versine_1_1_7
+    cosine_1_1_7 = _runtime.select(t330, by_c_1_1_7, 1.0)
+    del by_c_1_1_7
+    sine_1_1_7 = _runtime.select(t330, -t329, 0.0)
+    del t329, t330
+    c_1_1_8 = c_1_1_7 * cosine_1_1_7 - s_1_1_7 * sine_1_1_7
+    s_1_1_8 = c_1_1_7 * sine_1_1_7 + s_1_1_7 * cosine_1_1_7
+    del c_1_1_7, cosine_1_1_7, s_1_1_7, sine_1_1_7
+    axisx_1_1_8 = T13 * c_1_1_8 + T23 * s_1_1_8
+    h_1_1_8 = np.sqrt(t5 + axisx_1_1_8 * axisx_1_1_8)
+    t331 = h_1_1_8 <= 1.4210854715202004e-14
     qx_1_1_8 = w_x * c_1_1_8 + w_y * s_1_1_8
-    t342 = h_1_1_8 == 0.0
-    t343 = 1.0 / h_1_1_8
+    t332 = h_1_1_8 == 0.0
+    t333 = 1.0 / h_1_1_8
     del h_1_1_8
-    t344 = qx_1_1_8 - d5 * _runtime.select(t342, 0.0, T33 * t343)
-    x_1_1_8 = _runtime.select(t341, qx_1_1_8, t344)
-    del qx_1_1_8, t344
-    t345 = _runtime.select(t342, 1.0, axisx_1_1_8 * t343)
-    del axisx_1_1_8, t342, t343
-    t346 = _runtime.select(t341, t23, t23 - d5 * t345)
-    del t345
-    t347 = np.sqrt(x_1_1_8 * x_1_1_8 + t346 * t346)
-    del t346, x_1_1_8
-    t348 = np.maximum(0.0, t347 - _runtime.select(t341, t3, full_1_1))
-    missed_1_1_8 = np.maximum(t348, _runtime.select(t341, t29, fold_1_1) - t347)
-    del t341, t347, t348
-    t349 = missed_1_1_16 < missed_1_1_8
-    del missed_1_1_16, missed_1_1_8
-    s1 = _runtime.select(tangent1, _runtime.select(t349, s_1_1_16, s_1_1_8), -t13)
-    del s_1_1_16, s_1_1_8
-    c1 = _runtime.select(tangent1, _runtime.select(t349, c_1_1_16, c_1_1_8), c_1_1)
-    del c_1_1_16, c_1_1_8, t349
-    t350 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t351 = t350 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
-    del t350
-    t352 = t351 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
-    del t351
-    t353 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t354 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t355 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t356 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t357 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t358 = t352 & t353 & t354 & t355 & t356 & (t357 <= _runtime.ROTATION)
-    del t352, t353, t354, t355, t356, t357
-    t359 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t360 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t361 = t358 & (t359 <= _runtime.ROTATION) & t360 & (np.abs(T41) <= _runtime.ROTATION)
-    del t358, t359, t360
-    t362 = t361 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t361
-    t363 = t362 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t362
-    invalid = np.logical_not(t363)
-    del t363
-    t364 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t365 = (t364 <= t1) & (t364 <= t2)
+    t334 = qx_1_1_8 - d5 * _runtime.select(t332, 0.0, T33 * t333)
+    x_1_1_8 = _runtime.select(t331, qx_1_1_8, t334)
+    del qx_1_1_8, t334
+    t335 = _runtime.select(t332, 1.0, axisx_1_1_8 * t333)
+    del axisx_1_1_8, t332, t333
+    t336 = _runtime.select(t331, t23, t23 - d5 * t335)
+    del t335
+    t337 = np.sqrt(x_1_1_8 * x_1_1_8 + t336 * t336)
+    del t336, x_1_1_8
+    t338 = np.maximum(0.0, t337 - _runtime.select(t331, t3, full_1_1))
+    missed_1_1_8 = np.maximum(t338, _runtime.select(t331, t98, fold_1_1) - t337)
+    del t331, t337, t338
+    t339 = h_1_1_4 <= 1.4210854715202004e-14
+    del h_1_1_4
+    x_1_1_4 = _runtime.select(t339, qx_1_1_4, t268)
+    del qx_1_1_4, t268
+    t340 = _runtime.select(t339, t23, t270)
+    del t270
+    t341 = np.sqrt(x_1_1_4 * x_1_1_4 + t340 * t340)
+    del t340, x_1_1_4
+    t342 = np.maximum(0.0, t341 - _runtime.select(t339, t3, full_1_1))
+    missed_1_1_4 = np.maximum(t342, _runtime.select(t339, t98, fold_1_1) - t341)
+    del t339, t341, t342
+    t343 = missed_1_1_8 < missed_1_1_4
+    del missed_1_1_4, missed_1_1_8
+    c_1_1_9 = _runtime.select(t343, c_1_1_8, c_1_1_4)
+    del c_1_1_4, c_1_1_8
+    s_1_1_9 = _runtime.select(t343, s_1_1_8, s_1_1_4)
+    del s_1_1_4, s_1_1_8, t343
+    axisx_1_1_9 = T13 * c_1_1_9 + T23 * s_1_1_9
+    h_1_1_9 = np.sqrt(t5 + axisx_1_1_9 * axisx_1_1_9)
+    t344 = h_1_1_9 <= 1.4210854715202004e-14
+    qx_1_1_9 = w_x * c_1_1_9 + w_y * s_1_1_9
+    t345 = h_1_1_9 == 0.0
+    t346 = 1.0 / h_1_1_9
+    del h_1_1_9
+    t347 = qx_1_1_9 - d5 * _runtime.select(t345, 0.0, T33 * t346)
+    x_1_1_9 = _runtime.select(t344, qx_1_1_9, t347)
+    del qx_1_1_9, t347
+    t348 = _runtime.select(t345, 1.0, axisx_1_1_9 * t346)
+    del axisx_1_1_9, t345, t346
+    t349 = _runtime.select(t344, t23, t23 - d5 * t348)
+    del t348
+    t350 = np.sqrt(x_1_1_9 * x_1_1_9 + t349 * t349)
+    del t349, x_1_1_9
+    t351 = np.maximum(0.0, t350 - _runtime.select(t344, t3, full_1_1))
+    missed_1_1_9 = np.maximum(t351, _runtime.select(t344, t98, fold_1_1) - t350)
+    del t344, t350, t351
+    t352 = missed_1_1_17 < missed_1_1_9
+    del missed_1_1_17, missed_1_1_9
+    s1 = _runtime.select(tangent1, _runtime.select(t352, s_1_1_17, s_1_1_9), -t13)
+    del s_1_1_17, s_1_1_9
+    c1 = _runtime.select(tangent1, _runtime.select(t352, c_1_1_17, c_1_1_9), c_1_1)
+    del c_1_1_17, c_1_1_9, t352
+    t353 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t354 = t353 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t353
+    t355 = t354 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t354
+    t356 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t357 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t358 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t359 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t360 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t361 = t355 & t356 & t357 & t358 & t359 & (t360 <= _runtime.ROTATION)
+    del t355, t356, t357, t358, t359, t360
+    t362 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t363 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t364 = t361 & (t362 <= _runtime.ROTATION) & t363 & (np.abs(T41) <= _runtime.ROTATION)
+    del t361, t362, t363
+    t365 = t364 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t364
+    t366 = t365 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t365
+    invalid = np.logical_not(t366)
+    del t366
+    t367 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t368 = (t367 <= t1) & (t367 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
     h_wrist = np.sqrt(t5 + M_13 * M_13)
-    t366 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t366
-    r_hub = np.sqrt(t85 + across * across)
+    t369 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t369
+    r_hub = np.sqrt(t24 + across * across)
     hub_mid = r_hub <= t4
-    t367 = d5 + r_hub
-    t368 = d5 - r_hub
-    mid_reach = np.minimum(full_1_1, t367) * 0.5 + np.maximum(fold_1_1, np.abs(t368)) * 0.5
-    k_mid = np.maximum(0.0, (t367 - mid_reach) * (t367 + mid_reach))
-    d_mid = np.maximum(0.0, -((t368 - mid_reach) * (t368 + mid_reach)))
+    t370 = d5 + r_hub
+    t371 = d5 - r_hub
+    mid_reach = np.minimum(full_1_1, t370) * 0.5 + np.maximum(fold_1_1, np.abs(t371)) * 0.5
+    k_mid = np.maximum(0.0, (t370 - mid_reach) * (t370 + mid_reach))
+    d_mid = np.maximum(0.0, -((t371 - mid_reach) * (t371 + mid_reach)))
     del mid_reach
     n_mid = k_mid + d_mid
-    t369 = _runtime.VANISHING * (size * t367)
-    any_mid = n_mid <= t369
-    t370 = 1.0 / n_mid
+    t372 = _runtime.VANISHING * (size * t370)
+    any_mid = n_mid <= t372
+    t373 = 1.0 / n_mid
     del n_mid
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t370)
-    us_mid = _runtime.select(any_mid, 0.0, t370 * (2.0 * np.sqrt(k_mid * d_mid)))
-    del any_mid, d_mid, k_mid, t370
-    t371 = 1.0 / r_hub
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t373)
+    us_mid = _runtime.select(any_mid, 0.0, t373 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t373
+    t374 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t23 * us_mid) * t371)
-    t372 = size * 0.00048828125
-    close = root1 * h_wrist - t372 <= t4
-    t373 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t373)
-    t374 = across - d5 * s_phi
-    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t373)
-    del t373
-    t375 = t23 - d5 * c_phi
-    here = np.sqrt(t374 * t374 + t375 * t375)
-    del t374, t375
-    in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
-    k_near = np.maximum(0.0, (t367 - in_reach) * (t367 + in_reach))
-    del t367
-    d_near = np.maximum(0.0, -((t368 - in_reach) * (t368 + in_reach)))
-    del t368
-    n_near = k_near + d_near
-    any_near = n_near <= t369
-    del t369
-    t376 = 1.0 / n_near
-    del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t376)
-    t377 = across * c_phi - t23 * s_phi
-    t378 = np.abs(t377)
-    side = _runtime.select(t378 <= t4, 1.0, -(t377 / t378))
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t23 * us_mid) * t374)
+    t375 = size * 0.00048828125
+    close = root1 * h_wrist - t375 <= t4
+    t376 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t376)
+    t377 = across - d5 * s_phi
+    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t376)
+    del t376
+    t378 = t23 - d5 * c_phi
+    here = np.sqrt(t377 * t377 + t378 * t378)
     del t377, t378
-    t379 = t376 * (2.0 * side * np.sqrt(k_near * d_near))
-    del d_near, k_near, side, t376
-    us_near = _runtime.select(any_near, 0.0, t379)
-    del any_near, t379
-    c_near = _runtime.select(hub_mid, 1.0, t371 * (across * uc_near + t23 * us_near))
-    t380 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t371 * (across * us_near - t23 * uc_near))
+    in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
+    k_near = np.maximum(0.0, (t370 - in_reach) * (t370 + in_reach))
+    del t370
+    d_near = np.maximum(0.0, -((t371 - in_reach) * (t371 + in_reach)))
+    del t371
+    n_near = k_near + d_near
+    any_near = n_near <= t372
+    del t372
+    t379 = 1.0 / n_near
+    del n_near
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t379)
+    t380 = across * c_phi - t23 * s_phi
+    t381 = np.abs(t380)
+    side = _runtime.select(t381 <= t4, 1.0, -(t380 / t381))
+    del t380, t381
+    t382 = t379 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t379
+    us_near = _runtime.select(any_near, 0.0, t382)
+    del any_near, t382
+    c_near = _runtime.select(hub_mid, 1.0, t374 * (across * uc_near + t23 * us_near))
+    t383 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t374 * (across * us_near - t23 * uc_near))
     del uc_near, us_near
-    t381 = c_phi + s_near
-    t382 = h_wrist * np.sqrt(t380 * t380 + t381 * t381) - 2.2737367544323206e-13
-    del h_wrist, t380, t381
-    t383 = _runtime.VANISHING * 4.0
-    t384 = np.logical_not(np.abs(here - in_reach) <= t4)
+    t384 = c_phi + s_near
+    t385 = h_wrist * np.sqrt(t383 * t383 + t384 * t384) - 2.2737367544323206e-13
+    del h_wrist, t383, t384
+    t386 = _runtime.VANISHING * 4.0
+    t387 = np.logical_not(np.abs(here - in_reach) <= t4)
     del here, in_reach
-    t385 = (t382 <= t383) & t384
-    del t382, t384
-    t386 = _runtime.select(close, _runtime.select(t385, c_near, s_phi), s_phi)
+    t388 = (t385 <= t386) & t387
+    del t385, t387
+    t389 = _runtime.select(close, _runtime.select(t388, c_near, s_phi), s_phi)
     del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t386)
-    del c_mid, t386
-    t387 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t371 * (across * us_mid - t23 * uc_mid))
-    del across, hub_mid, t371, uc_mid, us_mid
-    t388 = _runtime.select(close, _runtime.select(t385, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t385
-    cphi = _runtime.select(aligned_wrist, -s_mid, t388)
-    del s_mid, t388
+    sphi = _runtime.select(aligned_wrist, c_mid, t389)
+    del c_mid, t389
+    t390 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t374 * (across * us_mid - t23 * uc_mid))
+    del across, hub_mid, t374, uc_mid, us_mid
+    t391 = _runtime.select(close, _runtime.select(t388, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t388
+    cphi = _runtime.select(aligned_wrist, -s_mid, t391)
+    del s_mid, t391
     ey = t23 - d5 * cphi
-    r_elbow = np.sqrt(t387 * t387 + ey * ey)
-    t389 = full_1_1 - r_elbow
-    t390 = t28 + r_elbow
-    t391 = r_elbow - t28
-    t392 = t365 & (t364 <= t389) & (t364 <= t390) & (t364 <= t391)
-    unreachable = np.logical_not(t392)
-    del t392
-    t393 = _runtime.poison(invalid | unreachable)
-    t394 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t393
+    r_elbow = np.sqrt(t390 * t390 + ey * ey)
+    t392 = full_1_1 - r_elbow
+    t393 = t35 + r_elbow
+    t394 = r_elbow - t35
+    t395 = t368 & (t367 <= t392) & (t367 <= t393) & (t367 <= t394)
+    unreachable = np.logical_not(t395)
+    del t395
+    t396 = _runtime.poison(invalid | unreachable)
+    t397 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t396
     folded_elbow = r_elbow <= t4
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    t395 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t389, 0.0)
-    del t389
-    C_elbow = np.maximum(t391, 0.0)
-    del t391
-    t396 = A_elbow * C_elbow
+    t398 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t392, 0.0)
+    del t392
+    C_elbow = np.maximum(t394, 0.0)
+    del t394
+    t399 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t390, 0.0)
-    del t390
-    t397 = S_elbow * B_elbow
-    t398 = 1.0 / (t396 + t397)
-    c_base_elbow = _runtime.select(t395, 1.0, -((t396 - t397) * t398))
-    t399 = 1.0 / r_elbow
+    B_elbow = np.maximum(t393, 0.0)
+    del t393
+    t400 = S_elbow * B_elbow
+    t401 = 1.0 / (t399 + t400)
+    c_base_elbow = _runtime.select(t398, 1.0, -((t399 - t400) * t401))
+    t402 = 1.0 / r_elbow
     del r_elbow
-    t400 = _runtime.select(folded_elbow, 0.0, ey * t399)
+    t403 = _runtime.select(folded_elbow, 0.0, ey * t402)
     del ey
-    t401 = c_base_elbow * t400
-    area_elbow = 2.0 * np.sqrt(t396 * t397)
-    del t396, t397
-    s_base_elbow = _runtime.select(t395, 0.0, t398 * area_elbow)
-    del t395, t398
-    t402 = _runtime.select(folded_elbow, 1.0, -(t387 * t399))
-    del t387, t399
-    t403 = s_base_elbow * t402
-    s2 = t401 - t403
-    t404 = c_base_elbow * t402
-    del c_base_elbow, t402
-    t405 = t400 * s_base_elbow
-    del s_base_elbow, t400
-    c2 = t404 + t405
-    t406 = A_elbow * S_elbow
+    t404 = c_base_elbow * t403
+    area_elbow = 2.0 * np.sqrt(t399 * t400)
+    del t399, t400
+    s_base_elbow = _runtime.select(t398, 0.0, t401 * area_elbow)
+    del t398, t401
+    t405 = _runtime.select(folded_elbow, 1.0, -(t390 * t402))
+    del t390, t402
+    t406 = s_base_elbow * t405
+    s2 = t404 - t406
+    t407 = c_base_elbow * t405
+    del c_base_elbow, t405
+    t408 = t403 * s_base_elbow
+    del s_base_elbow, t403
+    c2 = t407 + t408
+    t409 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t407 = C_elbow * B_elbow
+    t410 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t408 = 1.0 / (t406 + t407)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t408)
+    t411 = 1.0 / (t409 + t410)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t411)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t408 * (t406 - t407)))
-    del t406, t407, t408
-    t409 = np.arctan2(s3, c3)
-    t410 = sphi * c2 - cphi * s2
-    t411 = cphi * c2 + sphi * s2
-    t412 = np.arctan2(c3 * t410 - s3 * t411, c3 * t411 + s3 * t410)
-    del t410, t411
-    t413 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t411 * (t409 - t410)))
+    del t409, t410, t411
+    t412 = np.arctan2(s3, c3)
+    t413 = sphi * c2 - cphi * s2
+    t414 = cphi * c2 + sphi * s2
+    t415 = np.arctan2(c3 * t413 - s3 * t414, c3 * t414 + s3 * t413)
+    del t413, t414
+    t416 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
     del M_13
-    t414 = _runtime.wrap_cut(-t413) + t393
-    del t413
-    t415 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    t417 = _runtime.wrap_cut(-t416) + t396
+    del t416
+    t418 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
     del c1, s1
-    t416 = _runtime.wrap_cut(-t415) + t393
-    del t415
-    s2_left_noflip_down = t401 + t403
-    del t401, t403
-    c2_left_noflip_down = t404 - t405
-    del t404, t405
-    t417 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t418 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t419 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t419 = _runtime.wrap_cut(-t418) + t396
+    del t418
+    s2_left_noflip_down = t404 + t406
+    del t404, t406
+    c2_left_noflip_down = t407 - t408
+    del t407, t408
+    t420 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t421 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t422 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t420 = np.arctan2(c3 * t418 + s3 * t419, c3 * t419 - s3 * t418)
-    del c3, s3, t418, t419
-    x_1_1_left_flip_up = _runtime.select(t14, qx_1_1, qx_1_1 + t17)
-    del qx_1_1, t17
-    t421 = _runtime.select(t15, 1.0, -t21)
-    del t15, t21
-    dx_1_1_left_flip_up = _runtime.select(t14, dqx_1_1, dqx_1_1 + t20 * t421)
-    del dqx_1_1
-    t422 = _runtime.select(t14, t23, t23 - d5 * t421)
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t422
-    del dx_1_1_left_flip_up, dy_1_1
-    t423 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    t424 = t20 * (t25 * t421 - t19 * (t26 - t23 * t421))
-    del t19, t20, t25, t26, t421
-    bends_1_1_left_flip_up = _runtime.select(t14, straight_1_1, straight_1_1 + t424)
-    del straight_1_1, t14, t424
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t422 * t422
-    del t422, x_1_1_left_flip_up
-    t425 = np.minimum(high_1_1, square_1_1_left_flip_up)
-    del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t425)
-    del low_1_1, square_1_1_left_flip_up, t425
-    t426 = bends_1_1_left_flip_up * miss_1_1_left_flip_up
-    inner_1_1_left_flip_up = t423 - t426
-    del t423, t426
-    t427 = inner_1_1_left_flip_up < 0.0
-    t428 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
-    del inner_1_1_left_flip_up
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t428
+    t423 = np.arctan2(c3 * t421 + s3 * t422, c3 * t422 - s3 * t421)
+    del c3, s3, t421, t422
+    t424 = qx_1_1_10 + t30
+    del t30
+    t425 = _runtime.select(t28, 1.0, -t32)
+    del t28, t32
+    t426 = t23 - d5 * t425
+    t427 = np.maximum(np.sqrt(t424 * t424 + t426 * t426), fold_1_1)
+    del t424, t426
+    goal_1_1_10_left_flip_up = np.minimum(full_1_1, t427)
+    del t427
+    t428 = (t27 - goal_1_1_10_left_flip_up) * (t27 + goal_1_1_10_left_flip_up)
+    del t27
+    k_v_1_1_10_left_flip_up = np.maximum(0.0, t428)
     del t428
-    below_1_1_left_flip_up = _runtime.select(t427, 2.0 * bends_1_1_left_flip_up, 2.0 * outer_1_1_left_flip_up)
+    t429 = (t37 - goal_1_1_10_left_flip_up) * (t37 + goal_1_1_10_left_flip_up)
+    del goal_1_1_10_left_flip_up, t37
+    d_v_1_1_10_left_flip_up = np.maximum(0.0, -t429)
+    del t429
+    n_v_1_1_10_left_flip_up = k_v_1_1_10_left_flip_up + d_v_1_1_10_left_flip_up
+    t430 = n_v_1_1_10_left_flip_up <= t38
+    del t38
+    t431 = k_v_1_1_10_left_flip_up - d_v_1_1_10_left_flip_up
+    t432 = 1.0 / n_v_1_1_10_left_flip_up
+    del n_v_1_1_10_left_flip_up
+    uc_v_1_1_10_left_flip_up = _runtime.select(t430, 1.0, t431 * t432)
+    del t431
+    t433 = qx_1_1_10 * uc_v_1_1_10_left_flip_up
+    t434 = 2.0 * _runtime.sign(-(t42 + qx_1_1_10 * t425))
+    del t42, t425
+    t435 = k_v_1_1_10_left_flip_up * d_v_1_1_10_left_flip_up
+    del d_v_1_1_10_left_flip_up, k_v_1_1_10_left_flip_up
+    us_v_1_1_10_left_flip_up = _runtime.select(t430, 0.0, t432 * (t434 * np.sqrt(t435)))
+    del t430, t432, t434, t435
+    t436 = t23 * us_v_1_1_10_left_flip_up
+    c_v_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t433 + t436))
+    t437 = -(T33 * c_v_1_1_10_left_flip_up) < 0.0
+    t438 = qx_1_1_10 * us_v_1_1_10_left_flip_up
+    del qx_1_1_10, us_v_1_1_10_left_flip_up
+    t439 = t23 * uc_v_1_1_10_left_flip_up
+    del uc_v_1_1_10_left_flip_up
+    wc_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t438 + t439))
+    s_v_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t438 - t439))
+    del t438, t439
+    to_c_1_1_10_left_flip_up = _runtime.select(t437, wc_1_1_10_left_flip_up, -s_v_1_1_10_left_flip_up)
+    del s_v_1_1_10_left_flip_up, wc_1_1_10_left_flip_up
+    c_w_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t433 - t436))
+    del t26, t433, t436, t45
+    to_s_1_1_10_left_flip_up = _runtime.select(t437, c_w_1_1_10_left_flip_up, c_v_1_1_10_left_flip_up)
+    del c_v_1_1_10_left_flip_up, c_w_1_1_10_left_flip_up, t437
+    t440 = T33 * to_c_1_1_10_left_flip_up * _runtime.sign(to_s_1_1_10_left_flip_up)
+    del to_c_1_1_10_left_flip_up
+    across_1_1_10_left_flip_up = _runtime.select(t22, 0.0, t440)
+    del t440
+    t441 = np.abs(to_s_1_1_10_left_flip_up)
+    del to_s_1_1_10_left_flip_up
+    t442 = most_1_1_10 * t441 <= np.abs(across_1_1_10_left_flip_up)
+    t443 = most_1_1_10 * _runtime.sign(across_1_1_10_left_flip_up)
+    t444 = _runtime.select(t442, t443, across_1_1_10_left_flip_up / t441)
+    del t441, t442, t443
+    wanted_1_1_10_left_flip_up = _runtime.select(across_1_1_10_left_flip_up == 0.0, 0.0, t444)
+    del across_1_1_10_left_flip_up, t444
+    t445 = (most_1_1_10 - wanted_1_1_10_left_flip_up) * (most_1_1_10 + wanted_1_1_10_left_flip_up)
+    del most_1_1_10
+    rest_1_1_10_left_flip_up = t53 * np.sqrt(np.maximum(0.0, t445))
+    del t445, t53
+    t446 = axisx_1_1_10 * wanted_1_1_10_left_flip_up - t20 * rest_1_1_10_left_flip_up
+    by_c_1_1_10_left_flip_up = _runtime.select(t21, 1.0, t55 * t446)
+    del t446
+    t447 = axisx_1_1_10 * rest_1_1_10_left_flip_up + t20 * wanted_1_1_10_left_flip_up
+    del axisx_1_1_10, rest_1_1_10_left_flip_up, t20, wanted_1_1_10_left_flip_up
+    t448 = _runtime.select(t21, 0.0, t55 * t447)
+    del t21, t447, t55
+    t449 = t448 * t448 / (1.0 + np.abs(by_c_1_1_10_left_flip_up))
+    versine_1_1_10_left_flip_up = _runtime.select(0.0 < by_c_1_1_10_left_flip_up, t449, 1.0 - by_c_1_1_10_left_flip_up)
+    del t449
+    cost_1_1_10_left_flip_up = d4 * versine_1_1_10_left_flip_up + root1 * np.abs(t448)
+    del versine_1_1_10_left_flip_up
+    t450 = cost_1_1_10_left_flip_up <= whole_1_1
+    del cost_1_1_10_left_flip_up
+    cosine_1_1_10_left_flip_up = _runtime.select(t450, by_c_1_1_10_left_flip_up, 1.0)
+    del by_c_1_1_10_left_flip_up
+    sine_1_1_10_left_flip_up = _runtime.select(t450, -t448, 0.0)
+    del t448, t450
+    c_1_1_11_left_flip_up = c_1_1_10 * cosine_1_1_10_left_flip_up - s_1_1_10 * sine_1_1_10_left_flip_up
+    s_1_1_11_left_flip_up = c_1_1_10 * sine_1_1_10_left_flip_up + s_1_1_10 * cosine_1_1_10_left_flip_up
+    del c_1_1_10, cosine_1_1_10_left_flip_up, s_1_1_10, sine_1_1_10_left_flip_up
+    axisx_1_1_11_left_flip_up = T13 * c_1_1_11_left_flip_up + T23 * s_1_1_11_left_flip_up
+    t451 = axisx_1_1_11_left_flip_up * axisx_1_1_11_left_flip_up
+    t452 = T13 * s_1_1_11_left_flip_up - T23 * c_1_1_11_left_flip_up
+    most_1_1_11_left_flip_up = np.sqrt(t451 + t452 * t452)
+    t453 = most_1_1_11_left_flip_up <= 8.881784197001252e-16
+    qx_1_1_11_left_flip_up = w_x * c_1_1_11_left_flip_up + w_y * s_1_1_11_left_flip_up
+    t454 = qx_1_1_11_left_flip_up * qx_1_1_11_left_flip_up
+    r_1_1_11_left_flip_up = np.sqrt(t24 + t454)
+    del t454
+    t455 = r_1_1_11_left_flip_up <= t25
+    t456 = d5 + r_1_1_11_left_flip_up
+    h_1_1_11_left_flip_up = np.sqrt(t5 + t451)
+    del t451
+    t457 = h_1_1_11_left_flip_up == 0.0
+    t458 = 1.0 / h_1_1_11_left_flip_up
+    del h_1_1_11_left_flip_up
+    t459 = _runtime.select(t457, 0.0, T33 * t458)
+    t460 = qx_1_1_11_left_flip_up + d5 * t459
+    t461 = _runtime.select(t457, 1.0, -(axisx_1_1_11_left_flip_up * t458))
+    del t457, t458
+    t462 = t23 - d5 * t461
+    t463 = np.maximum(np.sqrt(t460 * t460 + t462 * t462), fold_1_1)
+    del t460, t462
+    goal_1_1_11_left_flip_up = np.minimum(full_1_1, t463)
+    del t463
+    t464 = (t456 - goal_1_1_11_left_flip_up) * (t456 + goal_1_1_11_left_flip_up)
+    k_v_1_1_11_left_flip_up = np.maximum(0.0, t464)
+    del t464
+    t465 = d5 - r_1_1_11_left_flip_up
+    t466 = (goal_1_1_11_left_flip_up - t465) * (goal_1_1_11_left_flip_up + t465)
+    del goal_1_1_11_left_flip_up, t465
+    d_v_1_1_11_left_flip_up = np.maximum(0.0, t466)
+    del t466
+    n_v_1_1_11_left_flip_up = k_v_1_1_11_left_flip_up + d_v_1_1_11_left_flip_up
+    t467 = n_v_1_1_11_left_flip_up <= size * t456 * 8.881784197001252e-16
+    del t456
+    t468 = k_v_1_1_11_left_flip_up - d_v_1_1_11_left_flip_up
+    t469 = 1.0 / n_v_1_1_11_left_flip_up
+    del n_v_1_1_11_left_flip_up
+    uc_v_1_1_11_left_flip_up = _runtime.select(t467, 1.0, t468 * t469)
+    del t468
+    t470 = qx_1_1_11_left_flip_up * uc_v_1_1_11_left_flip_up
+    t471 = -(qx_1_1_11_left_flip_up * t461 + t23 * t459)
+    del t459, t461
+    t472 = k_v_1_1_11_left_flip_up * d_v_1_1_11_left_flip_up
+    del d_v_1_1_11_left_flip_up, k_v_1_1_11_left_flip_up
+    t473 = t469 * (2.0 * _runtime.sign(t471) * np.sqrt(t472))
+    del t469, t471, t472
+    us_v_1_1_11_left_flip_up = _runtime.select(t467, 0.0, t473)
+    del t467, t473
+    t474 = t23 * us_v_1_1_11_left_flip_up
+    t475 = 1.0 / r_1_1_11_left_flip_up
+    del r_1_1_11_left_flip_up
+    c_v_1_1_11_left_flip_up = _runtime.select(t455, 1.0, (t470 + t474) * t475)
+    t476 = -(T33 * c_v_1_1_11_left_flip_up) < 0.0
+    t477 = qx_1_1_11_left_flip_up * us_v_1_1_11_left_flip_up
+    del qx_1_1_11_left_flip_up, us_v_1_1_11_left_flip_up
+    t478 = t23 * uc_v_1_1_11_left_flip_up
+    del uc_v_1_1_11_left_flip_up
+    wc_1_1_11_left_flip_up = _runtime.select(t455, 0.0, t475 * (t477 + t478))
+    s_v_1_1_11_left_flip_up = _runtime.select(t455, 0.0, t475 * (t477 - t478))
+    del t477, t478
+    to_c_1_1_11_left_flip_up = _runtime.select(t476, wc_1_1_11_left_flip_up, -s_v_1_1_11_left_flip_up)
+    del s_v_1_1_11_left_flip_up, wc_1_1_11_left_flip_up
+    c_w_1_1_11_left_flip_up = _runtime.select(t455, 1.0, t475 * (t470 - t474))
+    del t455, t470, t474, t475
+    to_s_1_1_11_left_flip_up = _runtime.select(t476, c_w_1_1_11_left_flip_up, c_v_1_1_11_left_flip_up)
+    del c_v_1_1_11_left_flip_up, c_w_1_1_11_left_flip_up, t476
+    t479 = T33 * to_c_1_1_11_left_flip_up * _runtime.sign(to_s_1_1_11_left_flip_up)
+    del to_c_1_1_11_left_flip_up
+    across_1_1_11_left_flip_up = _runtime.select(t22, 0.0, t479)
+    del t479
+    t480 = np.abs(to_s_1_1_11_left_flip_up)
+    del to_s_1_1_11_left_flip_up
+    t481 = most_1_1_11_left_flip_up * t480 <= np.abs(across_1_1_11_left_flip_up)
+    t482 = most_1_1_11_left_flip_up * _runtime.sign(across_1_1_11_left_flip_up)
+    t483 = _runtime.select(t481, t482, across_1_1_11_left_flip_up / t480)
+    del t480, t481, t482
+    wanted_1_1_11_left_flip_up = _runtime.select(across_1_1_11_left_flip_up == 0.0, 0.0, t483)
+    del across_1_1_11_left_flip_up, t483
+    t484 = axisx_1_1_11_left_flip_up * wanted_1_1_11_left_flip_up
+    t485 = most_1_1_11_left_flip_up - wanted_1_1_11_left_flip_up
+    t486 = most_1_1_11_left_flip_up + wanted_1_1_11_left_flip_up
+    rest_1_1_11_left_flip_up = np.sqrt(np.maximum(0.0, t485 * t486)) * _runtime.sign(-t452)
+    del t485, t486
+    t487 = most_1_1_11_left_flip_up * most_1_1_11_left_flip_up
+    del most_1_1_11_left_flip_up
+    t488 = 1.0 / t487
+    del t487
+    t489 = (t484 - t452 * rest_1_1_11_left_flip_up) * t488
+    del t484
+    by_c_1_1_11_left_flip_up = _runtime.select(t453, 1.0, t489)
+    del t489
+    t490 = axisx_1_1_11_left_flip_up * rest_1_1_11_left_flip_up
+    del axisx_1_1_11_left_flip_up, rest_1_1_11_left_flip_up
+    t491 = t488 * (t490 + t452 * wanted_1_1_11_left_flip_up)
+    del t452, t488, t490, wanted_1_1_11_left_flip_up
+    t492 = _runtime.select(t453, 0.0, t491)
+    del t453, t491
+    t493 = t492 * t492 / (1.0 + np.abs(by_c_1_1_11_left_flip_up))
+    versine_1_1_11_left_flip_up = _runtime.select(0.0 < by_c_1_1_11_left_flip_up, t493, 1.0 - by_c_1_1_11_left_flip_up)
+    del t493
+    cost_1_1_11_left_flip_up = d4 * versine_1_1_11_left_flip_up + root1 * np.abs(t492)
+    del versine_1_1_11_left_flip_up
+    t494 = cost_1_1_11_left_flip_up <= whole_1_1
+    del cost_1_1_11_left_flip_up
+    cosine_1_1_11_left_flip_up = _runtime.select(t494, by_c_1_1_11_left_flip_up, 1.0)
+    del by_c_1_1_11_left_flip_up
+    t495 = c_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
+    sine_1_1_11_left_flip_up = _runtime.select(t494, -t492, 0.0)
+    del t492, t494
+    t496 = s_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
+    c_1_1_12_left_flip_up = t495 - t496
+    del t495, t496
+    t497 = c_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
+    del c_1_1_11_left_flip_up, sine_1_1_11_left_flip_up
+    t498 = s_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
+    del cosine_1_1_11_left_flip_up, s_1_1_11_left_flip_up
+    s_1_1_12_left_flip_up = t497 + t498
+    del t497, t498
+    axisx_1_1_12_left_flip_up = T13 * c_1_1_12_left_flip_up + T23 * s_1_1_12_left_flip_up
+    t499 = axisx_1_1_12_left_flip_up * axisx_1_1_12_left_flip_up
+    h_1_1_12_left_flip_up = np.sqrt(t5 + t499)
+    del t499
+    t500 = h_1_1_12_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_12_left_flip_up = w_x * c_1_1_12_left_flip_up + w_y * s_1_1_12_left_flip_up
+    t501 = h_1_1_12_left_flip_up == 0.0
+    t502 = 1.0 / h_1_1_12_left_flip_up
+    t503 = _runtime.select(t501, 0.0, T33 * t502)
+    x_1_1_12_left_flip_up = _runtime.select(t500, qx_1_1_12_left_flip_up, qx_1_1_12_left_flip_up + d5 * t503)
+    dqx_1_1_12_left_flip_up = w_y * c_1_1_12_left_flip_up - w_x * s_1_1_12_left_flip_up
+    t504 = T13 * s_1_1_12_left_flip_up - T23 * c_1_1_12_left_flip_up
+    t505 = h_1_1_12_left_flip_up * h_1_1_12_left_flip_up
+    del h_1_1_12_left_flip_up
+    spin_1_1_12_left_flip_up = _runtime.select(t500, 0.0, T33 * t504 / t505)
+    del t504, t505
+    rate_1_1_12_left_flip_up = d5 * spin_1_1_12_left_flip_up
+    t506 = _runtime.select(t501, 1.0, -(axisx_1_1_12_left_flip_up * t502))
+    del axisx_1_1_12_left_flip_up, t501, t502
+    t507 = dqx_1_1_12_left_flip_up - rate_1_1_12_left_flip_up * t506
+    dx_1_1_12_left_flip_up = _runtime.select(t500, dqx_1_1_12_left_flip_up, t507)
+    del t507
+    t508 = x_1_1_12_left_flip_up * dx_1_1_12_left_flip_up
+    del dx_1_1_12_left_flip_up
+    t509 = _runtime.select(t500, t23, t23 - d5 * t506)
+    dy_1_1_12_left_flip_up = _runtime.select(t500, 0.0, rate_1_1_12_left_flip_up * t503)
+    slope_1_1_12_left_flip_up = t508 - t509 * dy_1_1_12_left_flip_up
+    del dy_1_1_12_left_flip_up, t508
+    t510 = slope_1_1_12_left_flip_up * slope_1_1_12_left_flip_up
+    straight_1_1_12_left_flip_up = dqx_1_1_12_left_flip_up * dqx_1_1_12_left_flip_up
+    t511 = spin_1_1_12_left_flip_up * (qx_1_1_12_left_flip_up * t503 - t23 * t506)
+    del qx_1_1_12_left_flip_up, spin_1_1_12_left_flip_up, t503
+    t512 = rate_1_1_12_left_flip_up * (2.0 * dqx_1_1_12_left_flip_up * t506 + t511)
+    del dqx_1_1_12_left_flip_up, rate_1_1_12_left_flip_up, t506, t511
+    bends_1_1_12_left_flip_up = _runtime.select(t500, straight_1_1_12_left_flip_up, straight_1_1_12_left_flip_up - t512)
+    del straight_1_1_12_left_flip_up, t512
+    t513 = x_1_1_12_left_flip_up * x_1_1_12_left_flip_up
+    del x_1_1_12_left_flip_up
+    square_1_1_12_left_flip_up = t513 + t509 * t509
+    del t509, t513
+    t514 = _runtime.select(t500, t98, fold_1_1) - whole_1_1
+    t515 = np.maximum(0.0, t514)
+    del t514
+    t516 = whole_1_1 + _runtime.select(t500, t3, full_1_1)
+    del t500
+    t517 = np.minimum(t516 * t516, square_1_1_12_left_flip_up)
+    del t516
+    miss_1_1_12_left_flip_up = square_1_1_12_left_flip_up - np.maximum(t515 * t515, t517)
+    del square_1_1_12_left_flip_up, t515, t517
+    t518 = bends_1_1_12_left_flip_up * miss_1_1_12_left_flip_up
+    inner_1_1_12_left_flip_up = t510 - t518
+    del t510, t518
+    t519 = inner_1_1_12_left_flip_up < 0.0
+    t520 = np.sqrt(np.maximum(0.0, inner_1_1_12_left_flip_up))
+    del inner_1_1_12_left_flip_up
+    t521 = _runtime.sign(slope_1_1_12_left_flip_up) * t520
+    del t520
+    below_1_1_12_left_flip_up = _runtime.select(t519, 2.0 * bends_1_1_12_left_flip_up, 2.0 * (slope_1_1_12_left_flip_up + t521))
+    del bends_1_1_12_left_flip_up, t521
+    above_1_1_12_left_flip_up = _runtime.select(t519, slope_1_1_12_left_flip_up, miss_1_1_12_left_flip_up)
+    del miss_1_1_12_left_flip_up, slope_1_1_12_left_flip_up, t519
+    t522 = np.abs(below_1_1_12_left_flip_up) <= np.abs(above_1_1_12_left_flip_up)
+    t523 = above_1_1_12_left_flip_up / below_1_1_12_left_flip_up
+    del above_1_1_12_left_flip_up, below_1_1_12_left_flip_up
+    t524 = _runtime.select(t522, 0.0, t523)
+    del t522, t523
+    t525 = t524 * t524
+    t526 = 1.0 / (1.0 + t525)
+    by_c_1_1_12_left_flip_up = (1.0 - t525) * t526
+    del t525
+    t527 = t526 * (2.0 * t524)
+    del t524, t526
+    t528 = t527 * t527 / (1.0 + np.abs(by_c_1_1_12_left_flip_up))
+    versine_1_1_12_left_flip_up = _runtime.select(0.0 < by_c_1_1_12_left_flip_up, t528, 1.0 - by_c_1_1_12_left_flip_up)
+    del t528
+    cost_1_1_12_left_flip_up = d4 * versine_1_1_12_left_flip_up + root1 * np.abs(t527)
+    del versine_1_1_12_left_flip_up
+    t529 = cost_1_1_12_left_flip_up <= whole_1_1
+    del cost_1_1_12_left_flip_up
+    cosine_1_1_12_left_flip_up = _runtime.select(t529, by_c_1_1_12_left_flip_up, 1.0)
+    del by_c_1_1_12_left_flip_up
+    t530 = c_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
+    sine_1_1_12_left_flip_up = _runtime.select(t529, -t527, 0.0)
+    del t527, t529
+    t531 = s_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
+    c_1_1_13_left_flip_up = t530 - t531
+    del t530, t531
+    t532 = c_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
+    del c_1_1_12_left_flip_up, sine_1_1_12_left_flip_up
+    t533 = s_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
+    del cosine_1_1_12_left_flip_up, s_1_1_12_left_flip_up
+    s_1_1_13_left_flip_up = t532 + t533
+    del t532, t533
+    axisx_1_1_13_left_flip_up = T13 * c_1_1_13_left_flip_up + T23 * s_1_1_13_left_flip_up
+    t534 = axisx_1_1_13_left_flip_up * axisx_1_1_13_left_flip_up
+    h_1_1_13_left_flip_up = np.sqrt(t5 + t534)
+    del t534
+    t535 = h_1_1_13_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_13_left_flip_up = w_x * c_1_1_13_left_flip_up + w_y * s_1_1_13_left_flip_up
+    t536 = h_1_1_13_left_flip_up == 0.0
+    t537 = 1.0 / h_1_1_13_left_flip_up
+    t538 = _runtime.select(t536, 0.0, T33 * t537)
+    x_1_1_13_left_flip_up = _runtime.select(t535, qx_1_1_13_left_flip_up, qx_1_1_13_left_flip_up + d5 * t538)
+    dqx_1_1_13_left_flip_up = w_y * c_1_1_13_left_flip_up - w_x * s_1_1_13_left_flip_up
+    t539 = T13 * s_1_1_13_left_flip_up - T23 * c_1_1_13_left_flip_up
+    t540 = h_1_1_13_left_flip_up * h_1_1_13_left_flip_up
+    del h_1_1_13_left_flip_up
+    spin_1_1_13_left_flip_up = _runtime.select(t535, 0.0, T33 * t539 / t540)
+    del t539, t540
+    rate_1_1_13_left_flip_up = d5 * spin_1_1_13_left_flip_up
+    t541 = _runtime.select(t536, 1.0, -(axisx_1_1_13_left_flip_up * t537))
+    del axisx_1_1_13_left_flip_up, t536, t537
+    t542 = dqx_1_1_13_left_flip_up - rate_1_1_13_left_flip_up * t541
+    dx_1_1_13_left_flip_up = _runtime.select(t535, dqx_1_1_13_left_flip_up, t542)
+    del t542
+    t543 = x_1_1_13_left_flip_up * dx_1_1_13_left_flip_up
+    del dx_1_1_13_left_flip_up
+    t544 = _runtime.select(t535, t23, t23 - d5 * t541)
+    dy_1_1_13_left_flip_up = _runtime.select(t535, 0.0, rate_1_1_13_left_flip_up * t538)
+    slope_1_1_13_left_flip_up = t543 - t544 * dy_1_1_13_left_flip_up
+    del dy_1_1_13_left_flip_up, t543
+    t545 = slope_1_1_13_left_flip_up * slope_1_1_13_left_flip_up
+    straight_1_1_13_left_flip_up = dqx_1_1_13_left_flip_up * dqx_1_1_13_left_flip_up
+    t546 = spin_1_1_13_left_flip_up * (qx_1_1_13_left_flip_up * t538 - t23 * t541)
+    del qx_1_1_13_left_flip_up, spin_1_1_13_left_flip_up, t538
+    t547 = rate_1_1_13_left_flip_up * (2.0 * dqx_1_1_13_left_flip_up * t541 + t546)
+    del dqx_1_1_13_left_flip_up, rate_1_1_13_left_flip_up, t541, t546
+    bends_1_1_13_left_flip_up = _runtime.select(t535, straight_1_1_13_left_flip_up, straight_1_1_13_left_flip_up - t547)
+    del straight_1_1_13_left_flip_up, t547
+    t548 = x_1_1_13_left_flip_up * x_1_1_13_left_flip_up
+    del x_1_1_13_left_flip_up
+    square_1_1_13_left_flip_up = t548 + t544 * t544
+    del t544, t548
+    t549 = _runtime.select(t535, t98, fold_1_1) - whole_1_1
+    t550 = np.maximum(0.0, t549)
+    del t549
+    t551 = whole_1_1 + _runtime.select(t535, t3, full_1_1)
+    del t535
+    t552 = np.minimum(t551 * t551, square_1_1_13_left_flip_up)
+    del t551
+    miss_1_1_13_left_flip_up = square_1_1_13_left_flip_up - np.maximum(t550 * t550, t552)
+    del square_1_1_13_left_flip_up, t550, t552
+    t553 = bends_1_1_13_left_flip_up * miss_1_1_13_left_flip_up
+    inner_1_1_13_left_flip_up = t545 - t553
+    del t545, t553
+    t554 = inner_1_1_13_left_flip_up < 0.0
+    t555 = np.sqrt(np.maximum(0.0, inner_1_1_13_left_flip_up))
+    del inner_1_1_13_left_flip_up
+    t556 = _runtime.sign(slope_1_1_13_left_flip_up) * t555
+    del t555
+    below_1_1_13_left_flip_up = _runtime.select(t554, 2.0 * bends_1_1_13_left_flip_up, 2.0 * (slope_1_1_13_left_flip_up + t556))
+    del bends_1_1_13_left_flip_up, t556
+    above_1_1_13_left_flip_up = _runtime.select(t554, slope_1_1_13_left_flip_up, miss_1_1_13_left_flip_up)
+    del miss_1_1_13_left_flip_up, slope_1_1_13_left_flip_up, t554
+    t557 = np.abs(below_1_1_13_left_flip_up) <= np.abs(above_1_1_13_left_flip_up)
+    t558 = above_1_1_13_left_flip_up / below_1_1_13_left_flip_up
+    del above_1_1_13_left_flip_up, below_1_1_13_left_flip_up
+    t559 = _runtime.select(t557, 0.0, t558)
+    del t557, t558
+    t560 = t559 * t559
+    t561 = 1.0 / (1.0 + t560)
+    by_c_1_1_13_left_flip_up = (1.0 - t560) * t561
+    del t560
+    t562 = t561 * (2.0 * t559)
+    del t559, t561
+    t563 = t562 * t562 / (1.0 + np.abs(by_c_1_1_13_left_flip_up))
+    versine_1_1_13_left_flip_up = _runtime.select(0.0 < by_c_1_1_13_left_flip_up, t563, 1.0 - by_c_1_1_13_left_flip_up)
+    del t563
+    cost_1_1_13_left_flip_up = d4 * versine_1_1_13_left_flip_up + root1 * np.abs(t562)
+    del versine_1_1_13_left_flip_up
+    t564 = cost_1_1_13_left_flip_up <= whole_1_1
+    del cost_1_1_13_left_flip_up
+    cosine_1_1_13_left_flip_up = _runtime.select(t564, by_c_1_1_13_left_flip_up, 1.0)
+    del by_c_1_1_13_left_flip_up
+    t565 = c_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
+    sine_1_1_13_left_flip_up = _runtime.select(t564, -t562, 0.0)
+    del t562, t564
+    t566 = s_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
+    c_1_1_14_left_flip_up = t565 - t566
+    del t565, t566
+    t567 = c_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
+    del c_1_1_13_left_flip_up, sine_1_1_13_left_flip_up
+    t568 = s_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
+    del cosine_1_1_13_left_flip_up, s_1_1_13_left_flip_up
+    s_1_1_14_left_flip_up = t567 + t568
+    del t567, t568
+    axisx_1_1_14_left_flip_up = T13 * c_1_1_14_left_flip_up + T23 * s_1_1_14_left_flip_up
+    t569 = axisx_1_1_14_left_flip_up * axisx_1_1_14_left_flip_up
+    h_1_1_14_left_flip_up = np.sqrt(t5 + t569)
+    del t569
+    t570 = h_1_1_14_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_14_left_flip_up = w_x * c_1_1_14_left_flip_up + w_y * s_1_1_14_left_flip_up
+    t571 = h_1_1_14_left_flip_up == 0.0
+    t572 = 1.0 / h_1_1_14_left_flip_up
+    t573 = _runtime.select(t571, 0.0, T33 * t572)
+    x_1_1_14_left_flip_up = _runtime.select(t570, qx_1_1_14_left_flip_up, qx_1_1_14_left_flip_up + d5 * t573)
+    dqx_1_1_14_left_flip_up = w_y * c_1_1_14_left_flip_up - w_x * s_1_1_14_left_flip_up
+    t574 = T13 * s_1_1_14_left_flip_up - T23 * c_1_1_14_left_flip_up
+    t575 = h_1_1_14_left_flip_up * h_1_1_14_left_flip_up
+    del h_1_1_14_left_flip_up
+    spin_1_1_14_left_flip_up = _runtime.select(t570, 0.0, T33 * t574 / t575)
+    del t574, t575
+    rate_1_1_14_left_flip_up = d5 * spin_1_1_14_left_flip_up
+    t576 = _runtime.select(t571, 1.0, -(axisx_1_1_14_left_flip_up * t572))
+    del axisx_1_1_14_left_flip_up, t571, t572
+    t577 = dqx_1_1_14_left_flip_up - rate_1_1_14_left_flip_up * t576
+    dx_1_1_14_left_flip_up = _runtime.select(t570, dqx_1_1_14_left_flip_up, t577)
+    del t577
+    t578 = x_1_1_14_left_flip_up * dx_1_1_14_left_flip_up
+    del dx_1_1_14_left_flip_up
+    t579 = _runtime.select(t570, t23, t23 - d5 * t576)
+    dy_1_1_14_left_flip_up = _runtime.select(t570, 0.0, rate_1_1_14_left_flip_up * t573)
+    slope_1_1_14_left_flip_up = t578 - t579 * dy_1_1_14_left_flip_up
+    del dy_1_1_14_left_flip_up, t578
+    t580 = slope_1_1_14_left_flip_up * slope_1_1_14_left_flip_up
+    straight_1_1_14_left_flip_up = dqx_1_1_14_left_flip_up * dqx_1_1_14_left_flip_up
+    t581 = spin_1_1_14_left_flip_up * (qx_1_1_14_left_flip_up * t573 - t23 * t576)
+    del qx_1_1_14_left_flip_up, spin_1_1_14_left_flip_up, t573
+    t582 = rate_1_1_14_left_flip_up * (2.0 * dqx_1_1_14_left_flip_up * t576 + t581)
+    del dqx_1_1_14_left_flip_up, rate_1_1_14_left_flip_up, t576, t581
+    bends_1_1_14_left_flip_up = _runtime.select(t570, straight_1_1_14_left_flip_up, straight_1_1_14_left_flip_up - t582)
+    del straight_1_1_14_left_flip_up, t582
+    t583 = x_1_1_14_left_flip_up * x_1_1_14_left_flip_up
+    del x_1_1_14_left_flip_up
+    square_1_1_14_left_flip_up = t583 + t579 * t579
+    del t579, t583
+    t584 = _runtime.select(t570, t98, fold_1_1) - whole_1_1
+    t585 = np.maximum(0.0, t584)
+    del t584
+    t586 = whole_1_1 + _runtime.select(t570, t3, full_1_1)
+    del t570
+    t587 = np.minimum(t586 * t586, square_1_1_14_left_flip_up)
+    del t586
+    miss_1_1_14_left_flip_up = square_1_1_14_left_flip_up - np.maximum(t585 * t585, t587)
+    del square_1_1_14_left_flip_up, t585, t587
+    t588 = bends_1_1_14_left_flip_up * miss_1_1_14_left_flip_up
+    inner_1_1_14_left_flip_up = t580 - t588
+    del t580, t588
+    t589 = inner_1_1_14_left_flip_up < 0.0
+    t590 = np.sqrt(np.maximum(0.0, inner_1_1_14_left_flip_up))
+    del inner_1_1_14_left_flip_up
+    t591 = _runtime.sign(slope_1_1_14_left_flip_up) * t590
+    del t590
+    below_1_1_14_left_flip_up = _runtime.select(t589, 2.0 * bends_1_1_14_left_flip_up, 2.0 * (slope_1_1_14_left_flip_up + t591))
+    del bends_1_1_14_left_flip_up, t591
+    above_1_1_14_left_flip_up = _runtime.select(t589, slope_1_1_14_left_flip_up, miss_1_1_14_left_flip_up)
+    del miss_1_1_14_left_flip_up, slope_1_1_14_left_flip_up, t589
+    t592 = np.abs(below_1_1_14_left_flip_up) <= np.abs(above_1_1_14_left_flip_up)
+    t593 = above_1_1_14_left_flip_up / below_1_1_14_left_flip_up
+    del above_1_1_14_left_flip_up, below_1_1_14_left_flip_up
+    t594 = _runtime.select(t592, 0.0, t593)
+    del t592, t593
+    t595 = t594 * t594
+    t596 = 1.0 / (1.0 + t595)
+    by_c_1_1_14_left_flip_up = (1.0 - t595) * t596
+    del t595
+    t597 = t596 * (2.0 * t594)
+    del t594, t596
+    t598 = t597 * t597 / (1.0 + np.abs(by_c_1_1_14_left_flip_up))
+    versine_1_1_14_left_flip_up = _runtime.select(0.0 < by_c_1_1_14_left_flip_up, t598, 1.0 - by_c_1_1_14_left_flip_up)
+    del t598
+    cost_1_1_14_left_flip_up = d4 * versine_1_1_14_left_flip_up + root1 * np.abs(t597)
+    del versine_1_1_14_left_flip_up
+    t599 = cost_1_1_14_left_flip_up <= whole_1_1
+    del cost_1_1_14_left_flip_up
+    cosine_1_1_14_left_flip_up = _runtime.select(t599, by_c_1_1_14_left_flip_up, 1.0)
+    del by_c_1_1_14_left_flip_up
+    t600 = c_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
+    sine_1_1_14_left_flip_up = _runtime.select(t599, -t597, 0.0)
+    del t597, t599
+    t601 = s_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
+    c_1_1_15_left_flip_up = t600 - t601
+    del t600, t601
+    t602 = c_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
+    del c_1_1_14_left_flip_up, sine_1_1_14_left_flip_up
+    t603 = s_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
+    del cosine_1_1_14_left_flip_up, s_1_1_14_left_flip_up
+    s_1_1_15_left_flip_up = t602 + t603
+    del t602, t603
+    axisx_1_1_15_left_flip_up = T13 * c_1_1_15_left_flip_up + T23 * s_1_1_15_left_flip_up
+    t604 = axisx_1_1_15_left_flip_up * axisx_1_1_15_left_flip_up
+    h_1_1_15_left_flip_up = np.sqrt(t5 + t604)
+    del t604
+    t605 = h_1_1_15_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_15_left_flip_up = w_x * c_1_1_15_left_flip_up + w_y * s_1_1_15_left_flip_up
+    t606 = h_1_1_15_left_flip_up == 0.0
+    t607 = 1.0 / h_1_1_15_left_flip_up
+    t608 = _runtime.select(t606, 0.0, T33 * t607)
+    x_1_1_15_left_flip_up = _runtime.select(t605, qx_1_1_15_left_flip_up, qx_1_1_15_left_flip_up + d5 * t608)
+    dqx_1_1_15_left_flip_up = w_y * c_1_1_15_left_flip_up - w_x * s_1_1_15_left_flip_up
+    t609 = T13 * s_1_1_15_left_flip_up - T23 * c_1_1_15_left_flip_up
+    t610 = h_1_1_15_left_flip_up * h_1_1_15_left_flip_up
+    del h_1_1_15_left_flip_up
+    spin_1_1_15_left_flip_up = _runtime.select(t605, 0.0, T33 * t609 / t610)
+    del t609, t610
+    rate_1_1_15_left_flip_up = d5 * spin_1_1_15_left_flip_up
+    t611 = _runtime.select(t606, 1.0, -(axisx_1_1_15_left_flip_up * t607))
+    del axisx_1_1_15_left_flip_up, t606, t607
+    t612 = dqx_1_1_15_left_flip_up - rate_1_1_15_left_flip_up * t611
+    dx_1_1_15_left_flip_up = _runtime.select(t605, dqx_1_1_15_left_flip_up, t612)
+    del t612
+    t613 = x_1_1_15_left_flip_up * dx_1_1_15_left_flip_up
+    del dx_1_1_15_left_flip_up
+    t614 = _runtime.select(t605, t23, t23 - d5 * t611)
+    dy_1_1_15_left_flip_up = _runtime.select(t605, 0.0, rate_1_1_15_left_flip_up * t608)
+    slope_1_1_15_left_flip_up = t613 - t614 * dy_1_1_15_left_flip_up
+    del dy_1_1_15_left_flip_up, t613
+    t615 = slope_1_1_15_left_flip_up * slope_1_1_15_left_flip_up
+    straight_1_1_15_left_flip_up = dqx_1_1_15_left_flip_up * dqx_1_1_15_left_flip_up
+    t616 = spin_1_1_15_left_flip_up * (qx_1_1_15_left_flip_up * t608 - t23 * t611)
+    del qx_1_1_15_left_flip_up, spin_1_1_15_left_flip_up, t608
+    t617 = rate_1_1_15_left_flip_up * (2.0 * dqx_1_1_15_left_flip_up * t611 + t616)
+    del dqx_1_1_15_left_flip_up, rate_1_1_15_left_flip_up, t611, t616
+    bends_1_1_15_left_flip_up = _runtime.select(t605, straight_1_1_15_left_flip_up, straight_1_1_15_left_flip_up - t617)
+    del straight_1_1_15_left_flip_up, t617
+    t618 = x_1_1_15_left_flip_up * x_1_1_15_left_flip_up
+    del x_1_1_15_left_flip_up
+    square_1_1_15_left_flip_up = t618 + t614 * t614
+    del t614, t618
+    t619 = _runtime.select(t605, t98, fold_1_1) - whole_1_1
+    t620 = np.maximum(0.0, t619)
+    del t619
+    t621 = whole_1_1 + _runtime.select(t605, t3, full_1_1)
+    del t605
+    t622 = np.minimum(t621 * t621, square_1_1_15_left_flip_up)
+    del t621
+    miss_1_1_15_left_flip_up = square_1_1_15_left_flip_up - np.maximum(t620 * t620, t622)
+    del square_1_1_15_left_flip_up, t620, t622
+    t623 = bends_1_1_15_left_flip_up * miss_1_1_15_left_flip_up
+    inner_1_1_15_left_flip_up = t615 - t623
+    del t615, t623
+    t624 = inner_1_1_15_left_flip_up < 0.0
+    t625 = np.sqrt(np.maximum(0.0, inner_1_1_15_left_flip_up))
+    del inner_1_1_15_left_flip_up
+    t626 = _runtime.sign(slope_1_1_15_left_flip_up) * t625
+    del t625
+    below_1_1_15_left_flip_up = _runtime.select(t624, 2.0 * bends_1_1_15_left_flip_up, 2.0 * (slope_1_1_15_left_flip_up + t626))
+    del bends_1_1_15_left_flip_up, t626
+    above_1_1_15_left_flip_up = _runtime.select(t624, slope_1_1_15_left_flip_up, miss_1_1_15_left_flip_up)
+    del miss_1_1_15_left_flip_up, slope_1_1_15_left_flip_up, t624
+    t627 = np.abs(below_1_1_15_left_flip_up) <= np.abs(above_1_1_15_left_flip_up)
+    t628 = above_1_1_15_left_flip_up / below_1_1_15_left_flip_up
+    del above_1_1_15_left_flip_up, below_1_1_15_left_flip_up
+    t629 = _runtime.select(t627, 0.0, t628)
+    del t627, t628
+    t630 = t629 * t629
+    t631 = 1.0 / (1.0 + t630)
+    by_c_1_1_15_left_flip_up = (1.0 - t630) * t631
+    del t630
+    t632 = t631 * (2.0 * t629)
+    del t629, t631
+    t633 = t632 * t632 / (1.0 + np.abs(by_c_1_1_15_left_flip_up))
+    versine_1_1_15_left_flip_up = _runtime.select(0.0 < by_c_1_1_15_left_flip_up, t633, 1.0 - by_c_1_1_15_left_flip_up)
+    del t633
+    cost_1_1_15_left_flip_up = d4 * versine_1_1_15_left_flip_up + root1 * np.abs(t632)
+    del versine_1_1_15_left_flip_up
+    t634 = cost_1_1_15_left_flip_up <= whole_1_1
+    del cost_1_1_15_left_flip_up
+    cosine_1_1_15_left_flip_up = _runtime.select(t634, by_c_1_1_15_left_flip_up, 1.0)
+    del by_c_1_1_15_left_flip_up
+    t635 = c_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
+    sine_1_1_15_left_flip_up = _runtime.select(t634, -t632, 0.0)
+    del t632, t634
+    t636 = s_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
+    c_1_1_16_left_flip_up = t635 - t636
+    del t635, t636
+    t637 = c_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
+    del c_1_1_15_left_flip_up, sine_1_1_15_left_flip_up
+    t638 = s_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
+    del cosine_1_1_15_left_flip_up, s_1_1_15_left_flip_up
+    s_1_1_16_left_flip_up = t637 + t638
+    del t637, t638
+    axisx_1_1_16_left_flip_up = T13 * c_1_1_16_left_flip_up + T23 * s_1_1_16_left_flip_up
+    t639 = axisx_1_1_16_left_flip_up * axisx_1_1_16_left_flip_up
+    h_1_1_16_left_flip_up = np.sqrt(t5 + t639)
+    del t639
+    t640 = h_1_1_16_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_16_left_flip_up = w_x * c_1_1_16_left_flip_up + w_y * s_1_1_16_left_flip_up
+    t641 = h_1_1_16_left_flip_up == 0.0
+    t642 = 1.0 / h_1_1_16_left_flip_up
+    t643 = _runtime.select(t641, 0.0, T33 * t642)
+    x_1_1_16_left_flip_up = _runtime.select(t640, qx_1_1_16_left_flip_up, qx_1_1_16_left_flip_up + d5 * t643)
+    dqx_1_1_16_left_flip_up = w_y * c_1_1_16_left_flip_up - w_x * s_1_1_16_left_flip_up
+    t644 = T13 * s_1_1_16_left_flip_up - T23 * c_1_1_16_left_flip_up
+    t645 = h_1_1_16_left_flip_up * h_1_1_16_left_flip_up
+    del h_1_1_16_left_flip_up
+    spin_1_1_16_left_flip_up = _runtime.select(t640, 0.0, T33 * t644 / t645)
+    del t644, t645
+    rate_1_1_16_left_flip_up = d5 * spin_1_1_16_left_flip_up
+    t646 = _runtime.select(t641, 1.0, -(axisx_1_1_16_left_flip_up * t642))
+    del axisx_1_1_16_left_flip_up, t641, t642
+    t647 = dqx_1_1_16_left_flip_up - rate_1_1_16_left_flip_up * t646
+    dx_1_1_16_left_flip_up = _runtime.select(t640, dqx_1_1_16_left_flip_up, t647)
+    del t647
+    t648 = x_1_1_16_left_flip_up * dx_1_1_16_left_flip_up
+    del dx_1_1_16_left_flip_up
+    t649 = _runtime.select(t640, t23, t23 - d5 * t646)
+    dy_1_1_16_left_flip_up = _runtime.select(t640, 0.0, rate_1_1_16_left_flip_up * t643)
+    slope_1_1_16_left_flip_up = t648 - t649 * dy_1_1_16_left_flip_up
+    del dy_1_1_16_left_flip_up, t648
+    t650 = slope_1_1_16_left_flip_up * slope_1_1_16_left_flip_up
+    straight_1_1_16_left_flip_up = dqx_1_1_16_left_flip_up * dqx_1_1_16_left_flip_up
+    t651 = spin_1_1_16_left_flip_up * (qx_1_1_16_left_flip_up * t643 - t23 * t646)
+    del qx_1_1_16_left_flip_up, spin_1_1_16_left_flip_up, t643
+    t652 = rate_1_1_16_left_flip_up * (2.0 * dqx_1_1_16_left_flip_up * t646 + t651)
+    del dqx_1_1_16_left_flip_up, rate_1_1_16_left_flip_up, t646, t651
+    bends_1_1_16_left_flip_up = _runtime.select(t640, straight_1_1_16_left_flip_up, straight_1_1_16_left_flip_up - t652)
+    del straight_1_1_16_left_flip_up, t652
+    t653 = x_1_1_16_left_flip_up * x_1_1_16_left_flip_up
+    del x_1_1_16_left_flip_up
+    square_1_1_16_left_flip_up = t653 + t649 * t649
+    del t649, t653
+    t654 = _runtime.select(t640, t98, fold_1_1) - whole_1_1
+    t655 = np.maximum(0.0, t654)
+    del t654
+    t656 = whole_1_1 + _runtime.select(t640, t3, full_1_1)
+    del t640
+    t657 = np.minimum(t656 * t656, square_1_1_16_left_flip_up)
+    del t656
+    miss_1_1_16_left_flip_up = square_1_1_16_left_flip_up - np.maximum(t655 * t655, t657)
+    del square_1_1_16_left_flip_up, t655, t657
+    t658 = bends_1_1_16_left_flip_up * miss_1_1_16_left_flip_up
+    inner_1_1_16_left_flip_up = t650 - t658
+    del t650, t658
+    t659 = inner_1_1_16_left_flip_up < 0.0
+    t660 = np.sqrt(np.maximum(0.0, inner_1_1_16_left_flip_up))
+    del inner_1_1_16_left_flip_up
+    t661 = _runtime.sign(slope_1_1_16_left_flip_up) * t660
+    del t660
+    below_1_1_16_left_flip_up = _runtime.select(t659, 2.0 * bends_1_1_16_left_flip_up, 2.0 * (slope_1_1_16_left_flip_up + t661))
+    del bends_1_1_16_left_flip_up, t661
+    above_1_1_16_left_flip_up = _runtime.select(t659, slope_1_1_16_left_flip_up, miss_1_1_16_left_flip_up)
+    del miss_1_1_16_left_flip_up, slope_1_1_16_left_flip_up, t659
+    t662 = np.abs(below_1_1_16_left_flip_up) <= np.abs(above_1_1_16_left_flip_up)
+    t663 = above_1_1_16_left_flip_up / below_1_1_16_left_flip_up
+    del above_1_1_16_left_flip_up, below_1_1_16_left_flip_up
+    t664 = _runtime.select(t662, 0.0, t663)
+    del t662, t663
+    t665 = t664 * t664
+    t666 = 1.0 / (1.0 + t665)
+    by_c_1_1_16_left_flip_up = (1.0 - t665) * t666
+    del t665
+    t667 = t666 * (2.0 * t664)
+    del t664, t666
+    t668 = t667 * t667 / (1.0 + np.abs(by_c_1_1_16_left_flip_up))
+    versine_1_1_16_left_flip_up = _runtime.select(0.0 < by_c_1_1_16_left_flip_up, t668, 1.0 - by_c_1_1_16_left_flip_up)
+    del t668
+    cost_1_1_16_left_flip_up = d4 * versine_1_1_16_left_flip_up + root1 * np.abs(t667)
+    del versine_1_1_16_left_flip_up
+    t669 = cost_1_1_16_left_flip_up <= whole_1_1
+    del cost_1_1_16_left_flip_up
+    cosine_1_1_16_left_flip_up = _runtime.select(t669, by_c_1_1_16_left_flip_up, 1.0)
+    del by_c_1_1_16_left_flip_up
+    t670 = c_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
+    sine_1_1_16_left_flip_up = _runtime.select(t669, -t667, 0.0)
+    del t667, t669
+    t671 = s_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
+    c_1_1_17_left_flip_up = t670 - t671
+    del t670, t671
+    t672 = c_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
+    del c_1_1_16_left_flip_up, sine_1_1_16_left_flip_up
+    t673 = s_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
+    del cosine_1_1_16_left_flip_up, s_1_1_16_left_flip_up
+    s_1_1_17_left_flip_up = t672 + t673
+    del t672, t673
+    axisx_1_1_17_left_flip_up = T13 * c_1_1_17_left_flip_up + T23 * s_1_1_17_left_flip_up
+    t674 = axisx_1_1_17_left_flip_up * axisx_1_1_17_left_flip_up
+    h_1_1_17_left_flip_up = np.sqrt(t5 + t674)
+    del t674
+    t675 = h_1_1_17_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_17_left_flip_up = w_x * c_1_1_17_left_flip_up + w_y * s_1_1_17_left_flip_up
+    t676 = h_1_1_17_left_flip_up == 0.0
+    t677 = 1.0 / h_1_1_17_left_flip_up
+    del h_1_1_17_left_flip_up
+    t678 = qx_1_1_17_left_flip_up + d5 * _runtime.select(t676, 0.0, T33 * t677)
+    x_1_1_17_left_flip_up = _runtime.select(t675, qx_1_1_17_left_flip_up, t678)
+    del qx_1_1_17_left_flip_up, t678
+    t679 = x_1_1_17_left_flip_up * x_1_1_17_left_flip_up
+    del x_1_1_17_left_flip_up
+    t680 = _runtime.select(t676, 1.0, -(axisx_1_1_17_left_flip_up * t677))
+    del axisx_1_1_17_left_flip_up, t676, t677
+    t681 = _runtime.select(t675, t23, t23 - d5 * t680)
+    del t680
+    t682 = np.sqrt(t679 + t681 * t681)
+    del t679, t681
+    t683 = np.maximum(0.0, t682 - _runtime.select(t675, t3, full_1_1))
+    missed_1_1_17_left_flip_up = np.maximum(t683, _runtime.select(t675, t98, fold_1_1) - t682)
+    del t675, t682, t683
+    x_1_1_left_flip_up = _runtime.select(t198, qx_1_1, qx_1_1 + t201)
+    del qx_1_1, t201
+    t684 = _runtime.select(t199, 1.0, -t204)
+    del t199, t204
+    dx_1_1_left_flip_up = _runtime.select(t198, dqx_1_1, dqx_1_1 + t203 * t684)
+    del dqx_1_1
+    t685 = _runtime.select(t198, t23, t23 - d5 * t684)
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t685
+    del dx_1_1_left_flip_up, dy_1_1
+    t686 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    t687 = t203 * (t207 * t684 - t202 * (t208 - t23 * t684))
+    del t202, t203, t207, t208, t684
+    bends_1_1_left_flip_up = _runtime.select(t198, straight_1_1, straight_1_1 + t687)
+    del straight_1_1, t198, t687
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t685 * t685
+    del t685, x_1_1_left_flip_up
+    t688 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    del high_1_1
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t688)
+    del low_1_1, square_1_1_left_flip_up, t688
+    t689 = bends_1_1_left_flip_up * miss_1_1_left_flip_up
+    inner_1_1_left_flip_up = t686 - t689
+    del t686, t689
+    t690 = inner_1_1_left_flip_up < 0.0
+    t691 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    del inner_1_1_left_flip_up
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t691
+    del t691
+    below_1_1_left_flip_up = _runtime.select(t690, 2.0 * bends_1_1_left_flip_up, 2.0 * outer_1_1_left_flip_up)
     del bends_1_1_left_flip_up, outer_1_1_left_flip_up
-    above_1_1_left_flip_up = _runtime.select(t427, slope_1_1_left_flip_up, miss_1_1_left_flip_up)
-    del miss_1_1_left_flip_up, slope_1_1_left_flip_up, t427
-    t429 = np.abs(below_1_1_left_flip_up) <= np.abs(above_1_1_left_flip_up)
-    t430 = above_1_1_left_flip_up / below_1_1_left_flip_up
+    above_1_1_left_flip_up = _runtime.select(t690, slope_1_1_left_flip_up, miss_1_1_left_flip_up)
+    del miss_1_1_left_flip_up, slope_1_1_left_flip_up, t690
+    t692 = np.abs(below_1_1_left_flip_up) <= np.abs(above_1_1_left_flip_up)
+    t693 = above_1_1_left_flip_up / below_1_1_left_flip_up
     del above_1_1_left_flip_up, below_1_1_left_flip_up
-    t431 = _runtime.select(t429, 0.0, t430)
-    del t429, t430
-    t432 = t431 * t431
-    t433 = 1.0 / (1.0 + t432)
-    by_c_1_1_left_flip_up = (1.0 - t432) * t433
-    del t432
-    t434 = t433 * (2.0 * t431)
-    del t431, t433
-    t435 = t434 * t434 / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    versine_1_1_left_flip_up = _runtime.select(0.0 < by_c_1_1_left_flip_up, t435, 1.0 - by_c_1_1_left_flip_up)
-    del t435
-    cost_1_1_left_flip_up = d4 * versine_1_1_left_flip_up + root1 * np.abs(t434)
+    t694 = _runtime.select(t692, 0.0, t693)
+    del t692, t693
+    t695 = t694 * t694
+    t696 = 1.0 / (1.0 + t695)
+    by_c_1_1_left_flip_up = (1.0 - t695) * t696
+    del t695
+    t697 = t696 * (2.0 * t694)
+    del t694, t696
+    t698 = t697 * t697 / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    versine_1_1_left_flip_up = _runtime.select(0.0 < by_c_1_1_left_flip_up, t698, 1.0 - by_c_1_1_left_flip_up)
+    del t698
+    cost_1_1_left_flip_up = d4 * versine_1_1_left_flip_up + root1 * np.abs(t697)
     del versine_1_1_left_flip_up
-    t436 = cost_1_1_left_flip_up <= whole_1_1
+    t699 = cost_1_1_left_flip_up <= whole_1_1
     del cost_1_1_left_flip_up
-    cosine_1_1_left_flip_up = _runtime.select(t436, by_c_1_1_left_flip_up, 1.0)
+    cosine_1_1_left_flip_up = _runtime.select(t699, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t436, -t434, 0.0)
-    del t434, t436
+    sine_1_1_left_flip_up = _runtime.select(t699, -t697, 0.0)
+    del t697, t699
     c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t13 * sine_1_1_left_flip_up
     s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t13 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t437 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    h_1_1_2_left_flip_up = np.sqrt(t5 + t437)
-    del t437
-    t438 = h_1_1_2_left_flip_up <= 1.4210854715202004e-14
+    t700 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    h_1_1_2_left_flip_up = np.sqrt(t5 + t700)
+    del t700
+    t701 = h_1_1_2_left_flip_up <= 1.4210854715202004e-14
     qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t439 = h_1_1_2_left_flip_up == 0.0
-    t440 = 1.0 / h_1_1_2_left_flip_up
-    t441 = _runtime.select(t439, 0.0, T33 * t440)
-    x_1_1_2_left_flip_up = _runtime.select(t438, qx_1_1_2_left_flip_up, qx_1_1_2_left_flip_up + d5 * t441)
+    t702 = h_1_1_2_left_flip_up == 0.0
+    t703 = 1.0 / h_1_1_2_left_flip_up
+    t704 = _runtime.select(t702, 0.0, T33 * t703)
+    x_1_1_2_left_flip_up = _runtime.select(t701, qx_1_1_2_left_flip_up, qx_1_1_2_left_flip_up + d5 * t704)
     dqx_1_1_2_left_flip_up = w_y * c_1_1_2_left_flip_up - w_x * s_1_1_2_left_flip_up
-    t442 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    t443 = T33 * t442 / (h_1_1_2_left_flip_up * h_1_1_2_left_flip_up)
-    del h_1_1_2_left_flip_up, t442
-    spin_1_1_2_left_flip_up = _runtime.select(t438, 0.0, t443)
-    del t443
-    rate_1_1_2_left_flip_up = d5 * spin_1_1_2_left_flip_up
-    t444 = _runtime.select(t439, 1.0, -(axisx_1_1_2_left_flip_up * t440))
-    del axisx_1_1_2_left_flip_up, t439, t440
-    t445 = dqx_1_1_2_left_flip_up - rate_1_1_2_left_flip_up * t444
-    dx_1_1_2_left_flip_up = _runtime.select(t438, dqx_1_1_2_left_flip_up, t445)
-    del t445
-    t446 = _runtime.select(t438, t23, t23 - d5 * t444)
-    dy_1_1_2_left_flip_up = _runtime.select(t438, 0.0, rate_1_1_2_left_flip_up * t441)
-    slope_1_1_2_left_flip_up = x_1_1_2_left_flip_up * dx_1_1_2_left_flip_up - t446 * dy_1_1_2_left_flip_up
-    del dx_1_1_2_left_flip_up, dy_1_1_2_left_flip_up
-    t447 = slope_1_1_2_left_flip_up * slope_1_1_2_left_flip_up
-    straight_1_1_2_left_flip_up = dqx_1_1_2_left_flip_up * dqx_1_1_2_left_flip_up
-    t448 = spin_1_1_2_left_flip_up * (qx_1_1_2_left_flip_up * t441 - t23 * t444)
-    del qx_1_1_2_left_flip_up, spin_1_1_2_left_flip_up, t441
-    t449 = rate_1_1_2_left_flip_up * (2.0 * dqx_1_1_2_left_flip_up * t444 + t448)
-    del dqx_1_1_2_left_flip_up, rate_1_1_2_left_flip_up, t444, t448
-    bends_1_1_2_left_flip_up = _runtime.select(t438, straight_1_1_2_left_flip_up, straight_1_1_2_left_flip_up - t449)
-    del straight_1_1_2_left_flip_up, t449
-    square_1_1_2_left_flip_up = x_1_1_2_left_flip_up * x_1_1_2_left_flip_up + t446 * t446
-    del t446, x_1_1_2_left_flip_up
-    t450 = _runtime.select(t438, t29, fold_1_1) - whole_1_1
-    t451 = np.maximum(0.0, t450)
-    del t450
-    t452 = whole_1_1 + _runtime.select(t438, t3, full_1_1)
-    del t438
-    t453 = np.minimum(t452 * t452, square_1_1_2_left_flip_up)
-    del t452
-    miss_1_1_2_left_flip_up = square_1_1_2_left_flip_up - np.maximum(t451 * t451, t453)
-    del square_1_1_2_left_flip_up, t451, t453
-    t454 = bends_1_1_2_left_flip_up * miss_1_1_2_left_flip_up
-    inner_1_1_2_left_flip_up = t447 - t454
-    del t447, t454
-    t455 = inner_1_1_2_left_flip_up < 0.0
-    t456 = np.sqrt(np.maximum(0.0, inner_1_1_2_left_flip_up))
-    del inner_1_1_2_left_flip_up
-    t457 = _runtime.sign(slope_1_1_2_left_flip_up) * t456
-    del t456
-    below_1_1_2_left_flip_up = _runtime.select(t455, 2.0 * bends_1_1_2_left_flip_up, 2.0 * (slope_1_1_2_left_flip_up + t457))
-    del bends_1_1_2_left_flip_up, t457
-    above_1_1_2_left_flip_up = _runtime.select(t455, slope_1_1_2_left_flip_up, miss_1_1_2_left_flip_up)
-    del miss_1_1_2_left_flip_up, slope_1_1_2_left_flip_up, t455
-    t458 = np.abs(below_1_1_2_left_flip_up) <= np.abs(above_1_1_2_left_flip_up)
-    t459 = above_1_1_2_left_flip_up / below_1_1_2_left_flip_up
-    del above_1_1_2_left_flip_up, below_1_1_2_left_flip_up
-    t460 = _runtime.select(t458, 0.0, t459)
-    del t458, t459
-    t461 = t460 * t460
-    t462 = 1.0 / (1.0 + t461)
-    by_c_1_1_2_left_flip_up = (1.0 - t461) * t462
-    del t461
-    t463 = t462 * (2.0 * t460)
-    del t460, t462
-    t464 = t463 * t463 / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    versine_1_1_2_left_flip_up = _runtime.select(0.0 < by_c_1_1_2_left_flip_up, t464, 1.0 - by_c_1_1_2_left_flip_up)
-    del t464
-    cost_1_1_2_left_flip_up = d4 * versine_1_1_2_left_flip_up + root1 * np.abs(t463)
-    del versine_1_1_2_left_flip_up
-    t465 = cost_1_1_2_left_flip_up <= whole_1_1
-    del cost_1_1_2_left_flip_up
-    cosine_1_1_2_left_flip_up = _runtime.select(t465, by_c_1_1_2_left_flip_up, 1.0)
-    del by_c_1_1_2_left_flip_up
-    t466 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t465, -t463, 0.0)
-    del t463, t465
-    t467 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_3_left_flip_up = t466 - t467
-    del t466, t467
-    t468 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t469 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_3_left_flip_up = t468 + t469
-    del t468, t469
-    axisx_1_1_3_left_flip_up = T13 * c_1_1_3_left_flip_up + T23 * s_1_1_3_left_flip_up
-    t470 = axisx_1_1_3_left_flip_up * axisx_1_1_3_left_flip_up
-    h_1_1_3_left_flip_up = np.sqrt(t5 + t470)
-    del t470
-    t471 = h_1_1_3_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_3_left_flip_up = w_x * c_1_1_3_left_flip_up + w_y * s_1_1_3_left_flip_up
-    t472 = h_1_1_3_left_flip_up == 0.0
-    t473 = 1.0 / h_1_1_3_left_flip_up
-    t474 = _runtime.select(t472, 0.0, T33 * t473)
-    x_1_1_3_left_flip_up = _runtime.select(t471, qx_1_1_3_left_flip_up, qx_1_1_3_left_flip_up + d5 * t474)
-    dqx_1_1_3_left_flip_up = w_y * c_1_1_3_left_flip_up - w_x * s_1_1_3_left_flip_up
-    t475 = T13 * s_1_1_3_left_flip_up - T23 * c_1_1_3_left_flip_up
-    t476 = T33 * t475 / (h_1_1_3_left_flip_up * h_1_1_3_left_flip_up)
-    del h_1_1_3_left_flip_up, t475
-    spin_1_1_3_left_flip_up = _runtime.select(t471, 0.0, t476)
-    del t476
-    rate_1_1_3_left_flip_up = d5 * spin_1_1_3_left_flip_up
-    t477 = _runtime.select(t472, 1.0, -(axisx_1_1_3_left_flip_up * t473))
-    del axisx_1_1_3_left_flip_up, t472, t473
-    t478 = dqx_1_1_3_left_flip_up - rate_1_1_3_left_flip_up * t477
-    dx_1_1_3_left_flip_up = _runtime.select(t471, dqx_1_1_3_left_flip_up, t478)
-    del t478
-    t479 = _runtime.select(t471, t23, t23 - d5 * t477)
-    dy_1_1_3_left_flip_up = _runtime.select(t471, 0.0, rate_1_1_3_left_flip_up * t474)
-    slope_1_1_3_left_flip_up = x_1_1_3_left_flip_up * dx_1_1_3_left_flip_up - t479 * dy_1_1_3_left_flip_up
-    del dx_1_1_3_left_flip_up, dy_1_1_3_left_flip_up
-    t480 = slope_1_1_3_left_flip_up * slope_1_1_3_left_flip_up
-    straight_1_1_3_left_flip_up = dqx_1_1_3_left_flip_up * dqx_1_1_3_left_flip_up
-    t481 = spin_1_1_3_left_flip_up * (qx_1_1_3_left_flip_up * t474 - t23 * t477)
-    del qx_1_1_3_left_flip_up, spin_1_1_3_left_flip_up, t474
-    t482 = rate_1_1_3_left_flip_up * (2.0 * dqx_1_1_3_left_flip_up * t477 + t481)
-    del dqx_1_1_3_left_flip_up, rate_1_1_3_left_flip_up, t477, t481
-    bends_1_1_3_left_flip_up = _runtime.select(t471, straight_1_1_3_left_flip_up, straight_1_1_3_left_flip_up - t482)
-    del straight_1_1_3_left_flip_up, t482
-    square_1_1_3_left_flip_up = x_1_1_3_left_flip_up * x_1_1_3_left_flip_up + t479 * t479
-    del t479, x_1_1_3_left_flip_up
-    t483 = _runtime.select(t471, t29, fold_1_1) - whole_1_1
-    t484 = np.maximum(0.0, t483)
-    del t483
-    t485 = whole_1_1 + _runtime.select(t471, t3, full_1_1)
-    del t471
-    t486 = np.minimum(t485 * t485, square_1_1_3_left_flip_up)
-    del t485
-    miss_1_1_3_left_flip_up = square_1_1_3_left_flip_up - np.maximum(t484 * t484, t486)
-    del square_1_1_3_left_flip_up, t484, t486
-    t487 = bends_1_1_3_left_flip_up * miss_1_1_3_left_flip_up
-    inner_1_1_3_left_flip_up = t480 - t487
-    del t480, t487
-    t488 = inner_1_1_3_left_flip_up < 0.0
-    t489 = np.sqrt(np.maximum(0.0, inner_1_1_3_left_flip_up))
-    del inner_1_1_3_left_flip_up
-    t490 = _runtime.sign(slope_1_1_3_left_flip_up) * t489
-    del t489
-    below_1_1_3_left_flip_up = _runtime.select(t488, 2.0 * bends_1_1_3_left_flip_up, 2.0 * (slope_1_1_3_left_flip_up + t490))
-    del bends_1_1_3_left_flip_up, t490
-    above_1_1_3_left_flip_up = _runtime.select(t488, slope_1_1_3_left_flip_up, miss_1_1_3_left_flip_up)
-    del miss_1_1_3_left_flip_up, slope_1_1_3_left_flip_up, t488
-    t491 = np.abs(below_1_1_3_left_flip_up) <= np.abs(above_1_1_3_left_flip_up)
-    t492 = above_1_1_3_left_flip_up / below_1_1_3_left_flip_up
-    del above_1_1_3_left_flip_up, below_1_1_3_left_flip_up
-    t493 = _runtime.select(t491, 0.0, t492)
-    del t491, t492
-    t494 = t493 * t493
-    t495 = 1.0 / (1.0 + t494)
-    by_c_1_1_3_left_flip_up = (1.0 - t494) * t495
-    del t494
-    t496 = t495 * (2.0 * t493)
-    del t493, t495
-    t497 = t496 * t496 / (1.0 + np.abs(by_c_1_1_3_left_flip_up))
-    versine_1_1_3_left_flip_up = _runtime.select(0.0 < by_c_1_1_3_left_flip_up, t497, 1.0 - by_c_1_1_3_left_flip_up)
-    del t497
-    cost_1_1_3_left_flip_up = d4 * versine_1_1_3_left_flip_up + root1 * np.abs(t496)
-    del versine_1_1_3_left_flip_up
-    t498 = cost_1_1_3_left_flip_up <= whole_1_1
-    del cost_1_1_3_left_flip_up
-    cosine_1_1_3_left_flip_up = _runtime.select(t498, by_c_1_1_3_left_flip_up, 1.0)
-    del by_c_1_1_3_left_flip_up
-    t499 = c_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
-    sine_1_1_3_left_flip_up = _runtime.select(t498, -t496, 0.0)
-    del t496, t498
-    t500 = s_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
-    c_1_1_4_left_flip_up = t499 - t500
-    del t499, t500
-    t501 = c_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
-    del c_1_1_3_left_flip_up, sine_1_1_3_left_flip_up
-    t502 = s_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
-    del cosine_1_1_3_left_flip_up, s_1_1_3_left_flip_up
-    s_1_1_4_left_flip_up = t501 + t502
-    del t501, t502
-    axisx_1_1_4_left_flip_up = T13 * c_1_1_4_left_flip_up + T23 * s_1_1_4_left_flip_up
-    t503 = axisx_1_1_4_left_flip_up * axisx_1_1_4_left_flip_up
-    t504 = T13 * s_1_1_4_left_flip_up - T23 * c_1_1_4_left_flip_up
-    most_1_1_4_left_flip_up = np.sqrt(t503 + t504 * t504)
-    t505 = most_1_1_4_left_flip_up <= 8.881784197001252e-16
-    qx_1_1_4_left_flip_up = w_x * c_1_1_4_left_flip_up + w_y * s_1_1_4_left_flip_up
-    t506 = qx_1_1_4_left_flip_up * qx_1_1_4_left_flip_up
-    r_1_1_4_left_flip_up = np.sqrt(t85 + t506)
-    del t506
-    t507 = r_1_1_4_left_flip_up <= t86
-    t508 = d5 + r_1_1_4_left_flip_up
-    h_1_1_4_left_flip_up = np.sqrt(t5 + t503)
-    del t503
-    t509 = h_1_1_4_left_flip_up == 0.0
-    t510 = 1.0 / h_1_1_4_left_flip_up
-    t511 = _runtime.select(t509, 0.0, T33 * t510)
-    t512 = qx_1_1_4_left_flip_up + d5 * t511
-    t513 = _runtime.select(t509, 1.0, -(axisx_1_1_4_left_flip_up * t510))
-    del t509, t510
-    t514 = t23 - d5 * t513
-    t515 = np.maximum(np.sqrt(t512 * t512 + t514 * t514), fold_1_1)
-    goal_1_1_4_left_flip_up = np.minimum(full_1_1, t515)
-    del t515
-    t516 = (t508 - goal_1_1_4_left_flip_up) * (t508 + goal_1_1_4_left_flip_up)
-    k_v_1_1_4_left_flip_up = np.maximum(0.0, t516)
-    del t516
-    t517 = d5 - r_1_1_4_left_flip_up
-    t518 = (goal_1_1_4_left_flip_up - t517) * (goal_1_1_4_left_flip_up + t517)
-    del goal_1_1_4_left_flip_up, t517
-    d_v_1_1_4_left_flip_up = np.maximum(0.0, t518)
-    del t518
-    n_v_1_1_4_left_flip_up = k_v_1_1_4_left_flip_up + d_v_1_1_4_left_flip_up
-    t519 = n_v_1_1_4_left_flip_up <= size * t508 * 8.881784197001252e-16
-    del t508
-    t520 = k_v_1_1_4_left_flip_up - d_v_1_1_4_left_flip_up
-    t521 = 1.0 / n_v_1_1_4_left_flip_up
-    del n_v_1_1_4_left_flip_up
-    uc_v_1_1_4_left_flip_up = _runtime.select(t519, 1.0, t520 * t521)
-    del t520
-    t522 = qx_1_1_4_left_flip_up * uc_v_1_1_4_left_flip_up
-    side_1_1_4_left_flip_up = _runtime.sign(-(qx_1_1_4_left_flip_up * t513 + t23 * t511))
-    del t511, t513
-    t523 = k_v_1_1_4_left_flip_up * d_v_1_1_4_left_flip_up
-    del d_v_1_1_4_left_flip_up, k_v_1_1_4_left_flip_up
-    t524 = 2.0 * side_1_1_4_left_flip_up * np.sqrt(t523)
-    del side_1_1_4_left_flip_up, t523
-    us_v_1_1_4_left_flip_up = _runtime.select(t519, 0.0, t521 * t524)
-    del t519, t521, t524
-    t525 = t23 * us_v_1_1_4_left_flip_up
-    t526 = 1.0 / r_1_1_4_left_flip_up
-    del r_1_1_4_left_flip_up
-    c_v_1_1_4_left_flip_up = _runtime.select(t507, 1.0, (t522 + t525) * t526)
-    t527 = -(T33 * c_v_1_1_4_left_flip_up) < 0.0
-    t528 = qx_1_1_4_left_flip_up * us_v_1_1_4_left_flip_up
-    del us_v_1_1_4_left_flip_up
-    t529 = t23 * uc_v_1_1_4_left_flip_up
-    del uc_v_1_1_4_left_flip_up
-    wc_1_1_4_left_flip_up = _runtime.select(t507, 0.0, t526 * (t528 + t529))
-    s_v_1_1_4_left_flip_up = _runtime.select(t507, 0.0, t526 * (t528 - t529))
-    del t528, t529
-    to_c_1_1_4_left_flip_up = _runtime.select(t527, wc_1_1_4_left_flip_up, -s_v_1_1_4_left_flip_up)
-    del s_v_1_1_4_left_flip_up, wc_1_1_4_left_flip_up
-    c_w_1_1_4_left_flip_up = _runtime.select(t507, 1.0, t526 * (t522 - t525))
-    del t507, t522, t525, t526
-    to_s_1_1_4_left_flip_up = _runtime.select(t527, c_w_1_1_4_left_flip_up, c_v_1_1_4_left_flip_up)
-    del c_v_1_1_4_left_flip_up, c_w_1_1_4_left_flip_up, t527
-    t530 = T33 * to_c_1_1_4_left_flip_up * _runtime.sign(to_s_1_1_4_left_flip_up)
-    del to_c_1_1_4_left_flip_up
-    across_1_1_4_left_flip_up = _runtime.select(t84, 0.0, t530)
-    del t530
-    t531 = np.abs(to_s_1_1_4_left_flip_up)
-    del to_s_1_1_4_left_flip_up
-    t532 = most_1_1_4_left_flip_up * t531 <= np.abs(across_1_1_4_left_flip_up)
-    t533 = most_1_1_4_left_flip_up * _runtime.sign(across_1_1_4_left_flip_up)
-    t534 = _runtime.select(t532, t533, across_1_1_4_left_flip_up / t531)
-    del t531, t532, t533
-    wanted_1_1_4_left_flip_up = _runtime.select(across_1_1_4_left_flip_up == 0.0, 0.0, t534)
-    del across_1_1_4_left_flip_up, t534
-    t535 = axisx_1_1_4_left_flip_up * wanted_1_1_4_left_flip_up
-    t536 = most_1_1_4_left_flip_up - wanted_1_1_4_left_flip_up
-    t537 = most_1_1_4_left_flip_up + wanted_1_1_4_left_flip_up
-    rest_1_1_4_left_flip_up = np.sqrt(np.maximum(0.0, t536 * t537)) * _runtime.sign(-t504)
-    del t536, t537
-    t538 = most_1_1_4_left_flip_up * most_1_1_4_left_flip_up
-    del most_1_1_4_left_flip_up
-    t539 = 1.0 / t538
-    del t538
-    t540 = (t535 - t504 * rest_1_1_4_left_flip_up) * t539
-    del t535
-    by_c_1_1_4_left_flip_up = _runtime.select(t505, 1.0, t540)
-    del t540
-    t541 = axisx_1_1_4_left_flip_up * rest_1_1_4_left_flip_up
-    del axisx_1_1_4_left_flip_up, rest_1_1_4_left_flip_up
-    t542 = t539 * (t541 + t504 * wanted_1_1_4_left_flip_up)
-    del t504, t539, t541, wanted_1_1_4_left_flip_up
-    t543 = _runtime.select(t505, 0.0, t542)
-    del t505, t542
-    t544 = t543 * t543 / (1.0 + np.abs(by_c_1_1_4_left_flip_up))
-    versine_1_1_4_left_flip_up = _runtime.select(0.0 < by_c_1_1_4_left_flip_up, t544, 1.0 - by_c_1_1_4_left_flip_up)
-    del t544
-    cost_1_1_4_left_flip_up = d4 * versine_1_1_4_left_flip_up + root1 * np.abs(t543)
-    del versine_1_1_4_left_flip_up
-    t545 = cost_1_1_4_left_flip_up <= whole_1_1
-    del cost_1_1_4_left_flip_up
-    cosine_1_1_4_left_flip_up = _runtime.select(t545, by_c_1_1_4_left_flip_up, 1.0)
-    del by_c_1_1_4_left_flip_up
-    t546 = c_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
-    sine_1_1_4_left_flip_up = _runtime.select(t545, -t543, 0.0)
-    del t543, t545
-    t547 = s_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
-    c_1_1_5_left_flip_up = t546 - t547
-    del t546, t547
-    t548 = c_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
-    del sine_1_1_4_left_flip_up
-    t549 = s_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
-    del cosine_1_1_4_left_flip_up
-    s_1_1_5_left_flip_up = t548 + t549
-    del t548, t549
-    axisx_1_1_5_left_flip_up = T13 * c_1_1_5_left_flip_up + T23 * s_1_1_5_left_flip_up
-    t550 = axisx_1_1_5_left_flip_up * axisx_1_1_5_left_flip_up
-    h_1_1_5_left_flip_up = np.sqrt(t5 + t550)
-    del t550
-    t551 = h_1_1_5_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_5_left_flip_up = w_x * c_1_1_5_left_flip_up + w_y * s_1_1_5_left_flip_up
-    t552 = h_1_1_5_left_flip_up == 0.0
-    t553 = 1.0 / h_1_1_5_left_flip_up
-    t554 = _runtime.select(t552, 0.0, T33 * t553)
-    x_1_1_5_left_flip_up = _runtime.select(t551, qx_1_1_5_left_flip_up, qx_1_1_5_left_flip_up + d5 * t554)
-    dqx_1_1_5_left_flip_up = w_y * c_1_1_5_left_flip_up - w_x * s_1_1_5_left_flip_up
-    t555 = T13 * s_1_1_5_left_flip_up - T23 * c_1_1_5_left_flip_up
-    t556 = T33 * t555 / (h_1_1_5_left_flip_up * h_1_1_5_left_flip_up)
-    del h_1_1_5_left_flip_up, t555
-    spin_1_1_5_left_flip_up = _runtime.select(t551, 0.0, t556)
-    del t556
-    rate_1_1_5_left_flip_up = d5 * spin_1_1_5_left_flip_up
-    t557 = _runtime.select(t552, 1.0, -(axisx_1_1_5_left_flip_up * t553))
-    del axisx_1_1_5_left_flip_up, t552, t553
-    t558 = dqx_1_1_5_left_flip_up - rate_1_1_5_left_flip_up * t557
-    dx_1_1_5_left_flip_up = _runtime.select(t551, dqx_1_1_5_left_flip_up, t558)
-    del t558
-    t559 = _runtime.select(t551, t23, t23 - d5 * t557)
-    dy_1_1_5_left_flip_up = _runtime.select(t551, 0.0, rate_1_1_5_left_flip_up * t554)
-    slope_1_1_5_left_flip_up = x_1_1_5_left_flip_up * dx_1_1_5_left_flip_up - t559 * dy_1_1_5_left_flip_up
-    del dx_1_1_5_left_flip_up, dy_1_1_5_left_flip_up
-    t560 = slope_1_1_5_left_flip_up * slope_1_1_5_left_flip_up
-    straight_1_1_5_left_flip_up = dqx_1_1_5_left_flip_up * dqx_1_1_5_left_flip_up
-    t561 = spin_1_1_5_left_flip_up * (qx_1_1_5_left_flip_up * t554 - t23 * t557)
-    del qx_1_1_5_left_flip_up, spin_1_1_5_left_flip_up, t554
-    t562 = rate_1_1_5_left_flip_up * (2.0 * dqx_1_1_5_left_flip_up * t557 + t561)
-    del dqx_1_1_5_left_flip_up, rate_1_1_5_left_flip_up, t557, t561
-    bends_1_1_5_left_flip_up = _runtime.select(t551, straight_1_1_5_left_flip_up, straight_1_1_5_left_flip_up - t562)
-    del straight_1_1_5_left_flip_up, t562
-    square_1_1_5_left_flip_up = x_1_1_5_left_flip_up * x_1_1_5_left_flip_up + t559 * t559
-    del t559, x_1_1_5_left_flip_up
-    t563 = _runtime.select(t551, t29, fold_1_1) - whole_1_1
-    t564 = np.maximum(0.0, t563)
-    del t563
-    t565 = whole_1_1 + _runtime.select(t551, t3, full_1_1)
-    del t551
-    t566 = np.minimum(t565 * t565, square_1_1_5_left_flip_up)
-    del t565
-    miss_1_1_5_left_flip_up = square_1_1_5_left_flip_up - np.maximum(t564 * t564, t566)
-    del square_1_1_5_left_flip_up, t564, t566
-    t567 = bends_1_1_5_left_flip_up * miss_1_1_5_left_flip_up
-    inner_1_1_5_left_flip_up = t560 - t567
-    del t560, t567
-    t568 = inner_1_1_5_left_flip_up < 0.0
-    t569 = np.sqrt(np.maximum(0.0, inner_1_1_5_left_flip_up))
-    del inner_1_1_5_left_flip_up
-    t570 = _runtime.sign(slope_1_1_5_left_flip_up) * t569
-    del t569
-    below_1_1_5_left_flip_up = _runtime.select(t568, 2.0 * bends_1_1_5_left_flip_up, 2.0 * (slope_1_1_5_left_flip_up + t570))
-    del bends_1_1_5_left_flip_up, t570
-    above_1_1_5_left_flip_up = _runtime.select(t568, slope_1_1_5_left_flip_up, miss_1_1_5_left_flip_up)
-    del miss_1_1_5_left_flip_up, slope_1_1_5_left_flip_up, t568
-    t571 = np.abs(below_1_1_5_left_flip_up) <= np.abs(above_1_1_5_left_flip_up)
-    t572 = above_1_1_5_left_flip_up / below_1_1_5_left_flip_up
-    del above_1_1_5_left_flip_up, below_1_1_5_left_flip_up
-    t573 = _runtime.select(t571, 0.0, t572)
-    del t571, t572
-    t574 = t573 * t573
-    t575 = 1.0 / (1.0 + t574)
-    by_c_1_1_5_left_flip_up = (1.0 - t574) * t575
-    del t574
-    t576 = t575 * (2.0 * t573)
-    del t573, t575
-    t577 = t576 * t576 / (1.0 + np.abs(by_c_1_1_5_left_flip_up))
-    versine_1_1_5_left_flip_up = _runtime.select(0.0 < by_c_1_1_5_left_flip_up, t577, 1.0 - by_c_1_1_5_left_flip_up)
-    del t577
-    cost_1_1_5_left_flip_up = d4 * versine_1_1_5_left_flip_up + root1 * np.abs(t576)
-    del versine_1_1_5_left_flip_up
-    t578 = cost_1_1_5_left_flip_up <= whole_1_1
-    del cost_1_1_5_left_flip_up
-    cosine_1_1_5_left_flip_up = _runtime.select(t578, by_c_1_1_5_left_flip_up, 1.0)
-    del by_c_1_1_5_left_flip_up
-    t579 = c_1_1_5_left_flip_up * cosine_1_1_5_left_flip_up
-    sine_1_1_5_left_flip_up = _runtime.select(t578, -t576, 0.0)
-    del t576, t578
-    t580 = s_1_1_5_left_flip_up * sine_1_1_5_left_flip_up
-    c_1_1_6_left_flip_up = t579 - t580
-    del t579, t580
-    t581 = c_1_1_5_left_flip_up * sine_1_1_5_left_flip_up
-    del c_1_1_5_left_flip_up, sine_1_1_5_left_flip_up
-    t582 = s_1_1_5_left_flip_up * cosine_1_1_5_left_flip_up
-    del cosine_1_1_5_left_flip_up, s_1_1_5_left_flip_up
-    s_1_1_6_left_flip_up = t581 + t582
-    del t581, t582
-    axisx_1_1_6_left_flip_up = T13 * c_1_1_6_left_flip_up + T23 * s_1_1_6_left_flip_up
-    t583 = axisx_1_1_6_left_flip_up * axisx_1_1_6_left_flip_up
-    h_1_1_6_left_flip_up = np.sqrt(t5 + t583)
-    del t583
-    t584 = h_1_1_6_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_6_left_flip_up = w_x * c_1_1_6_left_flip_up + w_y * s_1_1_6_left_flip_up
-    t585 = h_1_1_6_left_flip_up == 0.0
-    t586 = 1.0 / h_1_1_6_left_flip_up
-    t587 = _runtime.select(t585, 0.0, T33 * t586)
-    x_1_1_6_left_flip_up = _runtime.select(t584, qx_1_1_6_left_flip_up, qx_1_1_6_left_flip_up + d5 * t587)
-    dqx_1_1_6_left_flip_up = w_y * c_1_1_6_left_flip_up - w_x * s_1_1_6_left_flip_up
-    t588 = T13 * s_1_1_6_left_flip_up - T23 * c_1_1_6_left_flip_up
-    t589 = T33 * t588 / (h_1_1_6_left_flip_up * h_1_1_6_left_flip_up)
-    del h_1_1_6_left_flip_up, t588
-    spin_1_1_6_left_flip_up = _runtime.select(t584, 0.0, t589)
-    del t589
-    rate_1_1_6_left_flip_up = d5 * spin_1_1_6_left_flip_up
-    t590 = _runtime.select(t585, 1.0, -(axisx_1_1_6_left_flip_up * t586))
-    del axisx_1_1_6_left_flip_up, t585, t586
-    t591 = dqx_1_1_6_left_flip_up - rate_1_1_6_left_flip_up * t590
-    dx_1_1_6_left_flip_up = _runtime.select(t584, dqx_1_1_6_left_flip_up, t591)
-    del t591
-    t592 = _runtime.select(t584, t23, t23 - d5 * t590)
-    dy_1_1_6_left_flip_up = _runtime.select(t584, 0.0, rate_1_1_6_left_flip_up * t587)
-    slope_1_1_6_left_flip_up = x_1_1_6_left_flip_up * dx_1_1_6_left_flip_up - t592 * dy_1_1_6_left_flip_up
-    del dx_1_1_6_left_flip_up, dy_1_1_6_left_flip_up
-    t593 = slope_1_1_6_left_flip_up * slope_1_1_6_left_flip_up
-    straight_1_1_6_left_flip_up = dqx_1_1_6_left_flip_up * dqx_1_1_6_left_flip_up
-    t594 = spin_1_1_6_left_flip_up * (qx_1_1_6_left_flip_up * t587 - t23 * t590)
-    del qx_1_1_6_left_flip_up, spin_1_1_6_left_flip_up, t587
-    t595 = rate_1_1_6_left_flip_up * (2.0 * dqx_1_1_6_left_flip_up * t590 + t594)
-    del dqx_1_1_6_left_flip_up, rate_1_1_6_left_flip_up, t590, t594
-    bends_1_1_6_left_flip_up = _runtime.select(t584, straight_1_1_6_left_flip_up, straight_1_1_6_left_flip_up - t595)
-    del straight_1_1_6_left_flip_up, t595
-    square_1_1_6_left_flip_up = x_1_1_6_left_flip_up * x_1_1_6_left_flip_up + t592 * t592
-    del t592, x_1_1_6_left_flip_up
-    t596 = _runtime.select(t584, t29, fold_1_1) - whole_1_1
-    t597 = np.maximum(0.0, t596)
-    del t596
-    t598 = whole_1_1 + _runtime.select(t584, t3, full_1_1)
-    del t584
-    t599 = np.minimum(t598 * t598, square_1_1_6_left_flip_up)
-    del t598
-    miss_1_1_6_left_flip_up = square_1_1_6_left_flip_up - np.maximum(t597 * t597, t599)
-    del square_1_1_6_left_flip_up, t597, t599
-    t600 = bends_1_1_6_left_flip_up * miss_1_1_6_left_flip_up
-    inner_1_1_6_left_flip_up = t593 - t600
-    del t593, t600
-    t601 = inner_1_1_6_left_flip_up < 0.0
-    t602 = np.sqrt(np.maximum(0.0, inner_1_1_6_left_flip_up))
-    del inner_1_1_6_left_flip_up
-    t603 = _runtime.sign(slope_1_1_6_left_flip_up) * t602
-    del t602
-    below_1_1_6_left_flip_up = _runtime.select(t601, 2.0 * bends_1_1_6_left_flip_up, 2.0 * (slope_1_1_6_left_flip_up + t603))
-    del bends_1_1_6_left_flip_up, t603
-    above_1_1_6_left_flip_up = _runtime.select(t601, slope_1_1_6_left_flip_up, miss_1_1_6_left_flip_up)
-    del miss_1_1_6_left_flip_up, slope_1_1_6_left_flip_up, t601
-    t604 = np.abs(below_1_1_6_left_flip_up) <= np.abs(above_1_1_6_left_flip_up)
-    t605 = above_1_1_6_left_flip_up / below_1_1_6_left_flip_up
-    del above_1_1_6_left_flip_up, below_1_1_6_left_flip_up
-    t606 = _runtime.select(t604, 0.0, t605)
-    del t604, t605
-    t607 = t606 * t606
-    t608 = 1.0 / (1.0 + t607)
-    by_c_1_1_6_left_flip_up = (1.0 - t607) * t608
-    del t607
-    t609 = t608 * (2.0 * t606)
-    del t606, t608
-    t610 = t609 * t609 / (1.0 + np.abs(by_c_1_1_6_left_flip_up))
-    versine_1_1_6_left_flip_up = _runtime.select(0.0 < by_c_1_1_6_left_flip_up, t610, 1.0 - by_c_1_1_6_left_flip_up)
-    del t610
-    cost_1_1_6_left_flip_up = d4 * versine_1_1_6_left_flip_up + root1 * np.abs(t609)
-    del versine_1_1_6_left_flip_up
-    t611 = cost_1_1_6_left_flip_up <= whole_1_1
-    del cost_1_1_6_left_flip_up
-    cosine_1_1_6_left_flip_up = _runtime.select(t611, by_c_1_1_6_left_flip_up, 1.0)
-    del by_c_1_1_6_left_flip_up
-    t612 = c_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
-    sine_1_1_6_left_flip_up = _runtime.select(t611, -t609, 0.0)
-    del t609, t611
-    t613 = s_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
-    c_1_1_7_left_flip_up = t612 - t613
-    del t612, t613
-    t614 = c_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
-    del c_1_1_6_left_flip_up, sine_1_1_6_left_flip_up
-    t615 = s_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
-    del cosine_1_1_6_left_flip_up, s_1_1_6_left_flip_up
-    s_1_1_7_left_flip_up = t614 + t615
-    del t614, t615
-    axisx_1_1_7_left_flip_up = T13 * c_1_1_7_left_flip_up + T23 * s_1_1_7_left_flip_up
-    t616 = axisx_1_1_7_left_flip_up * axisx_1_1_7_left_flip_up
-    h_1_1_7_left_flip_up = np.sqrt(t5 + t616)
-    del t616
-    t617 = h_1_1_7_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_7_left_flip_up = w_x * c_1_1_7_left_flip_up + w_y * s_1_1_7_left_flip_up
-    t618 = h_1_1_7_left_flip_up == 0.0
-    t619 = 1.0 / h_1_1_7_left_flip_up
-    del h_1_1_7_left_flip_up
-    t620 = qx_1_1_7_left_flip_up + d5 * _runtime.select(t618, 0.0, T33 * t619)
-    x_1_1_7_left_flip_up = _runtime.select(t617, qx_1_1_7_left_flip_up, t620)
-    del qx_1_1_7_left_flip_up, t620
-    t621 = _runtime.select(t618, 1.0, -(axisx_1_1_7_left_flip_up * t619))
-    del axisx_1_1_7_left_flip_up, t618, t619
-    t622 = _runtime.select(t617, t23, t23 - d5 * t621)
-    del t621
-    t623 = x_1_1_7_left_flip_up * x_1_1_7_left_flip_up + t622 * t622
-    del t622, x_1_1_7_left_flip_up
-    t624 = np.sqrt(t623)
-    del t623
-    t625 = np.maximum(0.0, t624 - _runtime.select(t617, t3, full_1_1))
-    missed_1_1_7_left_flip_up = np.maximum(t625, _runtime.select(t617, t29, fold_1_1) - t624)
-    del t617, t624, t625
-    t626 = h_1_1_4_left_flip_up <= 1.4210854715202004e-14
-    del h_1_1_4_left_flip_up
-    x_1_1_4_left_flip_up = _runtime.select(t626, qx_1_1_4_left_flip_up, t512)
-    del qx_1_1_4_left_flip_up, t512
-    t627 = _runtime.select(t626, t23, t514)
-    del t514
-    t628 = x_1_1_4_left_flip_up * x_1_1_4_left_flip_up + t627 * t627
-    del t627, x_1_1_4_left_flip_up
-    t629 = np.sqrt(t628)
-    del t628
-    t630 = np.maximum(0.0, t629 - _runtime.select(t626, t3, full_1_1))
-    missed_1_1_4_left_flip_up = np.maximum(t630, _runtime.select(t626, t29, fold_1_1) - t629)
-    del t626, t629, t630
-    t631 = missed_1_1_7_left_flip_up < missed_1_1_4_left_flip_up
-    del missed_1_1_4_left_flip_up, missed_1_1_7_left_flip_up
-    c_1_1_8_left_flip_up = _runtime.select(t631, c_1_1_7_left_flip_up, c_1_1_4_left_flip_up)
-    del c_1_1_4_left_flip_up, c_1_1_7_left_flip_up
-    s_1_1_8_left_flip_up = _runtime.select(t631, s_1_1_7_left_flip_up, s_1_1_4_left_flip_up)
-    del s_1_1_4_left_flip_up, s_1_1_7_left_flip_up, t631
-    axisx_1_1_8_left_flip_up = T13 * c_1_1_8_left_flip_up + T23 * s_1_1_8_left_flip_up
-    t632 = axisx_1_1_8_left_flip_up * axisx_1_1_8_left_flip_up
-    t633 = T13 * s_1_1_8_left_flip_up - T23 * c_1_1_8_left_flip_up
-    most_1_1_8_left_flip_up = np.sqrt(t632 + t633 * t633)
-    t634 = most_1_1_8_left_flip_up <= 8.881784197001252e-16
-    margin_1_1_8_left_flip_up = most_1_1_8_left_flip_up * most_1_1_8_left_flip_up
-    del most_1_1_8_left_flip_up
-    rest_1_1_8_left_flip_up = np.sqrt(margin_1_1_8_left_flip_up) * _runtime.sign(-t633)
-    t635 = 1.0 / margin_1_1_8_left_flip_up
-    del margin_1_1_8_left_flip_up
-    by_c_1_1_8_left_flip_up = _runtime.select(t634, 1.0, -(t633 * rest_1_1_8_left_flip_up * t635))
-    del t633
-    t636 = axisx_1_1_8_left_flip_up * rest_1_1_8_left_flip_up
-    del rest_1_1_8_left_flip_up
-    t637 = _runtime.select(t634, 0.0, t635 * t636)
-    del t634, t635, t636
-    t638 = t637 * t637 / (1.0 + np.abs(by_c_1_1_8_left_flip_up))
-    versine_1_1_8_left_flip_up = _runtime.select(0.0 < by_c_1_1_8_left_flip_up, t638, 1.0 - by_c_1_1_8_left_flip_up)
-    del t638
-    cost_1_1_8_left_flip_up = d4 * versine_1_1_8_left_flip_up + root1 * np.abs(t637)
-    del versine_1_1_8_left_flip_up
-    t639 = cost_1_1_8_left_flip_up <= whole_1_1
-    del cost_1_1_8_left_flip_up
-    cosine_1_1_8_left_flip_up = _runtime.select(t639, by_c_1_1_8_left_flip_up, 1.0)
-    del by_c_1_1_8_left_flip_up
-    t640 = c_1_1_8_left_flip_up * cosine_1_1_8_left_flip_up
-    sine_1_1_8_left_flip_up = _runtime.select(t639, -t637, 0.0)
-    del t637, t639
-    t641 = s_1_1_8_left_flip_up * sine_1_1_8_left_flip_up
-    c_1_1_9_left_flip_up = t640 - t641
-    del t640, t641
-    t642 = c_1_1_8_left_flip_up * sine_1_1_8_left_flip_up
-    del sine_1_1_8_left_flip_up
-    t643 = s_1_1_8_left_flip_up * cosine_1_1_8_left_flip_up
-    del cosine_1_1_8_left_flip_up
-    s_1_1_9_left_flip_up = t642 + t643
-    del t642, t643
-    axisx_1_1_9_left_flip_up = T13 * c_1_1_9_left_flip_up + T23 * s_1_1_9_left_flip_up
-    t644 = axisx_1_1_9_left_flip_up * axisx_1_1_9_left_flip_up
-    t645 = T13 * s_1_1_9_left_flip_up - T23 * c_1_1_9_left_flip_up
-    most_1_1_9_left_flip_up = np.sqrt(t644 + t645 * t645)
-    t646 = most_1_1_9_left_flip_up <= 8.881784197001252e-16
-    qx_1_1_9_left_flip_up = w_x * c_1_1_9_left_flip_up + w_y * s_1_1_9_left_flip_up
-    t647 = qx_1_1_9_left_flip_up * qx_1_1_9_left_flip_up
-    r_1_1_9_left_flip_up = np.sqrt(t85 + t647)
-    del t647
-    t648 = r_1_1_9_left_flip_up <= t86
-    t649 = d5 + r_1_1_9_left_flip_up
-    h_1_1_9_left_flip_up = np.sqrt(t5 + t644)
-    del t644
-    t650 = h_1_1_9_left_flip_up == 0.0
-    t651 = 1.0 / h_1_1_9_left_flip_up
-    del h_1_1_9_left_flip_up
-    t652 = _runtime.select(t650, 0.0, T33 * t651)
-    t653 = qx_1_1_9_left_flip_up + d5 * t652
-    t654 = _runtime.select(t650, 1.0, -(axisx_1_1_9_left_flip_up * t651))
-    del t650, t651
-    t655 = t23 - d5 * t654
-    t656 = np.maximum(np.sqrt(t653 * t653 + t655 * t655), fold_1_1)
-    del t653, t655
-    goal_1_1_9_left_flip_up = np.minimum(full_1_1, t656)
-    del t656
-    t657 = (t649 - goal_1_1_9_left_flip_up) * (t649 + goal_1_1_9_left_flip_up)
-    k_v_1_1_9_left_flip_up = np.maximum(0.0, t657)
-    del t657
-    t658 = d5 - r_1_1_9_left_flip_up
-    t659 = (goal_1_1_9_left_flip_up - t658) * (goal_1_1_9_left_flip_up + t658)
-    del goal_1_1_9_left_flip_up, t658
-    d_v_1_1_9_left_flip_up = np.maximum(0.0, t659)
-    del t659
-    n_v_1_1_9_left_flip_up = k_v_1_1_9_left_flip_up + d_v_1_1_9_left_flip_up
-    t660 = n_v_1_1_9_left_flip_up <= size * t649 * 8.881784197001252e-16
-    del t649
-    t661 = k_v_1_1_9_left_flip_up - d_v_1_1_9_left_flip_up
-    t662 = 1.0 / n_v_1_1_9_left_flip_up
-    del n_v_1_1_9_left_flip_up
-    uc_v_1_1_9_left_flip_up = _runtime.select(t660, 1.0, t661 * t662)
-    del t661
-    t663 = qx_1_1_9_left_flip_up * uc_v_1_1_9_left_flip_up
-    side_1_1_9_left_flip_up = _runtime.sign(-(qx_1_1_9_left_flip_up * t654 + t23 * t652))
-    del t652, t654
-    t664 = k_v_1_1_9_left_flip_up * d_v_1_1_9_left_flip_up
-    del d_v_1_1_9_left_flip_up, k_v_1_1_9_left_flip_up
-    t665 = 2.0 * side_1_1_9_left_flip_up * np.sqrt(t664)
-    del side_1_1_9_left_flip_up, t664
-    us_v_1_1_9_left_flip_up = _runtime.select(t660, 0.0, t662 * t665)
-    del t660, t662, t665
-    t666 = t23 * us_v_1_1_9_left_flip_up
-    t667 = 1.0 / r_1_1_9_left_flip_up
-    del r_1_1_9_left_flip_up
-    c_v_1_1_9_left_flip_up = _runtime.select(t648, 1.0, (t663 + t666) * t667)
-    t668 = -(T33 * c_v_1_1_9_left_flip_up) < 0.0
-    t669 = qx_1_1_9_left_flip_up * us_v_1_1_9_left_flip_up
-    del qx_1_1_9_left_flip_up, us_v_1_1_9_left_flip_up
-    t670 = t23 * uc_v_1_1_9_left_flip_up
-    del uc_v_1_1_9_left_flip_up
-    wc_1_1_9_left_flip_up = _runtime.select(t648, 0.0, t667 * (t669 + t670))
-    s_v_1_1_9_left_flip_up = _runtime.select(t648, 0.0, t667 * (t669 - t670))
-    del t669, t670
-    to_c_1_1_9_left_flip_up = _runtime.select(t668, wc_1_1_9_left_flip_up, -s_v_1_1_9_left_flip_up)
-    del s_v_1_1_9_left_flip_up, wc_1_1_9_left_flip_up
-    c_w_1_1_9_left_flip_up = _runtime.select(t648, 1.0, t667 * (t663 - t666))
-    del t648, t663, t666, t667
-    to_s_1_1_9_left_flip_up = _runtime.select(t668, c_w_1_1_9_left_flip_up, c_v_1_1_9_left_flip_up)
-    del c_v_1_1_9_left_flip_up, c_w_1_1_9_left_flip_up, t668
-    t671 = T33 * to_c_1_1_9_left_flip_up * _runtime.sign(to_s_1_1_9_left_flip_up)
-    del to_c_1_1_9_left_flip_up
-    across_1_1_9_left_flip_up = _runtime.select(t84, 0.0, t671)
-    del t671
-    t672 = np.abs(to_s_1_1_9_left_flip_up)
-    del to_s_1_1_9_left_flip_up
-    t673 = most_1_1_9_left_flip_up * t672 <= np.abs(across_1_1_9_left_flip_up)
-    t674 = most_1_1_9_left_flip_up * _runtime.sign(across_1_1_9_left_flip_up)
-    t675 = _runtime.select(t673, t674, across_1_1_9_left_flip_up / t672)
-    del t672, t673, t674
-    wanted_1_1_9_left_flip_up = _runtime.select(across_1_1_9_left_flip_up == 0.0, 0.0, t675)
-    del across_1_1_9_left_flip_up, t675
-    t676 = axisx_1_1_9_left_flip_up * wanted_1_1_9_left_flip_up
-    t677 = most_1_1_9_left_flip_up - wanted_1_1_9_left_flip_up
-    t678 = most_1_1_9_left_flip_up + wanted_1_1_9_left_flip_up
-    rest_1_1_9_left_flip_up = np.sqrt(np.maximum(0.0, t677 * t678)) * _runtime.sign(-t645)
-    del t677, t678
-    t679 = most_1_1_9_left_flip_up * most_1_1_9_left_flip_up
-    del most_1_1_9_left_flip_up
-    t680 = 1.0 / t679
-    del t679
-    t681 = (t676 - t645 * rest_1_1_9_left_flip_up) * t680
-    del t676
-    by_c_1_1_9_left_flip_up = _runtime.select(t646, 1.0, t681)
-    del t681
-    t682 = axisx_1_1_9_left_flip_up * rest_1_1_9_left_flip_up
-    del axisx_1_1_9_left_flip_up, rest_1_1_9_left_flip_up
-    t683 = t680 * (t682 + t645 * wanted_1_1_9_left_flip_up)
-    del t645, t680, t682, wanted_1_1_9_left_flip_up
-    t684 = _runtime.select(t646, 0.0, t683)
-    del t646, t683
-    t685 = t684 * t684 / (1.0 + np.abs(by_c_1_1_9_left_flip_up))
-    versine_1_1_9_left_flip_up = _runtime.select(0.0 < by_c_1_1_9_left_flip_up, t685, 1.0 - by_c_1_1_9_left_flip_up)
-    del t685
-    cost_1_1_9_left_flip_up = d4 * versine_1_1_9_left_flip_up + root1 * np.abs(t684)
-    del versine_1_1_9_left_flip_up
-    t686 = cost_1_1_9_left_flip_up <= whole_1_1
-    del cost_1_1_9_left_flip_up
-    cosine_1_1_9_left_flip_up = _runtime.select(t686, by_c_1_1_9_left_flip_up, 1.0)
-    del by_c_1_1_9_left_flip_up
-    t687 = c_1_1_9_left_flip_up * cosine_1_1_9_left_flip_up
-    sine_1_1_9_left_flip_up = _runtime.select(t686, -t684, 0.0)
-    del t684, t686
-    t688 = s_1_1_9_left_flip_up * sine_1_1_9_left_flip_up
-    c_1_1_10_left_flip_up = t687 - t688
-    del t687, t688
-    t689 = c_1_1_9_left_flip_up * sine_1_1_9_left_flip_up
-    del c_1_1_9_left_flip_up, sine_1_1_9_left_flip_up
-    t690 = s_1_1_9_left_flip_up * cosine_1_1_9_left_flip_up
-    del cosine_1_1_9_left_flip_up, s_1_1_9_left_flip_up
-    s_1_1_10_left_flip_up = t689 + t690
-    del t689, t690
-    axisx_1_1_10_left_flip_up = T13 * c_1_1_10_left_flip_up + T23 * s_1_1_10_left_flip_up
-    t691 = axisx_1_1_10_left_flip_up * axisx_1_1_10_left_flip_up
-    t692 = T13 * s_1_1_10_left_flip_up - T23 * c_1_1_10_left_flip_up
-    most_1_1_10_left_flip_up = np.sqrt(t691 + t692 * t692)
-    t693 = most_1_1_10_left_flip_up <= 8.881784197001252e-16
-    qx_1_1_10_left_flip_up = w_x * c_1_1_10_left_flip_up + w_y * s_1_1_10_left_flip_up
-    t694 = qx_1_1_10_left_flip_up * qx_1_1_10_left_flip_up
-    r_1_1_10_left_flip_up = np.sqrt(t85 + t694)
-    del t694
-    t695 = r_1_1_10_left_flip_up <= t86
-    t696 = d5 + r_1_1_10_left_flip_up
-    h_1_1_10_left_flip_up = np.sqrt(t5 + t691)
-    del t691
-    t697 = h_1_1_10_left_flip_up == 0.0
-    t698 = 1.0 / h_1_1_10_left_flip_up
-    del h_1_1_10_left_flip_up
-    t699 = _runtime.select(t697, 0.0, T33 * t698)
-    t700 = qx_1_1_10_left_flip_up + d5 * t699
-    t701 = _runtime.select(t697, 1.0, -(axisx_1_1_10_left_flip_up * t698))
-    del t697, t698
-    t702 = t23 - d5 * t701
-    t703 = np.maximum(np.sqrt(t700 * t700 + t702 * t702), fold_1_1)
-    del t700, t702
-    goal_1_1_10_left_flip_up = np.minimum(full_1_1, t703)
-    del t703
-    t704 = (t696 - goal_1_1_10_left_flip_up) * (t696 + goal_1_1_10_left_flip_up)
-    k_v_1_1_10_left_flip_up = np.maximum(0.0, t704)
-    del t704
-    t705 = d5 - r_1_1_10_left_flip_up
-    t706 = (goal_1_1_10_left_flip_up - t705) * (goal_1_1_10_left_flip_up + t705)
-    del goal_1_1_10_left_flip_up, t705
-    d_v_1_1_10_left_flip_up = np.maximum(0.0, t706)
+    t705 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    t706 = T33 * t705 / (h_1_1_2_left_flip_up * h_1_1_2_left_flip_up)
+    del h_1_1_2_left_flip_up, t705
+    spin_1_1_2_left_flip_up = _runtime.select(t701, 0.0, t706)
     del t706
-    n_v_1_1_10_left_flip_up = k_v_1_1_10_left_flip_up + d_v_1_1_10_left_flip_up
-    t707 = n_v_1_1_10_left_flip_up <= size * t696 * 8.881784197001252e-16
-    del t696
-    t708 = k_v_1_1_10_left_flip_up - d_v_1_1_10_left_flip_up
-    t709 = 1.0 / n_v_1_1_10_left_flip_up
-    del n_v_1_1_10_left_flip_up
-    uc_v_1_1_10_left_flip_up = _runtime.select(t707, 1.0, t708 * t709)
+    rate_1_1_2_left_flip_up = d5 * spin_1_1_2_left_flip_up
+    t707 = _runtime.select(t702, 1.0, -(axisx_1_1_2_left_flip_up * t703))
+    del axisx_1_1_2_left_flip_up, t702, t703
+    t708 = dqx_1_1_2_left_flip_up - rate_1_1_2_left_flip_up * t707
+    dx_1_1_2_left_flip_up = _runtime.select(t701, dqx_1_1_2_left_flip_up, t708)
     del t708
-    t710 = qx_1_1_10_left_flip_up * uc_v_1_1_10_left_flip_up
-    t711 = -(qx_1_1_10_left_flip_up * t701 + t23 * t699)
-    del t699, t701
-    t712 = k_v_1_1_10_left_flip_up * d_v_1_1_10_left_flip_up
-    del d_v_1_1_10_left_flip_up, k_v_1_1_10_left_flip_up
-    t713 = t709 * (2.0 * _runtime.sign(t711) * np.sqrt(t712))
-    del t709, t711, t712
-    us_v_1_1_10_left_flip_up = _runtime.select(t707, 0.0, t713)
-    del t707, t713
-    t714 = t23 * us_v_1_1_10_left_flip_up
-    t715 = 1.0 / r_1_1_10_left_flip_up
-    del r_1_1_10_left_flip_up
-    c_v_1_1_10_left_flip_up = _runtime.select(t695, 1.0, (t710 + t714) * t715)
-    t716 = -(T33 * c_v_1_1_10_left_flip_up) < 0.0
-    t717 = qx_1_1_10_left_flip_up * us_v_1_1_10_left_flip_up
-    del qx_1_1_10_left_flip_up, us_v_1_1_10_left_flip_up
-    t718 = t23 * uc_v_1_1_10_left_flip_up
-    del uc_v_1_1_10_left_flip_up
-    wc_1_1_10_left_flip_up = _runtime.select(t695, 0.0, t715 * (t717 + t718))
-    s_v_1_1_10_left_flip_up = _runtime.select(t695, 0.0, t715 * (t717 - t718))
-    del t717, t718
-    to_c_1_1_10_left_flip_up = _runtime.select(t716, wc_1_1_10_left_flip_up, -s_v_1_1_10_left_flip_up)
-    del s_v_1_1_10_left_flip_up, wc_1_1_10_left_flip_up
-    c_w_1_1_10_left_flip_up = _runtime.select(t695, 1.0, t715 * (t710 - t714))
-    del t695, t710, t714, t715
-    to_s_1_1_10_left_flip_up = _runtime.select(t716, c_w_1_1_10_left_flip_up, c_v_1_1_10_left_flip_up)
-    del c_v_1_1_10_left_flip_up, c_w_1_1_10_left_flip_up, t716
-    t719 = T33 * to_c_1_1_10_left_flip_up * _runtime.sign(to_s_1_1_10_left_flip_up)
-    del to_c_1_1_10_left_flip_up
-    across_1_1_10_left_flip_up = _runtime.select(t84, 0.0, t719)
+    t709 = _runtime.select(t701, t23, t23 - d5 * t707)
+    dy_1_1_2_left_flip_up = _runtime.select(t701, 0.0, rate_1_1_2_left_flip_up * t704)
+    slope_1_1_2_left_flip_up = x_1_1_2_left_flip_up * dx_1_1_2_left_flip_up - t709 * dy_1_1_2_left_flip_up
+    del dx_1_1_2_left_flip_up, dy_1_1_2_left_flip_up
+    t710 = slope_1_1_2_left_flip_up * slope_1_1_2_left_flip_up
+    straight_1_1_2_left_flip_up = dqx_1_1_2_left_flip_up * dqx_1_1_2_left_flip_up
+    t711 = spin_1_1_2_left_flip_up * (qx_1_1_2_left_flip_up * t704 - t23 * t707)
+    del qx_1_1_2_left_flip_up, spin_1_1_2_left_flip_up, t704
+    t712 = rate_1_1_2_left_flip_up * (2.0 * dqx_1_1_2_left_flip_up * t707 + t711)
+    del dqx_1_1_2_left_flip_up, rate_1_1_2_left_flip_up, t707, t711
+    bends_1_1_2_left_flip_up = _runtime.select(t701, straight_1_1_2_left_flip_up, straight_1_1_2_left_flip_up - t712)
+    del straight_1_1_2_left_flip_up, t712
+    square_1_1_2_left_flip_up = x_1_1_2_left_flip_up * x_1_1_2_left_flip_up + t709 * t709
+    del t709, x_1_1_2_left_flip_up
+    t713 = _runtime.select(t701, t98, fold_1_1) - whole_1_1
+    t714 = np.maximum(0.0, t713)
+    del t713
+    t715 = whole_1_1 + _runtime.select(t701, t3, full_1_1)
+    del t701
+    t716 = np.minimum(t715 * t715, square_1_1_2_left_flip_up)
+    del t715
+    miss_1_1_2_left_flip_up = square_1_1_2_left_flip_up - np.maximum(t714 * t714, t716)
+    del square_1_1_2_left_flip_up, t714, t716
+    t717 = bends_1_1_2_left_flip_up * miss_1_1_2_left_flip_up
+    inner_1_1_2_left_flip_up = t710 - t717
+    del t710, t717
+    t718 = inner_1_1_2_left_flip_up < 0.0
+    t719 = np.sqrt(np.maximum(0.0, inner_1_1_2_left_flip_up))
+    del inner_1_1_2_left_flip_up
+    t720 = _runtime.sign(slope_1_1_2_left_flip_up) * t719
     del t719
-    t720 = np.abs(to_s_1_1_10_left_flip_up)
-    del to_s_1_1_10_left_flip_up
-    t721 = most_1_1_10_left_flip_up * t720 <= np.abs(across_1_1_10_left_flip_up)
-    t722 = most_1_1_10_left_flip_up * _runtime.sign(across_1_1_10_left_flip_up)
-    t723 = _runtime.select(t721, t722, across_1_1_10_left_flip_up / t720)
-    del t720, t721, t722
-    wanted_1_1_10_left_flip_up = _runtime.select(across_1_1_10_left_flip_up == 0.0, 0.0, t723)
-    del across_1_1_10_left_flip_up, t723
-    t724 = axisx_1_1_10_left_flip_up * wanted_1_1_10_left_flip_up
-    t725 = most_1_1_10_left_flip_up - wanted_1_1_10_left_flip_up
-    t726 = most_1_1_10_left_flip_up + wanted_1_1_10_left_flip_up
-    rest_1_1_10_left_flip_up = np.sqrt(np.maximum(0.0, t725 * t726)) * _runtime.sign(-t692)
-    del t725, t726
-    t727 = most_1_1_10_left_flip_up * most_1_1_10_left_flip_up
-    del most_1_1_10_left_flip_up
-    t728 = 1.0 / t727
-    del t727
-    t729 = (t724 - t692 * rest_1_1_10_left_flip_up) * t728
+    below_1_1_2_left_flip_up = _runtime.select(t718, 2.0 * bends_1_1_2_left_flip_up, 2.0 * (slope_1_1_2_left_flip_up + t720))
+    del bends_1_1_2_left_flip_up, t720
+    above_1_1_2_left_flip_up = _runtime.select(t718, slope_1_1_2_left_flip_up, miss_1_1_2_left_flip_up)
+    del miss_1_1_2_left_flip_up, slope_1_1_2_left_flip_up, t718
+    t721 = np.abs(below_1_1_2_left_flip_up) <= np.abs(above_1_1_2_left_flip_up)
+    t722 = above_1_1_2_left_flip_up / below_1_1_2_left_flip_up
+    del above_1_1_2_left_flip_up, below_1_1_2_left_flip_up
+    t723 = _runtime.select(t721, 0.0, t722)
+    del t721, t722
+    t724 = t723 * t723
+    t725 = 1.0 / (1.0 + t724)
+    by_c_1_1_2_left_flip_up = (1.0 - t724) * t725
     del t724
-    by_c_1_1_10_left_flip_up = _runtime.select(t693, 1.0, t729)
-    del t729
-    t730 = axisx_1_1_10_left_flip_up * rest_1_1_10_left_flip_up
-    del axisx_1_1_10_left_flip_up, rest_1_1_10_left_flip_up
-    t731 = t728 * (t730 + t692 * wanted_1_1_10_left_flip_up)
-    del t692, t728, t730, wanted_1_1_10_left_flip_up
-    t732 = _runtime.select(t693, 0.0, t731)
-    del t693, t731
-    t733 = t732 * t732 / (1.0 + np.abs(by_c_1_1_10_left_flip_up))
-    versine_1_1_10_left_flip_up = _runtime.select(0.0 < by_c_1_1_10_left_flip_up, t733, 1.0 - by_c_1_1_10_left_flip_up)
+    t726 = t725 * (2.0 * t723)
+    del t723, t725
+    t727 = t726 * t726 / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    versine_1_1_2_left_flip_up = _runtime.select(0.0 < by_c_1_1_2_left_flip_up, t727, 1.0 - by_c_1_1_2_left_flip_up)
+    del t727
+    cost_1_1_2_left_flip_up = d4 * versine_1_1_2_left_flip_up + root1 * np.abs(t726)
+    del versine_1_1_2_left_flip_up
+    t728 = cost_1_1_2_left_flip_up <= whole_1_1
+    del cost_1_1_2_left_flip_up
+    cosine_1_1_2_left_flip_up = _runtime.select(t728, by_c_1_1_2_left_flip_up, 1.0)
+    del by_c_1_1_2_left_flip_up
+    t729 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t728, -t726, 0.0)
+    del t726, t728
+    t730 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_3_left_flip_up = t729 - t730
+    del t729, t730
+    t731 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
+    t732 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
+    s_1_1_3_left_flip_up = t731 + t732
+    del t731, t732
+    axisx_1_1_3_left_flip_up = T13 * c_1_1_3_left_flip_up + T23 * s_1_1_3_left_flip_up
+    t733 = axisx_1_1_3_left_flip_up * axisx_1_1_3_left_flip_up
+    h_1_1_3_left_flip_up = np.sqrt(t5 + t733)
     del t733
-    cost_1_1_10_left_flip_up = d4 * versine_1_1_10_left_flip_up + root1 * np.abs(t732)
-    del versine_1_1_10_left_flip_up
-    t734 = cost_1_1_10_left_flip_up <= whole_1_1
-    del cost_1_1_10_left_flip_up
-    cosine_1_1_10_left_flip_up = _runtime.select(t734, by_c_1_1_10_left_flip_up, 1.0)
-    del by_c_1_1_10_left_flip_up
-    t735 = c_1_1_10_left_flip_up * cosine_1_1_10_left_flip_up
-    sine_1_1_10_left_flip_up = _runtime.select(t734, -t732, 0.0)
-    del t732, t734
-    t736 = s_1_1_10_left_flip_up * sine_1_1_10_left_flip_up
-    c_1_1_11_left_flip_up = t735 - t736
-    del t735, t736
-    t737 = c_1_1_10_left_flip_up * sine_1_1_10_left_flip_up
-    del c_1_1_10_left_flip_up, sine_1_1_10_left_flip_up
-    t738 = s_1_1_10_left_flip_up * cosine_1_1_10_left_flip_up
-    del cosine_1_1_10_left_flip_up, s_1_1_10_left_flip_up
-    s_1_1_11_left_flip_up = t737 + t738
-    del t737, t738
-    axisx_1_1_11_left_flip_up = T13 * c_1_1_11_left_flip_up + T23 * s_1_1_11_left_flip_up
-    t739 = axisx_1_1_11_left_flip_up * axisx_1_1_11_left_flip_up
-    h_1_1_11_left_flip_up = np.sqrt(t5 + t739)
+    t734 = h_1_1_3_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_3_left_flip_up = w_x * c_1_1_3_left_flip_up + w_y * s_1_1_3_left_flip_up
+    t735 = h_1_1_3_left_flip_up == 0.0
+    t736 = 1.0 / h_1_1_3_left_flip_up
+    t737 = _runtime.select(t735, 0.0, T33 * t736)
+    x_1_1_3_left_flip_up = _runtime.select(t734, qx_1_1_3_left_flip_up, qx_1_1_3_left_flip_up + d5 * t737)
+    dqx_1_1_3_left_flip_up = w_y * c_1_1_3_left_flip_up - w_x * s_1_1_3_left_flip_up
+    t738 = T13 * s_1_1_3_left_flip_up - T23 * c_1_1_3_left_flip_up
+    t739 = T33 * t738 / (h_1_1_3_left_flip_up * h_1_1_3_left_flip_up)
+    del h_1_1_3_left_flip_up, t738
+    spin_1_1_3_left_flip_up = _runtime.select(t734, 0.0, t739)
     del t739
-    t740 = h_1_1_11_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_11_left_flip_up = w_x * c_1_1_11_left_flip_up + w_y * s_1_1_11_left_flip_up
-    t741 = h_1_1_11_left_flip_up == 0.0
-    t742 = 1.0 / h_1_1_11_left_flip_up
-    t743 = _runtime.select(t741, 0.0, T33 * t742)
-    x_1_1_11_left_flip_up = _runtime.select(t740, qx_1_1_11_left_flip_up, qx_1_1_11_left_flip_up + d5 * t743)
-    dqx_1_1_11_left_flip_up = w_y * c_1_1_11_left_flip_up - w_x * s_1_1_11_left_flip_up
-    t744 = T13 * s_1_1_11_left_flip_up - T23 * c_1_1_11_left_flip_up
-    t745 = h_1_1_11_left_flip_up * h_1_1_11_left_flip_up
-    del h_1_1_11_left_flip_up
-    spin_1_1_11_left_flip_up = _runtime.select(t740, 0.0, T33 * t744 / t745)
-    del t744, t745
-    rate_1_1_11_left_flip_up = d5 * spin_1_1_11_left_flip_up
-    t746 = _runtime.select(t741, 1.0, -(axisx_1_1_11_left_flip_up * t742))
-    del axisx_1_1_11_left_flip_up, t741, t742
-    t747 = dqx_1_1_11_left_flip_up - rate_1_1_11_left_flip_up * t746
-    dx_1_1_11_left_flip_up = _runtime.select(t740, dqx_1_1_11_left_flip_up, t747)
-    del t747
-    t748 = x_1_1_11_left_flip_up * dx_1_1_11_left_flip_up
-    del dx_1_1_11_left_flip_up
-    t749 = _runtime.select(t740, t23, t23 - d5 * t746)
-    dy_1_1_11_left_flip_up = _runtime.select(t740, 0.0, rate_1_1_11_left_flip_up * t743)
-    slope_1_1_11_left_flip_up = t748 - t749 * dy_1_1_11_left_flip_up
-    del dy_1_1_11_left_flip_up, t748
-    t750 = slope_1_1_11_left_flip_up * slope_1_1_11_left_flip_up
-    straight_1_1_11_left_flip_up = dqx_1_1_11_left_flip_up * dqx_1_1_11_left_flip_up
-    t751 = spin_1_1_11_left_flip_up * (qx_1_1_11_left_flip_up * t743 - t23 * t746)
-    del qx_1_1_11_left_flip_up, spin_1_1_11_left_flip_up, t743
-    t752 = rate_1_1_11_left_flip_up * (2.0 * dqx_1_1_11_left_flip_up * t746 + t751)
-    del dqx_1_1_11_left_flip_up, rate_1_1_11_left_flip_up, t746, t751
-    bends_1_1_11_left_flip_up = _runtime.select(t740, straight_1_1_11_left_flip_up, straight_1_1_11_left_flip_up - t752)
-    del straight_1_1_11_left_flip_up, t752
-    t753 = x_1_1_11_left_flip_up * x_1_1_11_left_flip_up
-    del x_1_1_11_left_flip_up
-    square_1_1_11_left_flip_up = t753 + t749 * t749
-    del t749, t753
-    t754 = _runtime.select(t740, t29, fold_1_1) - whole_1_1
-    t755 = np.maximum(0.0, t754)
-    del t754
-    t756 = whole_1_1 + _runtime.select(t740, t3, full_1_1)
-    del t740
-    t757 = np.minimum(t756 * t756, square_1_1_11_left_flip_up)
-    del t756
-    miss_1_1_11_left_flip_up = square_1_1_11_left_flip_up - np.maximum(t755 * t755, t757)
-    del square_1_1_11_left_flip_up, t755, t757
-    t758 = bends_1_1_11_left_flip_up * miss_1_1_11_left_flip_up
-    inner_1_1_11_left_flip_up = t750 - t758
-    del t750, t758
-    t759 = inner_1_1_11_left_flip_up < 0.0
-    t760 = np.sqrt(np.maximum(0.0, inner_1_1_11_left_flip_up))
-    del inner_1_1_11_left_flip_up
-    t761 = _runtime.sign(slope_1_1_11_left_flip_up) * t760
+    rate_1_1_3_left_flip_up = d5 * spin_1_1_3_left_flip_up
+    t740 = _runtime.select(t735, 1.0, -(axisx_1_1_3_left_flip_up * t736))
+    del axisx_1_1_3_left_flip_up, t735, t736
+    t741 = dqx_1_1_3_left_flip_up - rate_1_1_3_left_flip_up * t740
+    dx_1_1_3_left_flip_up = _runtime.select(t734, dqx_1_1_3_left_flip_up, t741)
+    del t741
+    t742 = _runtime.select(t734, t23, t23 - d5 * t740)
+    dy_1_1_3_left_flip_up = _runtime.select(t734, 0.0, rate_1_1_3_left_flip_up * t737)
+    slope_1_1_3_left_flip_up = x_1_1_3_left_flip_up * dx_1_1_3_left_flip_up - t742 * dy_1_1_3_left_flip_up
+    del dx_1_1_3_left_flip_up, dy_1_1_3_left_flip_up
+    t743 = slope_1_1_3_left_flip_up * slope_1_1_3_left_flip_up
+    straight_1_1_3_left_flip_up = dqx_1_1_3_left_flip_up * dqx_1_1_3_left_flip_up
+    t744 = spin_1_1_3_left_flip_up * (qx_1_1_3_left_flip_up * t737 - t23 * t740)
+    del qx_1_1_3_left_flip_up, spin_1_1_3_left_flip_up, t737
+    t745 = rate_1_1_3_left_flip_up * (2.0 * dqx_1_1_3_left_flip_up * t740 + t744)
+    del dqx_1_1_3_left_flip_up, rate_1_1_3_left_flip_up, t740, t744
+    bends_1_1_3_left_flip_up = _runtime.select(t734, straight_1_1_3_left_flip_up, straight_1_1_3_left_flip_up - t745)
+    del straight_1_1_3_left_flip_up, t745
+    square_1_1_3_left_flip_up = x_1_1_3_left_flip_up * x_1_1_3_left_flip_up + t742 * t742
+    del t742, x_1_1_3_left_flip_up
+    t746 = _runtime.select(t734, t98, fold_1_1) - whole_1_1
+    t747 = np.maximum(0.0, t746)
+    del t746
+    t748 = whole_1_1 + _runtime.select(t734, t3, full_1_1)
+    del t734
+    t749 = np.minimum(t748 * t748, square_1_1_3_left_flip_up)
+    del t748
+    miss_1_1_3_left_flip_up = square_1_1_3_left_flip_up - np.maximum(t747 * t747, t749)
+    del square_1_1_3_left_flip_up, t747, t749
+    t750 = bends_1_1_3_left_flip_up * miss_1_1_3_left_flip_up
+    inner_1_1_3_left_flip_up = t743 - t750
+    del t743, t750
+    t751 = inner_1_1_3_left_flip_up < 0.0
+    t752 = np.sqrt(np.maximum(0.0, inner_1_1_3_left_flip_up))
+    del inner_1_1_3_left_flip_up
+    t753 = _runtime.sign(slope_1_1_3_left_flip_up) * t752
+    del t752
+    below_1_1_3_left_flip_up = _runtime.select(t751, 2.0 * bends_1_1_3_left_flip_up, 2.0 * (slope_1_1_3_left_flip_up + t753))
+    del bends_1_1_3_left_flip_up, t753
+    above_1_1_3_left_flip_up = _runtime.select(t751, slope_1_1_3_left_flip_up, miss_1_1_3_left_flip_up)
+    del miss_1_1_3_left_flip_up, slope_1_1_3_left_flip_up, t751
+    t754 = np.abs(below_1_1_3_left_flip_up) <= np.abs(above_1_1_3_left_flip_up)
+    t755 = above_1_1_3_left_flip_up / below_1_1_3_left_flip_up
+    del above_1_1_3_left_flip_up, below_1_1_3_left_flip_up
+    t756 = _runtime.select(t754, 0.0, t755)
+    del t754, t755
+    t757 = t756 * t756
+    t758 = 1.0 / (1.0 + t757)
+    by_c_1_1_3_left_flip_up = (1.0 - t757) * t758
+    del t757
+    t759 = t758 * (2.0 * t756)
+    del t756, t758
+    t760 = t759 * t759 / (1.0 + np.abs(by_c_1_1_3_left_flip_up))
+    versine_1_1_3_left_flip_up = _runtime.select(0.0 < by_c_1_1_3_left_flip_up, t760, 1.0 - by_c_1_1_3_left_flip_up)
     del t760
-    below_1_1_11_left_flip_up = _runtime.select(t759, 2.0 * bends_1_1_11_left_flip_up, 2.0 * (slope_1_1_11_left_flip_up + t761))
-    del bends_1_1_11_left_flip_up, t761
-    above_1_1_11_left_flip_up = _runtime.select(t759, slope_1_1_11_left_flip_up, miss_1_1_11_left_flip_up)
-    del miss_1_1_11_left_flip_up, slope_1_1_11_left_flip_up, t759
-    t762 = np.abs(below_1_1_11_left_flip_up) <= np.abs(above_1_1_11_left_flip_up)
-    t763 = above_1_1_11_left_flip_up / below_1_1_11_left_flip_up
-    del above_1_1_11_left_flip_up, below_1_1_11_left_flip_up
-    t764 = _runtime.select(t762, 0.0, t763)
+    cost_1_1_3_left_flip_up = d4 * versine_1_1_3_left_flip_up + root1 * np.abs(t759)
+    del versine_1_1_3_left_flip_up
+    t761 = cost_1_1_3_left_flip_up <= whole_1_1
+    del cost_1_1_3_left_flip_up
+    cosine_1_1_3_left_flip_up = _runtime.select(t761, by_c_1_1_3_left_flip_up, 1.0)
+    del by_c_1_1_3_left_flip_up
+    t762 = c_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
+    sine_1_1_3_left_flip_up = _runtime.select(t761, -t759, 0.0)
+    del t759, t761
+    t763 = s_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
+    c_1_1_4_left_flip_up = t762 - t763
     del t762, t763
-    t765 = t764 * t764
-    t766 = 1.0 / (1.0 + t765)
-    by_c_1_1_11_left_flip_up = (1.0 - t765) * t766
-    del t765
-    t767 = t766 * (2.0 * t764)
-    del t764, t766
-    t768 = t767 * t767 / (1.0 + np.abs(by_c_1_1_11_left_flip_up))
-    versine_1_1_11_left_flip_up = _runtime.select(0.0 < by_c_1_1_11_left_flip_up, t768, 1.0 - by_c_1_1_11_left_flip_up)
-    del t768
-    cost_1_1_11_left_flip_up = d4 * versine_1_1_11_left_flip_up + root1 * np.abs(t767)
-    del versine_1_1_11_left_flip_up
-    t769 = cost_1_1_11_left_flip_up <= whole_1_1
-    del cost_1_1_11_left_flip_up
-    cosine_1_1_11_left_flip_up = _runtime.select(t769, by_c_1_1_11_left_flip_up, 1.0)
-    del by_c_1_1_11_left_flip_up
-    t770 = c_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
-    sine_1_1_11_left_flip_up = _runtime.select(t769, -t767, 0.0)
-    del t767, t769
-    t771 = s_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
-    c_1_1_12_left_flip_up = t770 - t771
-    del t770, t771
-    t772 = c_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
-    del c_1_1_11_left_flip_up, sine_1_1_11_left_flip_up
-    t773 = s_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
-    del cosine_1_1_11_left_flip_up, s_1_1_11_left_flip_up
-    s_1_1_12_left_flip_up = t772 + t773
+    t764 = c_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
+    del c_1_1_3_left_flip_up, sine_1_1_3_left_flip_up
+    t765 = s_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
+    del cosine_1_1_3_left_flip_up, s_1_1_3_left_flip_up
+    s_1_1_4_left_flip_up = t764 + t765
+    del t764, t765
+    axisx_1_1_4_left_flip_up = T13 * c_1_1_4_left_flip_up + T23 * s_1_1_4_left_flip_up
+    t766 = axisx_1_1_4_left_flip_up * axisx_1_1_4_left_flip_up
+    t767 = T13 * s_1_1_4_left_flip_up - T23 * c_1_1_4_left_flip_up
+    most_1_1_4_left_flip_up = np.sqrt(t766 + t767 * t767)
+    t768 = most_1_1_4_left_flip_up <= 8.881784197001252e-16
+    qx_1_1_4_left_flip_up = w_x * c_1_1_4_left_flip_up + w_y * s_1_1_4_left_flip_up
+    t769 = qx_1_1_4_left_flip_up * qx_1_1_4_left_flip_up
+    r_1_1_4_left_flip_up = np.sqrt(t24 + t769)
+    del t769
+    t770 = r_1_1_4_left_flip_up <= t25
+    t771 = d5 + r_1_1_4_left_flip_up
+    h_1_1_4_left_flip_up = np.sqrt(t5 + t766)
+    del t766
+    t772 = h_1_1_4_left_flip_up == 0.0
+    t773 = 1.0 / h_1_1_4_left_flip_up
+    t774 = _runtime.select(t772, 0.0, T33 * t773)
+    t775 = qx_1_1_4_left_flip_up + d5 * t774
+    t776 = _runtime.select(t772, 1.0, -(axisx_1_1_4_left_flip_up * t773))
     del t772, t773
-    axisx_1_1_12_left_flip_up = T13 * c_1_1_12_left_flip_up + T23 * s_1_1_12_left_flip_up
-    t774 = axisx_1_1_12_left_flip_up * axisx_1_1_12_left_flip_up
-    h_1_1_12_left_flip_up = np.sqrt(t5 + t774)
-    del t774
-    t775 = h_1_1_12_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_12_left_flip_up = w_x * c_1_1_12_left_flip_up + w_y * s_1_1_12_left_flip_up
-    t776 = h_1_1_12_left_flip_up == 0.0
-    t777 = 1.0 / h_1_1_12_left_flip_up
-    t778 = _runtime.select(t776, 0.0, T33 * t777)
-    x_1_1_12_left_flip_up = _runtime.select(t775, qx_1_1_12_left_flip_up, qx_1_1_12_left_flip_up + d5 * t778)
-    dqx_1_1_12_left_flip_up = w_y * c_1_1_12_left_flip_up - w_x * s_1_1_12_left_flip_up
-    t779 = T13 * s_1_1_12_left_flip_up - T23 * c_1_1_12_left_flip_up
-    t780 = h_1_1_12_left_flip_up * h_1_1_12_left_flip_up
-    del h_1_1_12_left_flip_up
-    spin_1_1_12_left_flip_up = _runtime.select(t775, 0.0, T33 * t779 / t780)
-    del t779, t780
-    rate_1_1_12_left_flip_up = d5 * spin_1_1_12_left_flip_up
-    t781 = _runtime.select(t776, 1.0, -(axisx_1_1_12_left_flip_up * t777))
-    del axisx_1_1_12_left_flip_up, t776, t777
-    t782 = dqx_1_1_12_left_flip_up - rate_1_1_12_left_flip_up * t781
-    dx_1_1_12_left_flip_up = _runtime.select(t775, dqx_1_1_12_left_flip_up, t782)
-    del t782
-    t783 = x_1_1_12_left_flip_up * dx_1_1_12_left_flip_up
-    del dx_1_1_12_left_flip_up
-    t784 = _runtime.select(t775, t23, t23 - d5 * t781)
-    dy_1_1_12_left_flip_up = _runtime.select(t775, 0.0, rate_1_1_12_left_flip_up * t778)
-    slope_1_1_12_left_flip_up = t783 - t784 * dy_1_1_12_left_flip_up
-    del dy_1_1_12_left_flip_up, t783
-    t785 = slope_1_1_12_left_flip_up * slope_1_1_12_left_flip_up
-    straight_1_1_12_left_flip_up = dqx_1_1_12_left_flip_up * dqx_1_1_12_left_flip_up
-    t786 = spin_1_1_12_left_flip_up * (qx_1_1_12_left_flip_up * t778 - t23 * t781)
-    del qx_1_1_12_left_flip_up, spin_1_1_12_left_flip_up, t778
-    t787 = rate_1_1_12_left_flip_up * (2.0 * dqx_1_1_12_left_flip_up * t781 + t786)
-    del dqx_1_1_12_left_flip_up, rate_1_1_12_left_flip_up, t781, t786
-    bends_1_1_12_left_flip_up = _runtime.select(t775, straight_1_1_12_left_flip_up, straight_1_1_12_left_flip_up - t787)
-    del straight_1_1_12_left_flip_up, t787
-    t788 = x_1_1_12_left_flip_up * x_1_1_12_left_flip_up
-    del x_1_1_12_left_flip_up
-    square_1_1_12_left_flip_up = t788 + t784 * t784
-    del t784, t788
-    t789 = _runtime.select(t775, t29, fold_1_1) - whole_1_1
-    t790 = np.maximum(0.0, t789)
-    del t789
-    t791 = whole_1_1 + _runtime.select(t775, t3, full_1_1)
-    del t775
-    t792 = np.minimum(t791 * t791, square_1_1_12_left_flip_up)
-    del t791
-    miss_1_1_12_left_flip_up = square_1_1_12_left_flip_up - np.maximum(t790 * t790, t792)
-    del square_1_1_12_left_flip_up, t790, t792
-    t793 = bends_1_1_12_left_flip_up * miss_1_1_12_left_flip_up
-    inner_1_1_12_left_flip_up = t785 - t793
-    del t785, t793
-    t794 = inner_1_1_12_left_flip_up < 0.0
-    t795 = np.sqrt(np.maximum(0.0, inner_1_1_12_left_flip_up))
-    del inner_1_1_12_left_flip_up
-    t796 = _runtime.sign(slope_1_1_12_left_flip_up) * t795
-    del t795
-    below_1_1_12_left_flip_up = _runtime.select(t794, 2.0 * bends_1_1_12_left_flip_up, 2.0 * (slope_1_1_12_left_flip_up + t796))
-    del bends_1_1_12_left_flip_up, t796
-    above_1_1_12_left_flip_up = _runtime.select(t794, slope_1_1_12_left_flip_up, miss_1_1_12_left_flip_up)
-    del miss_1_1_12_left_flip_up, slope_1_1_12_left_flip_up, t794
-    t797 = np.abs(below_1_1_12_left_flip_up) <= np.abs(above_1_1_12_left_flip_up)
-    t798 = above_1_1_12_left_flip_up / below_1_1_12_left_flip_up
-    del above_1_1_12_left_flip_up, below_1_1_12_left_flip_up
-    t799 = _runtime.select(t797, 0.0, t798)
-    del t797, t798
-    t800 = t799 * t799
-    t801 = 1.0 / (1.0 + t800)
-    by_c_1_1_12_left_flip_up = (1.0 - t800) * t801
-    del t800
-    t802 = t801 * (2.0 * t799)
-    del t799, t801
-    t803 = t802 * t802 / (1.0 + np.abs(by_c_1_1_12_left_flip_up))
-    versine_1_1_12_left_flip_up = _runtime.select(0.0 < by_c_1_1_12_left_flip_up, t803, 1.0 - by_c_1_1_12_left_flip_up)
+    t777 = t23 - d5 * t776
+    t778 = np.maximum(np.sqrt(t775 * t775 + t777 * t777), fold_1_1)
+    goal_1_1_4_left_flip_up = np.minimum(full_1_1, t778)
+    del t778
+    t779 = (t771 - goal_1_1_4_left_flip_up) * (t771 + goal_1_1_4_left_flip_up)
+    k_v_1_1_4_left_flip_up = np.maximum(0.0, t779)
+    del t779
+    t780 = d5 - r_1_1_4_left_flip_up
+    t781 = (goal_1_1_4_left_flip_up - t780) * (goal_1_1_4_left_flip_up + t780)
+    del goal_1_1_4_left_flip_up, t780
+    d_v_1_1_4_left_flip_up = np.maximum(0.0, t781)
+    del t781
+    n_v_1_1_4_left_flip_up = k_v_1_1_4_left_flip_up + d_v_1_1_4_left_flip_up
+    t782 = n_v_1_1_4_left_flip_up <= size * t771 * 8.881784197001252e-16
+    del t771
+    t783 = k_v_1_1_4_left_flip_up - d_v_1_1_4_left_flip_up
+    t784 = 1.0 / n_v_1_1_4_left_flip_up
+    del n_v_1_1_4_left_flip_up
+    uc_v_1_1_4_left_flip_up = _runtime.select(t782, 1.0, t783 * t784)
+    del t783
+    t785 = qx_1_1_4_left_flip_up * uc_v_1_1_4_left_flip_up
+    side_1_1_4_left_flip_up = _runtime.sign(-(qx_1_1_4_left_flip_up * t776 + t23 * t774))
+    del t774, t776
+    t786 = k_v_1_1_4_left_flip_up * d_v_1_1_4_left_flip_up
+    del d_v_1_1_4_left_flip_up, k_v_1_1_4_left_flip_up
+    t787 = 2.0 * side_1_1_4_left_flip_up * np.sqrt(t786)
+    del side_1_1_4_left_flip_up, t786
+    us_v_1_1_4_left_flip_up = _runtime.select(t782, 0.0, t784 * t787)
+    del t782, t784, t787
+    t788 = t23 * us_v_1_1_4_left_flip_up
+    t789 = 1.0 / r_1_1_4_left_flip_up
+    del r_1_1_4_left_flip_up
+    c_v_1_1_4_left_flip_up = _runtime.select(t770, 1.0, (t785 + t788) * t789)
+    t790 = -(T33 * c_v_1_1_4_left_flip_up) < 0.0
+    t791 = qx_1_1_4_left_flip_up * us_v_1_1_4_left_flip_up
+    del us_v_1_1_4_left_flip_up
+    t792 = t23 * uc_v_1_1_4_left_flip_up
+    del uc_v_1_1_4_left_flip_up
+    wc_1_1_4_left_flip_up = _runtime.select(t770, 0.0, t789 * (t791 + t792))
+    s_v_1_1_4_left_flip_up = _runtime.select(t770, 0.0, t789 * (t791 - t792))
+    del t791, t792
+    to_c_1_1_4_left_flip_up = _runtime.select(t790, wc_1_1_4_left_flip_up, -s_v_1_1_4_left_flip_up)
+    del s_v_1_1_4_left_flip_up, wc_1_1_4_left_flip_up
+    c_w_1_1_4_left_flip_up = _runtime.select(t770, 1.0, t789 * (t785 - t788))
+    del t770, t785, t788, t789
+    to_s_1_1_4_left_flip_up = _runtime.select(t790, c_w_1_1_4_left_flip_up, c_v_1_1_4_left_flip_up)
+    del c_v_1_1_4_left_flip_up, c_w_1_1_4_left_flip_up, t790
+    t793 = T33 * to_c_1_1_4_left_flip_up * _runtime.sign(to_s_1_1_4_left_flip_up)
+    del to_c_1_1_4_left_flip_up
+    across_1_1_4_left_flip_up = _runtime.select(t22, 0.0, t793)
+    del t793
+    t794 = np.abs(to_s_1_1_4_left_flip_up)
+    del to_s_1_1_4_left_flip_up
+    t795 = most_1_1_4_left_flip_up * t794 <= np.abs(across_1_1_4_left_flip_up)
+    t796 = most_1_1_4_left_flip_up * _runtime.sign(across_1_1_4_left_flip_up)
+    t797 = _runtime.select(t795, t796, across_1_1_4_left_flip_up / t794)
+    del t794, t795, t796
+    wanted_1_1_4_left_flip_up = _runtime.select(across_1_1_4_left_flip_up == 0.0, 0.0, t797)
+    del across_1_1_4_left_flip_up, t797
+    t798 = axisx_1_1_4_left_flip_up * wanted_1_1_4_left_flip_up
+    t799 = most_1_1_4_left_flip_up - wanted_1_1_4_left_flip_up
+    t800 = most_1_1_4_left_flip_up + wanted_1_1_4_left_flip_up
+    rest_1_1_4_left_flip_up = np.sqrt(np.maximum(0.0, t799 * t800)) * _runtime.sign(-t767)
+    del t799, t800
+    t801 = most_1_1_4_left_flip_up * most_1_1_4_left_flip_up
+    del most_1_1_4_left_flip_up
+    t802 = 1.0 / t801
+    del t801
+    t803 = (t798 - t767 * rest_1_1_4_left_flip_up) * t802
+    del t798
+    by_c_1_1_4_left_flip_up = _runtime.select(t768, 1.0, t803)
     del t803
-    cost_1_1_12_left_flip_up = d4 * versine_1_1_12_left_flip_up + root1 * np.abs(t802)
-    del versine_1_1_12_left_flip_up
-    t804 = cost_1_1_12_left_flip_up <= whole_1_1
-    del cost_1_1_12_left_flip_up
-    cosine_1_1_12_left_flip_up = _runtime.select(t804, by_c_1_1_12_left_flip_up, 1.0)
-    del by_c_1_1_12_left_flip_up
-    t805 = c_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
-    sine_1_1_12_left_flip_up = _runtime.select(t804, -t802, 0.0)
-    del t802, t804
-    t806 = s_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
-    c_1_1_13_left_flip_up = t805 - t806
-    del t805, t806
-    t807 = c_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
-    del c_1_1_12_left_flip_up, sine_1_1_12_left_flip_up
-    t808 = s_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
-    del cosine_1_1_12_left_flip_up, s_1_1_12_left_flip_up
-    s_1_1_13_left_flip_up = t807 + t808
-    del t807, t808
-    axisx_1_1_13_left_flip_up = T13 * c_1_1_13_left_flip_up + T23 * s_1_1_13_left_flip_up
-    t809 = axisx_1_1_13_left_flip_up * axisx_1_1_13_left_flip_up
-    h_1_1_13_left_flip_up = np.sqrt(t5 + t809)
-    del t809
-    t810 = h_1_1_13_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_13_left_flip_up = w_x * c_1_1_13_left_flip_up + w_y * s_1_1_13_left_flip_up
-    t811 = h_1_1_13_left_flip_up == 0.0
-    t812 = 1.0 / h_1_1_13_left_flip_up
-    t813 = _runtime.select(t811, 0.0, T33 * t812)
-    x_1_1_13_left_flip_up = _runtime.select(t810, qx_1_1_13_left_flip_up, qx_1_1_13_left_flip_up + d5 * t813)
-    dqx_1_1_13_left_flip_up = w_y * c_1_1_13_left_flip_up - w_x * s_1_1_13_left_flip_up
-    t814 = T13 * s_1_1_13_left_flip_up - T23 * c_1_1_13_left_flip_up
-    t815 = h_1_1_13_left_flip_up * h_1_1_13_left_flip_up
-    del h_1_1_13_left_flip_up
-    spin_1_1_13_left_flip_up = _runtime.select(t810, 0.0, T33 * t814 / t815)
-    del t814, t815
-    rate_1_1_13_left_flip_up = d5 * spin_1_1_13_left_flip_up
-    t816 = _runtime.select(t811, 1.0, -(axisx_1_1_13_left_flip_up * t812))
-    del axisx_1_1_13_left_flip_up, t811, t812
-    t817 = dqx_1_1_13_left_flip_up - rate_1_1_13_left_flip_up * t816
-    dx_1_1_13_left_flip_up = _runtime.select(t810, dqx_1_1_13_left_flip_up, t817)
-    del t817
-    t818 = x_1_1_13_left_flip_up * dx_1_1_13_left_flip_up
-    del dx_1_1_13_left_flip_up
-    t819 = _runtime.select(t810, t23, t23 - d5 * t816)
-    dy_1_1_13_left_flip_up = _runtime.select(t810, 0.0, rate_1_1_13_left_flip_up * t813)
-    slope_1_1_13_left_flip_up = t818 - t819 * dy_1_1_13_left_flip_up
-    del dy_1_1_13_left_flip_up, t818
-    t820 = slope_1_1_13_left_flip_up * slope_1_1_13_left_flip_up
-    straight_1_1_13_left_flip_up = dqx_1_1_13_left_flip_up * dqx_1_1_13_left_flip_up
-    t821 = spin_1_1_13_left_flip_up * (qx_1_1_13_left_flip_up * t813 - t23 * t816)
-    del qx_1_1_13_left_flip_up, spin_1_1_13_left_flip_up, t813
-    t822 = rate_1_1_13_left_flip_up * (2.0 * dqx_1_1_13_left_flip_up * t816 + t821)
-    del dqx_1_1_13_left_flip_up, rate_1_1_13_left_flip_up, t816, t821
-    bends_1_1_13_left_flip_up = _runtime.select(t810, straight_1_1_13_left_flip_up, straight_1_1_13_left_flip_up - t822)
-    del straight_1_1_13_left_flip_up, t822
-    t823 = x_1_1_13_left_flip_up * x_1_1_13_left_flip_up
-    del x_1_1_13_left_flip_up
-    square_1_1_13_left_flip_up = t823 + t819 * t819
-    del t819, t823
-    t824 = _runtime.select(t810, t29, fold_1_1) - whole_1_1
-    t825 = np.maximum(0.0, t824)
-    del t824
-    t826 = whole_1_1 + _runtime.select(t810, t3, full_1_1)
-    del t810
-    t827 = np.minimum(t826 * t826, square_1_1_13_left_flip_up)
+    t804 = axisx_1_1_4_left_flip_up * rest_1_1_4_left_flip_up
+    del axisx_1_1_4_left_flip_up, rest_1_1_4_left_flip_up
+    t805 = t802 * (t804 + t767 * wanted_1_1_4_left_flip_up)
+    del t767, t802, t804, wanted_1_1_4_left_flip_up
+    t806 = _runtime.select(t768, 0.0, t805)
+    del t768, t805
+    t807 = t806 * t806 / (1.0 + np.abs(by_c_1_1_4_left_flip_up))
+    versine_1_1_4_left_flip_up = _runtime.select(0.0 < by_c_1_1_4_left_flip_up, t807, 1.0 - by_c_1_1_4_left_flip_up)
+    del t807
+    cost_1_1_4_left_flip_up = d4 * versine_1_1_4_left_flip_up + root1 * np.abs(t806)
+    del versine_1_1_4_left_flip_up
+    t808 = cost_1_1_4_left_flip_up <= whole_1_1
+    del cost_1_1_4_left_flip_up
+    cosine_1_1_4_left_flip_up = _runtime.select(t808, by_c_1_1_4_left_flip_up, 1.0)
+    del by_c_1_1_4_left_flip_up
+    t809 = c_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
+    sine_1_1_4_left_flip_up = _runtime.select(t808, -t806, 0.0)
+    del t806, t808
+    t810 = s_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
+    c_1_1_6_left_flip_up = t809 - t810
+    del t809, t810
+    t811 = c_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
+    del sine_1_1_4_left_flip_up
+    t812 = s_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
+    del cosine_1_1_4_left_flip_up
+    s_1_1_6_left_flip_up = t811 + t812
+    del t811, t812
+    axisx_1_1_6_left_flip_up = T13 * c_1_1_6_left_flip_up + T23 * s_1_1_6_left_flip_up
+    t813 = axisx_1_1_6_left_flip_up * axisx_1_1_6_left_flip_up
+    h_1_1_6_left_flip_up = np.sqrt(t5 + t813)
+    del t813
+    t814 = h_1_1_6_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_6_left_flip_up = w_x * c_1_1_6_left_flip_up + w_y * s_1_1_6_left_flip_up
+    t815 = h_1_1_6_left_flip_up == 0.0
+    t816 = 1.0 / h_1_1_6_left_flip_up
+    t817 = _runtime.select(t815, 0.0, T33 * t816)
+    x_1_1_6_left_flip_up = _runtime.select(t814, qx_1_1_6_left_flip_up, qx_1_1_6_left_flip_up + d5 * t817)
+    dqx_1_1_6_left_flip_up = w_y * c_1_1_6_left_flip_up - w_x * s_1_1_6_left_flip_up
+    t818 = T13 * s_1_1_6_left_flip_up - T23 * c_1_1_6_left_flip_up
+    t819 = T33 * t818 / (h_1_1_6_left_flip_up * h_1_1_6_left_flip_up)
+    del h_1_1_6_left_flip_up, t818
+    spin_1_1_6_left_flip_up = _runtime.select(t814, 0.0, t819)
+    del t819
+    rate_1_1_6_left_flip_up = d5 * spin_1_1_6_left_flip_up
+    t820 = _runtime.select(t815, 1.0, -(axisx_1_1_6_left_flip_up * t816))
+    del axisx_1_1_6_left_flip_up, t815, t816
+    t821 = dqx_1_1_6_left_flip_up - rate_1_1_6_left_flip_up * t820
+    dx_1_1_6_left_flip_up = _runtime.select(t814, dqx_1_1_6_left_flip_up, t821)
+    del t821
+    t822 = _runtime.select(t814, t23, t23 - d5 * t820)
+    dy_1_1_6_left_flip_up = _runtime.select(t814, 0.0, rate_1_1_6_left_flip_up * t817)
+    slope_1_1_6_left_flip_up = x_1_1_6_left_flip_up * dx_1_1_6_left_flip_up - t822 * dy_1_1_6_left_flip_up
+    del dx_1_1_6_left_flip_up, dy_1_1_6_left_flip_up
+    t823 = slope_1_1_6_left_flip_up * slope_1_1_6_left_flip_up
+    straight_1_1_6_left_flip_up = dqx_1_1_6_left_flip_up * dqx_1_1_6_left_flip_up
+    t824 = spin_1_1_6_left_flip_up * (qx_1_1_6_left_flip_up * t817 - t23 * t820)
+    del qx_1_1_6_left_flip_up, spin_1_1_6_left_flip_up, t817
+    t825 = rate_1_1_6_left_flip_up * (2.0 * dqx_1_1_6_left_flip_up * t820 + t824)
+    del dqx_1_1_6_left_flip_up, rate_1_1_6_left_flip_up, t820, t824
+    bends_1_1_6_left_flip_up = _runtime.select(t814, straight_1_1_6_left_flip_up, straight_1_1_6_left_flip_up - t825)
+    del straight_1_1_6_left_flip_up, t825
+    square_1_1_6_left_flip_up = x_1_1_6_left_flip_up * x_1_1_6_left_flip_up + t822 * t822
+    del t822, x_1_1_6_left_flip_up
+    t826 = _runtime.select(t814, t98, fold_1_1) - whole_1_1
+    t827 = np.maximum(0.0, t826)
     del t826
-    miss_1_1_13_left_flip_up = square_1_1_13_left_flip_up - np.maximum(t825 * t825, t827)
-    del square_1_1_13_left_flip_up, t825, t827
-    t828 = bends_1_1_13_left_flip_up * miss_1_1_13_left_flip_up
-    inner_1_1_13_left_flip_up = t820 - t828
-    del t820, t828
-    t829 = inner_1_1_13_left_flip_up < 0.0
-    t830 = np.sqrt(np.maximum(0.0, inner_1_1_13_left_flip_up))
-    del inner_1_1_13_left_flip_up
-    t831 = _runtime.sign(slope_1_1_13_left_flip_up) * t830
-    del t830
-    below_1_1_13_left_flip_up = _runtime.select(t829, 2.0 * bends_1_1_13_left_flip_up, 2.0 * (slope_1_1_13_left_flip_up + t831))
-    del bends_1_1_13_left_flip_up, t831
-    above_1_1_13_left_flip_up = _runtime.select(t829, slope_1_1_13_left_flip_up, miss_1_1_13_left_flip_up)
-    del miss_1_1_13_left_flip_up, slope_1_1_13_left_flip_up, t829
-    t832 = np.abs(below_1_1_13_left_flip_up) <= np.abs(above_1_1_13_left_flip_up)
-    t833 = above_1_1_13_left_flip_up / below_1_1_13_left_flip_up
-    del above_1_1_13_left_flip_up, below_1_1_13_left_flip_up
-    t834 = _runtime.select(t832, 0.0, t833)
-    del t832, t833
-    t835 = t834 * t834
-    t836 = 1.0 / (1.0 + t835)
-    by_c_1_1_13_left_flip_up = (1.0 - t835) * t836
-    del t835
-    t837 = t836 * (2.0 * t834)
-    del t834, t836
-    t838 = t837 * t837 / (1.0 + np.abs(by_c_1_1_13_left_flip_up))
-    versine_1_1_13_left_flip_up = _runtime.select(0.0 < by_c_1_1_13_left_flip_up, t838, 1.0 - by_c_1_1_13_left_flip_up)
-    del t838
-    cost_1_1_13_left_flip_up = d4 * versine_1_1_13_left_flip_up + root1 * np.abs(t837)
-    del versine_1_1_13_left_flip_up
-    t839 = cost_1_1_13_left_flip_up <= whole_1_1
-    del cost_1_1_13_left_flip_up
-    cosine_1_1_13_left_flip_up = _runtime.select(t839, by_c_1_1_13_left_flip_up, 1.0)
-    del by_c_1_1_13_left_flip_up
-    t840 = c_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
-    sine_1_1_13_left_flip_up = _runtime.select(t839, -t837, 0.0)
-    del t837, t839
-    t841 = s_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
-    c_1_1_14_left_flip_up = t840 - t841
-    del t840, t841
-    t842 = c_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
-    del c_1_1_13_left_flip_up, sine_1_1_13_left_flip_up
-    t843 = s_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
-    del cosine_1_1_13_left_flip_up, s_1_1_13_left_flip_up
-    s_1_1_14_left_flip_up = t842 + t843
+    t828 = whole_1_1 + _runtime.select(t814, t3, full_1_1)
+    del t814
+    t829 = np.minimum(t828 * t828, square_1_1_6_left_flip_up)
+    del t828
+    miss_1_1_6_left_flip_up = square_1_1_6_left_flip_up - np.maximum(t827 * t827, t829)
+    del square_1_1_6_left_flip_up, t827, t829
+    t830 = bends_1_1_6_left_flip_up * miss_1_1_6_left_flip_up
+    inner_1_1_6_left_flip_up = t823 - t830
+    del t823, t830
+    t831 = inner_1_1_6_left_flip_up < 0.0
+    t832 = np.sqrt(np.maximum(0.0, inner_1_1_6_left_flip_up))
+    del inner_1_1_6_left_flip_up
+    t833 = _runtime.sign(slope_1_1_6_left_flip_up) * t832
+    del t832
+    below_1_1_6_left_flip_up = _runtime.select(t831, 2.0 * bends_1_1_6_left_flip_up, 2.0 * (slope_1_1_6_left_flip_up + t833))
+    del bends_1_1_6_left_flip_up, t833
+    above_1_1_6_left_flip_up = _runtime.select(t831, slope_1_1_6_left_flip_up, miss_1_1_6_left_flip_up)
+    del miss_1_1_6_left_flip_up, slope_1_1_6_left_flip_up, t831
+    t834 = np.abs(below_1_1_6_left_flip_up) <= np.abs(above_1_1_6_left_flip_up)
+    t835 = above_1_1_6_left_flip_up / below_1_1_6_left_flip_up
+    del above_1_1_6_left_flip_up, below_1_1_6_left_flip_up
+    t836 = _runtime.select(t834, 0.0, t835)
+    del t834, t835
+    t837 = t836 * t836
+    t838 = 1.0 / (1.0 + t837)
+    by_c_1_1_6_left_flip_up = (1.0 - t837) * t838
+    del t837
+    t839 = t838 * (2.0 * t836)
+    del t836, t838
+    t840 = t839 * t839 / (1.0 + np.abs(by_c_1_1_6_left_flip_up))
+    versine_1_1_6_left_flip_up = _runtime.select(0.0 < by_c_1_1_6_left_flip_up, t840, 1.0 - by_c_1_1_6_left_flip_up)
+    del t840
+    cost_1_1_6_left_flip_up = d4 * versine_1_1_6_left_flip_up + root1 * np.abs(t839)
+    del versine_1_1_6_left_flip_up
+    t841 = cost_1_1_6_left_flip_up <= whole_1_1
+    del cost_1_1_6_left_flip_up
+    cosine_1_1_6_left_flip_up = _runtime.select(t841, by_c_1_1_6_left_flip_up, 1.0)
+    del by_c_1_1_6_left_flip_up
+    t842 = c_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
+    sine_1_1_6_left_flip_up = _runtime.select(t841, -t839, 0.0)
+    del t839, t841
+    t843 = s_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
+    c_1_1_7_left_flip_up = t842 - t843
     del t842, t843
-    axisx_1_1_14_left_flip_up = T13 * c_1_1_14_left_flip_up + T23 * s_1_1_14_left_flip_up
-    t844 = axisx_1_1_14_left_flip_up * axisx_1_1_14_left_flip_up
-    h_1_1_14_left_flip_up = np.sqrt(t5 + t844)
-    del t844
-    t845 = h_1_1_14_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_14_left_flip_up = w_x * c_1_1_14_left_flip_up + w_y * s_1_1_14_left_flip_up
-    t846 = h_1_1_14_left_flip_up == 0.0
-    t847 = 1.0 / h_1_1_14_left_flip_up
-    t848 = _runtime.select(t846, 0.0, T33 * t847)
-    x_1_1_14_left_flip_up = _runtime.select(t845, qx_1_1_14_left_flip_up, qx_1_1_14_left_flip_up + d5 * t848)
-    dqx_1_1_14_left_flip_up = w_y * c_1_1_14_left_flip_up - w_x * s_1_1_14_left_flip_up
-    t849 = T13 * s_1_1_14_left_flip_up - T23 * c_1_1_14_left_flip_up
-    t850 = h_1_1_14_left_flip_up * h_1_1_14_left_flip_up
-    del h_1_1_14_left_flip_up
-    spin_1_1_14_left_flip_up = _runtime.select(t845, 0.0, T33 * t849 / t850)
-    del t849, t850
-    rate_1_1_14_left_flip_up = d5 * spin_1_1_14_left_flip_up
-    t851 = _runtime.select(t846, 1.0, -(axisx_1_1_14_left_flip_up * t847))
-    del axisx_1_1_14_left_flip_up, t846, t847
-    t852 = dqx_1_1_14_left_flip_up - rate_1_1_14_left_flip_up * t851
-    dx_1_1_14_left_flip_up = _runtime.select(t845, dqx_1_1_14_left_flip_up, t852)
+    t844 = c_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
+    del c_1_1_6_left_flip_up, sine_1_1_6_left_flip_up
+    t845 = s_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
+    del cosine_1_1_6_left_flip_up, s_1_1_6_left_flip_up
+    s_1_1_7_left_flip_up = t844 + t845
+    del t844, t845
+    axisx_1_1_7_left_flip_up = T13 * c_1_1_7_left_flip_up + T23 * s_1_1_7_left_flip_up
+    t846 = axisx_1_1_7_left_flip_up * axisx_1_1_7_left_flip_up
+    h_1_1_7_left_flip_up = np.sqrt(t5 + t846)
+    del t846
+    t847 = h_1_1_7_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_7_left_flip_up = w_x * c_1_1_7_left_flip_up + w_y * s_1_1_7_left_flip_up
+    t848 = h_1_1_7_left_flip_up == 0.0
+    t849 = 1.0 / h_1_1_7_left_flip_up
+    t850 = _runtime.select(t848, 0.0, T33 * t849)
+    x_1_1_7_left_flip_up = _runtime.select(t847, qx_1_1_7_left_flip_up, qx_1_1_7_left_flip_up + d5 * t850)
+    dqx_1_1_7_left_flip_up = w_y * c_1_1_7_left_flip_up - w_x * s_1_1_7_left_flip_up
+    t851 = T13 * s_1_1_7_left_flip_up - T23 * c_1_1_7_left_flip_up
+    t852 = T33 * t851 / (h_1_1_7_left_flip_up * h_1_1_7_left_flip_up)
+    del h_1_1_7_left_flip_up, t851
+    spin_1_1_7_left_flip_up = _runtime.select(t847, 0.0, t852)
     del t852
-    t853 = x_1_1_14_left_flip_up * dx_1_1_14_left_flip_up
-    del dx_1_1_14_left_flip_up
-    t854 = _runtime.select(t845, t23, t23 - d5 * t851)
-    dy_1_1_14_left_flip_up = _runtime.select(t845, 0.0, rate_1_1_14_left_flip_up * t848)
-    slope_1_1_14_left_flip_up = t853 - t854 * dy_1_1_14_left_flip_up
-    del dy_1_1_14_left_flip_up, t853
-    t855 = slope_1_1_14_left_flip_up * slope_1_1_14_left_flip_up
-    straight_1_1_14_left_flip_up = dqx_1_1_14_left_flip_up * dqx_1_1_14_left_flip_up
-    t856 = spin_1_1_14_left_flip_up * (qx_1_1_14_left_flip_up * t848 - t23 * t851)
-    del qx_1_1_14_left_flip_up, spin_1_1_14_left_flip_up, t848
-    t857 = rate_1_1_14_left_flip_up * (2.0 * dqx_1_1_14_left_flip_up * t851 + t856)
-    del dqx_1_1_14_left_flip_up, rate_1_1_14_left_flip_up, t851, t856
-    bends_1_1_14_left_flip_up = _runtime.select(t845, straight_1_1_14_left_flip_up, straight_1_1_14_left_flip_up - t857)
-    del straight_1_1_14_left_flip_up, t857
-    t858 = x_1_1_14_left_flip_up * x_1_1_14_left_flip_up
-    del x_1_1_14_left_flip_up
-    square_1_1_14_left_flip_up = t858 + t854 * t854
-    del t854, t858
-    t859 = _runtime.select(t845, t29, fold_1_1) - whole_1_1
+    rate_1_1_7_left_flip_up = d5 * spin_1_1_7_left_flip_up
+    t853 = _runtime.select(t848, 1.0, -(axisx_1_1_7_left_flip_up * t849))
+    del axisx_1_1_7_left_flip_up, t848, t849
+    t854 = dqx_1_1_7_left_flip_up - rate_1_1_7_left_flip_up * t853
+    dx_1_1_7_left_flip_up = _runtime.select(t847, dqx_1_1_7_left_flip_up, t854)
+    del t854
+    t855 = _runtime.select(t847, t23, t23 - d5 * t853)
+    dy_1_1_7_left_flip_up = _runtime.select(t847, 0.0, rate_1_1_7_left_flip_up * t850)
+    slope_1_1_7_left_flip_up = x_1_1_7_left_flip_up * dx_1_1_7_left_flip_up - t855 * dy_1_1_7_left_flip_up
+    del dx_1_1_7_left_flip_up, dy_1_1_7_left_flip_up
+    t856 = slope_1_1_7_left_flip_up * slope_1_1_7_left_flip_up
+    straight_1_1_7_left_flip_up = dqx_1_1_7_left_flip_up * dqx_1_1_7_left_flip_up
+    t857 = spin_1_1_7_left_flip_up * (qx_1_1_7_left_flip_up * t850 - t23 * t853)
+    del qx_1_1_7_left_flip_up, spin_1_1_7_left_flip_up, t850
+    t858 = rate_1_1_7_left_flip_up * (2.0 * dqx_1_1_7_left_flip_up * t853 + t857)
+    del dqx_1_1_7_left_flip_up, rate_1_1_7_left_flip_up, t853, t857
+    bends_1_1_7_left_flip_up = _runtime.select(t847, straight_1_1_7_left_flip_up, straight_1_1_7_left_flip_up - t858)
+    del straight_1_1_7_left_flip_up, t858
+    square_1_1_7_left_flip_up = x_1_1_7_left_flip_up * x_1_1_7_left_flip_up + t855 * t855
+    del t855, x_1_1_7_left_flip_up
+    t859 = _runtime.select(t847, t98, fold_1_1) - whole_1_1
     t860 = np.maximum(0.0, t859)
     del t859
-    t861 = whole_1_1 + _runtime.select(t845, t3, full_1_1)
-    del t845
-    t862 = np.minimum(t861 * t861, square_1_1_14_left_flip_up)
+    t861 = whole_1_1 + _runtime.select(t847, t3, full_1_1)
+    del t847
+    t862 = np.minimum(t861 * t861, square_1_1_7_left_flip_up)
     del t861
-    miss_1_1_14_left_flip_up = square_1_1_14_left_flip_up - np.maximum(t860 * t860, t862)
-    del square_1_1_14_left_flip_up, t860, t862
-    t863 = bends_1_1_14_left_flip_up * miss_1_1_14_left_flip_up
-    inner_1_1_14_left_flip_up = t855 - t863
-    del t855, t863
-    t864 = inner_1_1_14_left_flip_up < 0.0
-    t865 = np.sqrt(np.maximum(0.0, inner_1_1_14_left_flip_up))
-    del inner_1_1_14_left_flip_up
-    t866 = _runtime.sign(slope_1_1_14_left_flip_up) * t865
+    miss_1_1_7_left_flip_up = square_1_1_7_left_flip_up - np.maximum(t860 * t860, t862)
+    del square_1_1_7_left_flip_up, t860, t862
+    t863 = bends_1_1_7_left_flip_up * miss_1_1_7_left_flip_up
+    inner_1_1_7_left_flip_up = t856 - t863
+    del t856, t863
+    t864 = inner_1_1_7_left_flip_up < 0.0
+    t865 = np.sqrt(np.maximum(0.0, inner_1_1_7_left_flip_up))
+    del inner_1_1_7_left_flip_up
+    t866 = _runtime.sign(slope_1_1_7_left_flip_up) * t865
     del t865
-    below_1_1_14_left_flip_up = _runtime.select(t864, 2.0 * bends_1_1_14_left_flip_up, 2.0 * (slope_1_1_14_left_flip_up + t866))
-    del bends_1_1_14_left_flip_up, t866
-    above_1_1_14_left_flip_up = _runtime.select(t864, slope_1_1_14_left_flip_up, miss_1_1_14_left_flip_up)
-    del miss_1_1_14_left_flip_up, slope_1_1_14_left_flip_up, t864
-    t867 = np.abs(below_1_1_14_left_flip_up) <= np.abs(above_1_1_14_left_flip_up)
-    t868 = above_1_1_14_left_flip_up / below_1_1_14_left_flip_up
-    del above_1_1_14_left_flip_up, below_1_1_14_left_flip_up
+    below_1_1_7_left_flip_up = _runtime.select(t864, 2.0 * bends_1_1_7_left_flip_up, 2.0 * (slope_1_1_7_left_flip_up + t866))
+    del bends_1_1_7_left_flip_up, t866
+    above_1_1_7_left_flip_up = _runtime.select(t864, slope_1_1_7_left_flip_up, miss_1_1_7_left_flip_up)
+    del miss_1_1_7_left_flip_up, slope_1_1_7_left_flip_up, t864
+    t867 = np.abs(below_1_1_7_left_flip_up) <= np.abs(above_1_1_7_left_flip_up)
+    t868 = above_1_1_7_left_flip_up / below_1_1_7_left_flip_up
+    del above_1_1_7_left_flip_up, below_1_1_7_left_flip_up
     t869 = _runtime.select(t867, 0.0, t868)
     del t867, t868
     t870 = t869 * t869
     t871 = 1.0 / (1.0 + t870)
-    by_c_1_1_14_left_flip_up = (1.0 - t870) * t871
+    by_c_1_1_7_left_flip_up = (1.0 - t870) * t871
     del t870
     t872 = t871 * (2.0 * t869)
     del t869, t871
-    t873 = t872 * t872 / (1.0 + np.abs(by_c_1_1_14_left_flip_up))
-    versine_1_1_14_left_flip_up = _runtime.select(0.0 < by_c_1_1_14_left_flip_up, t873, 1.0 - by_c_1_1_14_left_flip_up)
+    t873 = t872 * t872 / (1.0 + np.abs(by_c_1_1_7_left_flip_up))
+    versine_1_1_7_left_flip_up = _runtime.select(0.0 < by_c_1_1_7_left_flip_up, t873, 1.0 - by_c_1_1_7_left_flip_up)
     del t873
-    cost_1_1_14_left_flip_up = d4 * versine_1_1_14_left_flip_up + root1 * np.abs(t872)
-    del versine_1_1_14_left_flip_up
-    t874 = cost_1_1_14_left_flip_up <= whole_1_1
-    del cost_1_1_14_left_flip_up
-    cosine_1_1_14_left_flip_up = _runtime.select(t874, by_c_1_1_14_left_flip_up, 1.0)
-    del by_c_1_1_14_left_flip_up
-    t875 = c_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
-    sine_1_1_14_left_flip_up = _runtime.select(t874, -t872, 0.0)
+    cost_1_1_7_left_flip_up = d4 * versine_1_1_7_left_flip_up + root1 * np.abs(t872)
+    del versine_1_1_7_left_flip_up
+    t874 = cost_1_1_7_left_flip_up <= whole_1_1
+    del cost_1_1_7_left_flip_up
+    cosine_1_1_7_left_flip_up = _runtime.select(t874, by_c_1_1_7_left_flip_up, 1.0)
+    del by_c_1_1_7_left_flip_up
+    t875 = c_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
+    sine_1_1_7_left_flip_up = _runtime.select(t874, -t872, 0.0)
     del t872, t874
-    t876 = s_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
-    c_1_1_15_left_flip_up = t875 - t876
+    t876 = s_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
+    c_1_1_8_left_flip_up = t875 - t876
     del t875, t876
-    t877 = c_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
-    del c_1_1_14_left_flip_up, sine_1_1_14_left_flip_up
-    t878 = s_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
-    del cosine_1_1_14_left_flip_up, s_1_1_14_left_flip_up
-    s_1_1_15_left_flip_up = t877 + t878
+    t877 = c_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
+    del c_1_1_7_left_flip_up, sine_1_1_7_left_flip_up
+    t878 = s_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
+    del cosine_1_1_7_left_flip_up, s_1_1_7_left_flip_up
+    s_1_1_8_left_flip_up = t877 + t878
     del t877, t878
-    axisx_1_1_15_left_flip_up = T13 * c_1_1_15_left_flip_up + T23 * s_1_1_15_left_flip_up
-    t879 = axisx_1_1_15_left_flip_up * axisx_1_1_15_left_flip_up
-    h_1_1_15_left_flip_up = np.sqrt(t5 + t879)
+    axisx_1_1_8_left_flip_up = T13 * c_1_1_8_left_flip_up + T23 * s_1_1_8_left_flip_up
+    t879 = axisx_1_1_8_left_flip_up * axisx_1_1_8_left_flip_up
+    h_1_1_8_left_flip_up = np.sqrt(t5 + t879)
     del t879
-    t880 = h_1_1_15_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_15_left_flip_up = w_x * c_1_1_15_left_flip_up + w_y * s_1_1_15_left_flip_up
-    t881 = h_1_1_15_left_flip_up == 0.0
-    t882 = 1.0 / h_1_1_15_left_flip_up
-    t883 = _runtime.select(t881, 0.0, T33 * t882)
-    x_1_1_15_left_flip_up = _runtime.select(t880, qx_1_1_15_left_flip_up, qx_1_1_15_left_flip_up + d5 * t883)
-    dqx_1_1_15_left_flip_up = w_y * c_1_1_15_left_flip_up - w_x * s_1_1_15_left_flip_up
-    t884 = T13 * s_1_1_15_left_flip_up - T23 * c_1_1_15_left_flip_up
-    t885 = h_1_1_15_left_flip_up * h_1_1_15_left_flip_up
-    del h_1_1_15_left_flip_up
-    spin_1_1_15_left_flip_up = _runtime.select(t880, 0.0, T33 * t884 / t885)
-    del t884, t885
-    rate_1_1_15_left_flip_up = d5 * spin_1_1_15_left_flip_up
-    t886 = _runtime.select(t881, 1.0, -(axisx_1_1_15_left_flip_up * t882))
-    del axisx_1_1_15_left_flip_up, t881, t882
-    t887 = dqx_1_1_15_left_flip_up - rate_1_1_15_left_flip_up * t886
-    dx_1_1_15_left_flip_up = _runtime.select(t880, dqx_1_1_15_left_flip_up, t887)
-    del t887
-    t888 = x_1_1_15_left_flip_up * dx_1_1_15_left_flip_up
-    del dx_1_1_15_left_flip_up
-    t889 = _runtime.select(t880, t23, t23 - d5 * t886)
-    dy_1_1_15_left_flip_up = _runtime.select(t880, 0.0, rate_1_1_15_left_flip_up * t883)
-    slope_1_1_15_left_flip_up = t888 - t889 * dy_1_1_15_left_flip_up
-    del dy_1_1_15_left_flip_up, t888
-    t890 = slope_1_1_15_left_flip_up * slope_1_1_15_left_flip_up
-    straight_1_1_15_left_flip_up = dqx_1_1_15_left_flip_up * dqx_1_1_15_left_flip_up
-    t891 = spin_1_1_15_left_flip_up * (qx_1_1_15_left_flip_up * t883 - t23 * t886)
-    del qx_1_1_15_left_flip_up, spin_1_1_15_left_flip_up, t883
-    t892 = rate_1_1_15_left_flip_up * (2.0 * dqx_1_1_15_left_flip_up * t886 + t891)
-    del dqx_1_1_15_left_flip_up, rate_1_1_15_left_flip_up, t886, t891
-    bends_1_1_15_left_flip_up = _runtime.select(t880, straight_1_1_15_left_flip_up, straight_1_1_15_left_flip_up - t892)
-    del straight_1_1_15_left_flip_up, t892
-    t893 = x_1_1_15_left_flip_up * x_1_1_15_left_flip_up
-    del x_1_1_15_left_flip_up
-    square_1_1_15_left_flip_up = t893 + t889 * t889
-    del t889, t893
-    t894 = _runtime.select(t880, t29, fold_1_1) - whole_1_1
-    t895 = np.maximum(0.0, t894)
-    del t894
-    t896 = whole_1_1 + _runtime.select(t880, t3, full_1_1)
-    del t880
-    t897 = np.minimum(t896 * t896, square_1_1_15_left_flip_up)
-    del t896
-    miss_1_1_15_left_flip_up = square_1_1_15_left_flip_up - np.maximum(t895 * t895, t897)
-    del square_1_1_15_left_flip_up, t895, t897
-    t898 = bends_1_1_15_left_flip_up * miss_1_1_15_left_flip_up
-    inner_1_1_15_left_flip_up = t890 - t898
-    del t890, t898
-    t899 = inner_1_1_15_left_flip_up < 0.0
-    t900 = np.sqrt(np.maximum(0.0, inner_1_1_15_left_flip_up))
-    del inner_1_1_15_left_flip_up
-    t901 = _runtime.sign(slope_1_1_15_left_flip_up) * t900
-    del t900
-    below_1_1_15_left_flip_up = _runtime.select(t899, 2.0 * bends_1_1_15_left_flip_up, 2.0 * (slope_1_1_15_left_flip_up + t901))
-    del bends_1_1_15_left_flip_up, t901
-    above_1_1_15_left_flip_up = _runtime.select(t899, slope_1_1_15_left_flip_up, miss_1_1_15_left_flip_up)
-    del miss_1_1_15_left_flip_up, slope_1_1_15_left_flip_up, t899
-    t902 = np.abs(below_1_1_15_left_flip_up) <= np.abs(above_1_1_15_left_flip_up)
-    t903 = above_1_1_15_left_flip_up / below_1_1_15_left_flip_up
-    del above_1_1_15_left_flip_up, below_1_1_15_left_flip_up
-    t904 = _runtime.select(t902, 0.0, t903)
-    del t902, t903
-    t905 = t904 * t904
-    t906 = 1.0 / (1.0 + t905)
-    by_c_1_1_15_left_flip_up = (1.0 - t905) * t906
-    del t905
-    t907 = t906 * (2.0 * t904)
-    del t904, t906
-    t908 = t907 * t907 / (1.0 + np.abs(by_c_1_1_15_left_flip_up))
-    versine_1_1_15_left_flip_up = _runtime.select(0.0 < by_c_1_1_15_left_flip_up, t908, 1.0 - by_c_1_1_15_left_flip_up)
-    del t908
-    cost_1_1_15_left_flip_up = d4 * versine_1_1_15_left_flip_up + root1 * np.abs(t907)
-    del versine_1_1_15_left_flip_up
-    t909 = cost_1_1_15_left_flip_up <= whole_1_1
-    del cost_1_1_15_left_flip_up
-    cosine_1_1_15_left_flip_up = _runtime.select(t909, by_c_1_1_15_left_flip_up, 1.0)
-    del by_c_1_1_15_left_flip_up
-    t910 = c_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
-    sine_1_1_15_left_flip_up = _runtime.select(t909, -t907, 0.0)
-    del t907, t909
-    t911 = s_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
-    c_1_1_16_left_flip_up = t910 - t911
-    del t910, t911
-    t912 = c_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
-    del c_1_1_15_left_flip_up, sine_1_1_15_left_flip_up
-    t913 = s_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
-    del cosine_1_1_15_left_flip_up, s_1_1_15_left_flip_up
-    s_1_1_16_left_flip_up = t912 + t913
-    del t912, t913
-    axisx_1_1_16_left_flip_up = T13 * c_1_1_16_left_flip_up + T23 * s_1_1_16_left_flip_up
-    t914 = axisx_1_1_16_left_flip_up * axisx_1_1_16_left_flip_up
-    h_1_1_16_left_flip_up = np.sqrt(t5 + t914)
-    del t914
-    t915 = h_1_1_16_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_16_left_flip_up = w_x * c_1_1_16_left_flip_up + w_y * s_1_1_16_left_flip_up
-    t916 = h_1_1_16_left_flip_up == 0.0
-    t917 = 1.0 / h_1_1_16_left_flip_up
-    del h_1_1_16_left_flip_up
-    t918 = qx_1_1_16_left_flip_up + d5 * _runtime.select(t916, 0.0, T33 * t917)
-    x_1_1_16_left_flip_up = _runtime.select(t915, qx_1_1_16_left_flip_up, t918)
-    del qx_1_1_16_left_flip_up, t918
-    t919 = x_1_1_16_left_flip_up * x_1_1_16_left_flip_up
-    del x_1_1_16_left_flip_up
-    t920 = _runtime.select(t916, 1.0, -(axisx_1_1_16_left_flip_up * t917))
-    del axisx_1_1_16_left_flip_up, t916, t917
-    t921 = _runtime.select(t915, t23, t23 - d5 * t920)
-    del t920
-    t922 = np.sqrt(t919 + t921 * t921)
-    del t919, t921
-    t923 = np.maximum(0.0, t922 - _runtime.select(t915, t3, full_1_1))
-    missed_1_1_16_left_flip_up = np.maximum(t923, _runtime.select(t915, t29, fold_1_1) - t922)
-    del t915, t922, t923
-    h_1_1_8_left_flip_up = np.sqrt(t5 + t632)
-    del t632
-    t924 = h_1_1_8_left_flip_up <= 1.4210854715202004e-14
+    t880 = h_1_1_8_left_flip_up <= 1.4210854715202004e-14
     qx_1_1_8_left_flip_up = w_x * c_1_1_8_left_flip_up + w_y * s_1_1_8_left_flip_up
-    t925 = h_1_1_8_left_flip_up == 0.0
-    t926 = 1.0 / h_1_1_8_left_flip_up
+    t881 = h_1_1_8_left_flip_up == 0.0
+    t882 = 1.0 / h_1_1_8_left_flip_up
     del h_1_1_8_left_flip_up
-    t927 = qx_1_1_8_left_flip_up + d5 * _runtime.select(t925, 0.0, T33 * t926)
-    x_1_1_8_left_flip_up = _runtime.select(t924, qx_1_1_8_left_flip_up, t927)
-    del qx_1_1_8_left_flip_up, t927
-    t928 = _runtime.select(t925, 1.0, -(axisx_1_1_8_left_flip_up * t926))
-    del axisx_1_1_8_left_flip_up, t925, t926
-    t929 = _runtime.select(t924, t23, t23 - d5 * t928)
-    del t928
-    t930 = x_1_1_8_left_flip_up * x_1_1_8_left_flip_up + t929 * t929
-    del t929, x_1_1_8_left_flip_up
-    t931 = np.sqrt(t930)
-    del t930
-    t932 = np.maximum(0.0, t931 - _runtime.select(t924, t3, full_1_1))
-    missed_1_1_8_left_flip_up = np.maximum(t932, _runtime.select(t924, t29, fold_1_1) - t931)
-    del t924, t931, t932
-    t933 = missed_1_1_16_left_flip_up < missed_1_1_8_left_flip_up
-    del missed_1_1_16_left_flip_up, missed_1_1_8_left_flip_up
-    s_1_1_17_left_flip_up = _runtime.select(t933, s_1_1_16_left_flip_up, s_1_1_8_left_flip_up)
-    del s_1_1_16_left_flip_up, s_1_1_8_left_flip_up
-    s1_left_flip_up = _runtime.select(tangent1, s_1_1_17_left_flip_up, -t13)
-    del s_1_1_17_left_flip_up, t13
-    c_1_1_17_left_flip_up = _runtime.select(t933, c_1_1_16_left_flip_up, c_1_1_8_left_flip_up)
-    del c_1_1_16_left_flip_up, c_1_1_8_left_flip_up, t933
-    c1_left_flip_up = _runtime.select(tangent1, c_1_1_17_left_flip_up, c_1_1)
-    del c_1_1, c_1_1_17_left_flip_up
-    t934 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    t883 = qx_1_1_8_left_flip_up + d5 * _runtime.select(t881, 0.0, T33 * t882)
+    x_1_1_8_left_flip_up = _runtime.select(t880, qx_1_1_8_left_flip_up, t883)
+    del qx_1_1_8_left_flip_up, t883
+    t884 = _runtime.select(t881, 1.0, -(axisx_1_1_8_left_flip_up * t882))
+    del axisx_1_1_8_left_flip_up, t881, t882
+    t885 = _runtime.select(t880, t23, t23 - d5 * t884)
+    del t884
+    t886 = x_1_1_8_left_flip_up * x_1_1_8_left_flip_up + t885 * t885
+    del t885, x_1_1_8_left_flip_up
+    t887 = np.sqrt(t886)
+    del t886
+    t888 = np.maximum(0.0, t887 - _runtime.select(t880, t3, full_1_1))
+    missed_1_1_8_left_flip_up = np.maximum(t888, _runtime.select(t880, t98, fold_1_1) - t887)
+    del t880, t887, t888
+    t889 = h_1_1_4_left_flip_up <= 1.4210854715202004e-14
+    del h_1_1_4_left_flip_up
+    x_1_1_4_left_flip_up = _runtime.select(t889, qx_1_1_4_left_flip_up, t775)
+    del qx_1_1_4_left_flip_up, t775
+    t890 = _runtime.select(t889, t23, t777)
+    del t777
+    t891 = x_1_1_4_left_flip_up * x_1_1_4_left_flip_up + t890 * t890
+    del t890, x_1_1_4_left_flip_up
+    t892 = np.sqrt(t891)
+    del t891
+    t893 = np.maximum(0.0, t892 - _runtime.select(t889, t3, full_1_1))
+    missed_1_1_4_left_flip_up = np.maximum(t893, _runtime.select(t889, t98, fold_1_1) - t892)
+    del t889, t892, t893
+    t894 = missed_1_1_8_left_flip_up < missed_1_1_4_left_flip_up
+    del missed_1_1_4_left_flip_up, missed_1_1_8_left_flip_up
+    c_1_1_9_left_flip_up = _runtime.select(t894, c_1_1_8_left_flip_up, c_1_1_4_left_flip_up)
+    del c_1_1_4_left_flip_up, c_1_1_8_left_flip_up
+    s_1_1_9_left_flip_up = _runtime.select(t894, s_1_1_8_left_flip_up, s_1_1_4_left_flip_up)
+    del s_1_1_4_left_flip_up, s_1_1_8_left_flip_up, t894
+    axisx_1_1_9_left_flip_up = T13 * c_1_1_9_left_flip_up + T23 * s_1_1_9_left_flip_up
+    t895 = axisx_1_1_9_left_flip_up * axisx_1_1_9_left_flip_up
+    h_1_1_9_left_flip_up = np.sqrt(t5 + t895)
+    del t895
+    t896 = h_1_1_9_left_flip_up <= 1.4210854715202004e-14
+    qx_1_1_9_left_flip_up = w_x * c_1_1_9_left_flip_up + w_y * s_1_1_9_left_flip_up
+    t897 = h_1_1_9_left_flip_up == 0.0
+    t898 = 1.0 / h_1_1_9_left_flip_up
+    del h_1_1_9_left_flip_up
+    t899 = qx_1_1_9_left_flip_up + d5 * _runtime.select(t897, 0.0, T33 * t898)
+    x_1_1_9_left_flip_up = _runtime.select(t896, qx_1_1_9_left_flip_up, t899)
+    del qx_1_1_9_left_flip_up, t899
+    t900 = _runtime.select(t897, 1.0, -(axisx_1_1_9_left_flip_up * t898))
+    del axisx_1_1_9_left_flip_up, t897, t898
+    t901 = _runtime.select(t896, t23, t23 - d5 * t900)
+    del t900
+    t902 = x_1_1_9_left_flip_up * x_1_1_9_left_flip_up + t901 * t901
+    del t901, x_1_1_9_left_flip_up
+    t903 = np.sqrt(t902)
+    del t902
+    t904 = np.maximum(0.0, t903 - _runtime.select(t896, t3, full_1_1))
+    missed_1_1_9_left_flip_up = np.maximum(t904, _runtime.select(t896, t98, fold_1_1) - t903)
+    del t896, t903, t904
+    t905 = missed_1_1_17_left_flip_up < missed_1_1_9_left_flip_up
+    del missed_1_1_17_left_flip_up, missed_1_1_9_left_flip_up
+    s_1_1_18_left_flip_up = _runtime.select(t905, s_1_1_17_left_flip_up, s_1_1_9_left_flip_up)
+    del s_1_1_17_left_flip_up, s_1_1_9_left_flip_up
+    s1_left_flip_up = _runtime.select(tangent1, s_1_1_18_left_flip_up, -t13)
+    del s_1_1_18_left_flip_up, t13
+    c_1_1_18_left_flip_up = _runtime.select(t905, c_1_1_17_left_flip_up, c_1_1_9_left_flip_up)
+    del c_1_1_17_left_flip_up, c_1_1_9_left_flip_up, t905
+    c1_left_flip_up = _runtime.select(tangent1, c_1_1_18_left_flip_up, c_1_1)
+    del c_1_1, c_1_1_18_left_flip_up
+    t906 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
     h_wrist_left_flip_up = np.sqrt(t5 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t366
-    t935 = t85 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t935)
-    del t935
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t369
+    t907 = t24 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t907)
+    del t907
     hub_mid_left_flip_up = r_hub_left_flip_up <= t4
-    t936 = d5 + r_hub_left_flip_up
-    t937 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t936) * 0.5 + np.maximum(fold_1_1, np.abs(t937)) * 0.5
-    t938 = (t936 - mid_reach_left_flip_up) * (t936 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t938)
-    del t938
-    t939 = (t937 - mid_reach_left_flip_up) * (t937 + mid_reach_left_flip_up)
+    t908 = d5 + r_hub_left_flip_up
+    t909 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t908) * 0.5 + np.maximum(fold_1_1, np.abs(t909)) * 0.5
+    t910 = (t908 - mid_reach_left_flip_up) * (t908 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t910)
+    del t910
+    t911 = (t909 - mid_reach_left_flip_up) * (t909 + mid_reach_left_flip_up)
     del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t939)
-    del t939
+    d_mid_left_flip_up = np.maximum(0.0, -t911)
+    del t911
     n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    t940 = _runtime.VANISHING * (size * t936)
-    any_mid_left_flip_up = n_mid_left_flip_up <= t940
-    t941 = 1.0 / n_mid_left_flip_up
+    t912 = _runtime.VANISHING * (size * t908)
+    any_mid_left_flip_up = n_mid_left_flip_up <= t912
+    t913 = 1.0 / n_mid_left_flip_up
     del n_mid_left_flip_up
-    t942 = (k_mid_left_flip_up - d_mid_left_flip_up) * t941
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t942)
-    del t942
-    t943 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    t914 = (k_mid_left_flip_up - d_mid_left_flip_up) * t913
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t914)
+    del t914
+    t915 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
     del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t941 * (2.0 * t943))
-    del any_mid_left_flip_up, t941, t943
-    t944 = across_left_flip_up * uc_mid_left_flip_up + t23 * us_mid_left_flip_up
-    t945 = 1.0 / r_hub_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t913 * (2.0 * t915))
+    del any_mid_left_flip_up, t913, t915
+    t916 = across_left_flip_up * uc_mid_left_flip_up + t23 * us_mid_left_flip_up
+    t917 = 1.0 / r_hub_left_flip_up
     del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t944 * t945)
-    del t944
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t372 <= t4
-    t946 = 1.0 / h_wrist_left_flip_up
-    t947 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t946)
-    t948 = across_left_flip_up + d5 * t947
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t946))
-    del t946
-    t949 = t23 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t948 * t948 + t949 * t949)
-    del t948, t949
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t916 * t917)
+    del t916
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t375 <= t4
+    t918 = 1.0 / h_wrist_left_flip_up
+    t919 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t918)
+    t920 = across_left_flip_up + d5 * t919
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t918))
+    del t918
+    t921 = t23 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t920 * t920 + t921 * t921)
+    del t920, t921
     in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t950 = (t936 - in_reach_left_flip_up) * (t936 + in_reach_left_flip_up)
-    del t936
-    k_near_left_flip_up = np.maximum(0.0, t950)
-    del t950
-    t951 = (t937 - in_reach_left_flip_up) * (t937 + in_reach_left_flip_up)
-    del t937
-    d_near_left_flip_up = np.maximum(0.0, -t951)
-    del t951
+    t922 = (t908 - in_reach_left_flip_up) * (t908 + in_reach_left_flip_up)
+    del t908
+    k_near_left_flip_up = np.maximum(0.0, t922)
+    del t922
+    t923 = (t909 - in_reach_left_flip_up) * (t909 + in_reach_left_flip_up)
+    del t909
+    d_near_left_flip_up = np.maximum(0.0, -t923)
+    del t923
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t940
-    del t940
-    t952 = 1.0 / n_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t912
+    del t912
+    t924 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t953 = (k_near_left_flip_up - d_near_left_flip_up) * t952
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t953)
-    del t953
-    t954 = across_left_flip_up * c_phi_left_flip_up + t23 * t947
-    t955 = np.abs(t954)
-    side_left_flip_up = _runtime.select(t955 <= t4, 1.0, -(t954 / t955))
-    del t954, t955
-    t956 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    t925 = (k_near_left_flip_up - d_near_left_flip_up) * t924
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t925)
+    del t925
+    t926 = across_left_flip_up * c_phi_left_flip_up + t23 * t919
+    t927 = np.abs(t926)
+    side_left_flip_up = _runtime.select(t927 <= t4, 1.0, -(t926 / t927))
+    del t926, t927
+    t928 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
     del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t952 * (2.0 * side_left_flip_up * t956))
-    del any_near_left_flip_up, side_left_flip_up, t952, t956
-    t957 = across_left_flip_up * uc_near_left_flip_up + t23 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t945 * t957)
-    del t957
-    t958 = t947 + c_near_left_flip_up
-    t959 = across_left_flip_up * us_near_left_flip_up - t23 * uc_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t924 * (2.0 * side_left_flip_up * t928))
+    del any_near_left_flip_up, side_left_flip_up, t924, t928
+    t929 = across_left_flip_up * uc_near_left_flip_up + t23 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t917 * t929)
+    del t929
+    t930 = t919 + c_near_left_flip_up
+    t931 = across_left_flip_up * us_near_left_flip_up - t23 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t945 * t959)
-    del t959
-    t960 = c_phi_left_flip_up + s_near_left_flip_up
-    t961 = h_wrist_left_flip_up * np.sqrt(t958 * t958 + t960 * t960)
-    del h_wrist_left_flip_up, t958, t960
-    t962 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t917 * t931)
+    del t931
+    t932 = c_phi_left_flip_up + s_near_left_flip_up
+    t933 = h_wrist_left_flip_up * np.sqrt(t930 * t930 + t932 * t932)
+    del h_wrist_left_flip_up, t930, t932
+    t934 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t963 = (t961 - 2.2737367544323206e-13 <= t383) & np.logical_not(t962 <= t4)
-    del t961, t962
-    s_kept_left_flip_up = _runtime.select(t963, c_near_left_flip_up, -t947)
+    t935 = (t933 - 2.2737367544323206e-13 <= t386) & np.logical_not(t934 <= t4)
+    del t933, t934
+    s_kept_left_flip_up = _runtime.select(t935, c_near_left_flip_up, -t919)
     del c_near_left_flip_up
-    t964 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t947)
-    del s_kept_left_flip_up, t947
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t964)
-    del c_mid_left_flip_up, t964
-    t965 = across_left_flip_up - d5 * sphi_left_flip_up
-    t966 = across_left_flip_up * us_mid_left_flip_up - t23 * uc_mid_left_flip_up
+    t936 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t919)
+    del s_kept_left_flip_up, t919
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t936)
+    del c_mid_left_flip_up, t936
+    t937 = across_left_flip_up - d5 * sphi_left_flip_up
+    t938 = across_left_flip_up * us_mid_left_flip_up - t23 * uc_mid_left_flip_up
     del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t945 * t966)
-    del hub_mid_left_flip_up, t945, t966
-    c_kept_left_flip_up = _runtime.select(t963, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t963
-    t967 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t917 * t938)
+    del hub_mid_left_flip_up, t917, t938
+    c_kept_left_flip_up = _runtime.select(t935, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t935
+    t939 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
     del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t967)
-    del s_mid_left_flip_up, t967
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t939)
+    del s_mid_left_flip_up, t939
     ey_left_flip_up = t23 - d5 * cphi_left_flip_up
-    t968 = t965 * t965 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t968)
-    del t968
-    t969 = full_1_1 - r_elbow_left_flip_up
-    t970 = t28 + r_elbow_left_flip_up
-    t971 = r_elbow_left_flip_up - t28
-    t972 = t365 & (t364 <= t969) & (t364 <= t970) & (t364 <= t971)
-    unreachable_2 = np.logical_not(t972)
-    del t972
-    t973 = _runtime.poison(invalid | unreachable_2)
-    t974 = t934 + t973
-    del t934
+    t940 = t937 * t937 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t940)
+    del t940
+    t941 = full_1_1 - r_elbow_left_flip_up
+    t942 = t35 + r_elbow_left_flip_up
+    t943 = r_elbow_left_flip_up - t35
+    t944 = t368 & (t367 <= t941) & (t367 <= t942) & (t367 <= t943)
+    unreachable_2 = np.logical_not(t944)
+    del t944
+    t945 = _runtime.poison(invalid | unreachable_2)
+    t946 = t906 + t945
+    del t906
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
-    t975 = folded_elbow_left_flip_up | no_link_elbow
-    A_elbow_left_flip_up = np.maximum(t969, 0.0)
-    del t969
-    C_elbow_left_flip_up = np.maximum(t971, 0.0)
-    del t971
-    t976 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    t947 = folded_elbow_left_flip_up | no_link_elbow
+    A_elbow_left_flip_up = np.maximum(t941, 0.0)
+    del t941
+    C_elbow_left_flip_up = np.maximum(t943, 0.0)
+    del t943
+    t948 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t970, 0.0)
-    del t970
-    t977 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t978 = 1.0 / (t976 + t977)
-    c_base_elbow_left_flip_up = _runtime.select(t975, 1.0, -((t976 - t977) * t978))
-    t979 = 1.0 / r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t942, 0.0)
+    del t942
+    t949 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t950 = 1.0 / (t948 + t949)
+    c_base_elbow_left_flip_up = _runtime.select(t947, 1.0, -((t948 - t949) * t950))
+    t951 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t980 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t979)
+    t952 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t951)
     del ey_left_flip_up
-    t981 = c_base_elbow_left_flip_up * t980
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t976 * t977)
-    del t976, t977
-    s_base_elbow_left_flip_up = _runtime.select(t975, 0.0, t978 * area_elbow_left_flip_up)
-    del t975, t978
-    t982 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t965 * t979))
-    del t965, t979
-    t983 = s_base_elbow_left_flip_up * t982
-    s2_left_flip_up = t981 - t983
-    t984 = c_base_elbow_left_flip_up * t982
-    del c_base_elbow_left_flip_up, t982
-    t985 = t980 * s_base_elbow_left_flip_up
-    del s_base_elbow_left_flip_up, t980
-    c2_left_flip_up = t984 + t985
-    t986 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t987 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t953 = c_base_elbow_left_flip_up * t952
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t948 * t949)
+    del t948, t949
+    s_base_elbow_left_flip_up = _runtime.select(t947, 0.0, t950 * area_elbow_left_flip_up)
+    del t947, t950
+    t954 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t937 * t951))
+    del t937, t951
+    t955 = s_base_elbow_left_flip_up * t954
+    s2_left_flip_up = t953 - t955
+    t956 = c_base_elbow_left_flip_up * t954
+    del c_base_elbow_left_flip_up, t954
+    t957 = t952 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t952
+    c2_left_flip_up = t956 + t957
+    t958 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t959 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t988 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t960 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t989 = 1.0 / (t987 + t988)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t989)
+    t961 = 1.0 / (t959 + t960)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t961)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t989 * (t987 - t988)))
-    del t987, t988, t989
-    t990 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t991 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t992 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t961 * (t959 - t960)))
+    del t959, t960, t961
+    t962 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t963 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t964 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t993 = c3_left_flip_up * t991 - s3_left_flip_up * t992
-    t994 = c3_left_flip_up * t992 + s3_left_flip_up * t991
-    del t991, t992
-    t995 = _runtime.wrap_cut(np.arctan2(t993, t994)) + t973
-    del t993, t994
-    t996 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t965 = c3_left_flip_up * t963 - s3_left_flip_up * t964
+    t966 = c3_left_flip_up * t964 + s3_left_flip_up * t963
+    del t963, t964
+    t967 = _runtime.wrap_cut(np.arctan2(t965, t966)) + t945
+    del t965, t966
+    t968 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t997 = _runtime.wrap_cut(-np.arctan2(t996, M_33_left_flip_up))
-    del M_33_left_flip_up, t996
-    t998 = t997 + t973
-    del t997
+    t969 = _runtime.wrap_cut(-np.arctan2(t968, M_33_left_flip_up))
+    del M_33_left_flip_up, t968
+    t970 = t969 + t945
+    del t969
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t999 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t971 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t1000 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t972 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t1001 = _runtime.wrap_cut(-np.arctan2(t999, t1000)) + t973
-    del t1000, t999
-    s2_left_flip_down = t981 + t983
-    del t981, t983
-    c2_left_flip_down = t984 - t985
-    del t984, t985
-    t1002 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t1003 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t1004 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t973 = _runtime.wrap_cut(-np.arctan2(t971, t972)) + t945
+    del t971, t972
+    s2_left_flip_down = t953 + t955
+    del t953, t955
+    c2_left_flip_down = t956 - t957
+    del t956, t957
+    t974 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t975 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t976 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t1005 = c3_left_flip_up * t1003 + s3_left_flip_up * t1004
-    t1006 = c3_left_flip_up * t1004 - s3_left_flip_up * t1003
-    del c3_left_flip_up, s3_left_flip_up, t1003, t1004
-    t1007 = _runtime.wrap_cut(np.arctan2(t1005, t1006)) + t973
-    del t1005, t1006
+    t977 = c3_left_flip_up * t975 + s3_left_flip_up * t976
+    t978 = c3_left_flip_up * t976 - s3_left_flip_up * t975
+    del c3_left_flip_up, s3_left_flip_up, t975, t976
+    t979 = _runtime.wrap_cut(np.arctan2(t977, t978)) + t945
+    del t977, t978
     c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t8 + t10)
     del t10, t8
-    t1008 = _runtime.select(free1, 0.0, t11 - t12)
+    t980 = _runtime.select(free1, 0.0, t11 - t12)
     del t11, t12
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t1008
-    t1009 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    h_1_1_right_noflip_up = np.sqrt(t5 + t1009)
-    del t1009
-    t1010 = h_1_1_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t1008
-    t1011 = h_1_1_right_noflip_up == 0.0
-    t1012 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = _runtime.select(t1011, 0.0, T33 * t1012)
-    t1013 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t1010, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t1013)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t1008
-    t1014 = T33 * (T13 * t1008 + T23 * c_1_1_right_noflip_up)
-    t1015 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
-    del h_1_1_right_noflip_up
-    t1016 = _runtime.select(t1010, 0.0, t1014 / t1015)
-    del t1014, t1015
-    t1017 = d5 * t1016
-    t1018 = axisx_1_1_right_noflip_up * t1012
-    del axisx_1_1_right_noflip_up, t1012
-    t1019 = _runtime.select(t1011, 1.0, t1018)
-    dx_1_1_right_noflip_up = _runtime.select(t1010, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1017 * t1019)
-    t1020 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
-    del dx_1_1_right_noflip_up
-    t1021 = _runtime.select(t1010, t23, t23 - d5 * t1019)
-    t1022 = _runtime.select(t1010, 0.0, t1017 * uc_1_1_right_noflip_up)
-    slope_1_1_right_noflip_up = t1020 - t1021 * t1022
-    del t1020
-    t1023 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
-    straight_1_1_right_noflip_up = dqx_1_1_right_noflip_up * dqx_1_1_right_noflip_up
-    t1024 = 2.0 * dqx_1_1_right_noflip_up
-    t1025 = qx_1_1_right_noflip_up * uc_1_1_right_noflip_up
-    del uc_1_1_right_noflip_up
-    t1026 = t1024 * t1019 + t1016 * (t1025 + t23 * t1019)
-    del t1019
-    bends_1_1_right_noflip_up = _runtime.select(t1010, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1017 * t1026)
-    del t1026
-    t1027 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
-    del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t1027 + t1021 * t1021
-    del t1021, t1027
-    t1028 = _runtime.select(t1010, t29, fold_1_1) - whole_1_1
-    t1029 = np.maximum(0.0, t1028)
-    del t1028
-    low_1_1_right_noflip_up = t1029 * t1029
-    del t1029
-    t1030 = whole_1_1 + _runtime.select(t1010, t3, full_1_1)
-    high_1_1_right_noflip_up = t1030 * t1030
-    del t1030
-    t1031 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t1031)
-    del square_1_1_right_noflip_up, t1031
-    t1032 = bends_1_1_right_noflip_up * miss_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t1023 - t1032
-    del t1023, t1032
-    t1033 = inner_1_1_right_noflip_up < 0.0
-    t1034 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
-    del inner_1_1_right_noflip_up
-    t1035 = _runtime.sign(slope_1_1_right_noflip_up) * t1034
-    del t1034
-    below_1_1_right_noflip_up = _runtime.select(t1033, 2.0 * bends_1_1_right_noflip_up, 2.0 * (slope_1_1_right_noflip_up + t1035))
-    del bends_1_1_right_noflip_up, t1035
-    above_1_1_right_noflip_up = _runtime.select(t1033, slope_1_1_right_noflip_up, miss_1_1_right_noflip_up)
-    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t1033
-    t1036 = np.abs(below_1_1_right_noflip_up) <= np.abs(above_1_1_right_noflip_up)
-    t1037 = above_1_1_right_noflip_up / below_1_1_right_noflip_up
-    del above_1_1_right_noflip_up, below_1_1_right_noflip_up
-    t1038 = _runtime.select(t1036, 0.0, t1037)
-    del t1036, t1037
-    t1039 = t1038 * t1038
-    t1040 = 1.0 / (1.0 + t1039)
-    by_c_1_1_right_noflip_up = (1.0 - t1039) * t1040
-    del t1039
-    t1041 = t1040 * (2.0 * t1038)
-    del t1038, t1040
-    t1042 = t1041 * t1041 / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    versine_1_1_right_noflip_up = _runtime.select(0.0 < by_c_1_1_right_noflip_up, t1042, 1.0 - by_c_1_1_right_noflip_up)
-    del t1042
-    cost_1_1_right_noflip_up = d4 * versine_1_1_right_noflip_up + root1 * np.abs(t1041)
-    del versine_1_1_right_noflip_up
-    t1043 = cost_1_1_right_noflip_up <= whole_1_1
-    del cost_1_1_right_noflip_up
-    cosine_1_1_right_noflip_up = _runtime.select(t1043, by_c_1_1_right_noflip_up, 1.0)
-    del by_c_1_1_right_noflip_up
-    t1044 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t1043, -t1041, 0.0)
-    del t1041, t1043
-    c_1_1_2_right_noflip_up = t1044 + t1008 * sine_1_1_right_noflip_up
-    del t1044
-    t1045 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
-    del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t1045 - t1008 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t1045
-    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t1046 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    h_1_1_2_right_noflip_up = np.sqrt(t5 + t1046)
-    del t1046
-    t1047 = h_1_1_2_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t1048 = h_1_1_2_right_noflip_up == 0.0
-    t1049 = 1.0 / h_1_1_2_right_noflip_up
-    uc_1_1_2_right_noflip_up = _runtime.select(t1048, 0.0, T33 * t1049)
-    t1050 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    x_1_1_2_right_noflip_up = _runtime.select(t1047, qx_1_1_2_right_noflip_up, t1050)
-    del t1050
-    dqx_1_1_2_right_noflip_up = w_y * c_1_1_2_right_noflip_up - w_x * s_1_1_2_right_noflip_up
-    t1051 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    t1052 = h_1_1_2_right_noflip_up * h_1_1_2_right_noflip_up
-    del h_1_1_2_right_noflip_up
-    spin_1_1_2_right_noflip_up = _runtime.select(t1047, 0.0, T33 * t1051 / t1052)
-    del t1051, t1052
-    rate_1_1_2_right_noflip_up = d5 * spin_1_1_2_right_noflip_up
-    t1053 = _runtime.select(t1048, 1.0, axisx_1_1_2_right_noflip_up * t1049)
-    del axisx_1_1_2_right_noflip_up, t1048, t1049
-    t1054 = dqx_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1053
-    dx_1_1_2_right_noflip_up = _runtime.select(t1047, dqx_1_1_2_right_noflip_up, t1054)
-    del t1054
-    t1055 = x_1_1_2_right_noflip_up * dx_1_1_2_right_noflip_up
-    del dx_1_1_2_right_noflip_up
-    t1056 = _runtime.select(t1047, t23, t23 - d5 * t1053)
-    t1057 = rate_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
-    slope_1_1_2_right_noflip_up = t1055 + t1056 * _runtime.select(t1047, 0.0, t1057)
-    del t1055, t1057
-    t1058 = slope_1_1_2_right_noflip_up * slope_1_1_2_right_noflip_up
-    straight_1_1_2_right_noflip_up = dqx_1_1_2_right_noflip_up * dqx_1_1_2_right_noflip_up
-    t1059 = qx_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
-    del qx_1_1_2_right_noflip_up, uc_1_1_2_right_noflip_up
-    t1060 = spin_1_1_2_right_noflip_up * (t1059 + t23 * t1053)
-    del spin_1_1_2_right_noflip_up, t1059
-    t1061 = 2.0 * dqx_1_1_2_right_noflip_up * t1053 - t1060
-    del dqx_1_1_2_right_noflip_up, t1053, t1060
-    t1062 = straight_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1061
-    del rate_1_1_2_right_noflip_up, t1061
-    bends_1_1_2_right_noflip_up = _runtime.select(t1047, straight_1_1_2_right_noflip_up, t1062)
-    del straight_1_1_2_right_noflip_up, t1062
-    t1063 = x_1_1_2_right_noflip_up * x_1_1_2_right_noflip_up
-    del x_1_1_2_right_noflip_up
-    square_1_1_2_right_noflip_up = t1063 + t1056 * t1056
-    del t1056, t1063
-    t1064 = _runtime.select(t1047, t29, fold_1_1) - whole_1_1
-    t1065 = np.maximum(0.0, t1064)
-    del t1064
-    t1066 = whole_1_1 + _runtime.select(t1047, t3, full_1_1)
-    del t1047
-    t1067 = np.minimum(t1066 * t1066, square_1_1_2_right_noflip_up)
-    del t1066
-    miss_1_1_2_right_noflip_up = square_1_1_2_right_noflip_up - np.maximum(t1065 * t1065, t1067)
-    del square_1_1_2_right_noflip_up, t1065, t1067
-    t1068 = bends_1_1_2_right_noflip_up * miss_1_1_2_right_noflip_up
-    inner_1_1_2_right_noflip_up = t1058 - t1068
-    del t1058, t1068
-    t1069 = inner_1_1_2_right_noflip_up < 0.0
-    t1070 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_noflip_up))
-    del inner_1_1_2_right_noflip_up
-    t1071 = _runtime.sign(slope_1_1_2_right_noflip_up) * t1070
-    del t1070
-    below_1_1_2_right_noflip_up = _runtime.select(t1069, 2.0 * bends_1_1_2_right_noflip_up, 2.0 * (slope_1_1_2_right_noflip_up + t1071))
-    del bends_1_1_2_right_noflip_up, t1071
-    above_1_1_2_right_noflip_up = _runtime.select(t1069, slope_1_1_2_right_noflip_up, miss_1_1_2_right_noflip_up)
-    del miss_1_1_2_right_noflip_up, slope_1_1_2_right_noflip_up, t1069
-    t1072 = np.abs(below_1_1_2_right_noflip_up) <= np.abs(above_1_1_2_right_noflip_up)
-    t1073 = above_1_1_2_right_noflip_up / below_1_1_2_right_noflip_up
-    del above_1_1_2_right_noflip_up, below_1_1_2_right_noflip_up
-    t1074 = _runtime.select(t1072, 0.0, t1073)
-    del t1072, t1073
-    t1075 = t1074 * t1074
-    t1076 = 1.0 / (1.0 + t1075)
-    by_c_1_1_2_right_noflip_up = (1.0 - t1075) * t1076
-    del t1075
-    t1077 = t1076 * (2.0 * t1074)
-    del t1074, t1076
-    t1078 = t1077 * t1077 / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    versine_1_1_2_right_noflip_up = _runtime.select(0.0 < by_c_1_1_2_right_noflip_up, t1078, 1.0 - by_c_1_1_2_right_noflip_up)
-    del t1078
-    cost_1_1_2_right_noflip_up = d4 * versine_1_1_2_right_noflip_up + root1 * np.abs(t1077)
-    del versine_1_1_2_right_noflip_up
-    t1079 = cost_1_1_2_right_noflip_up <= whole_1_1
-    del cost_1_1_2_right_noflip_up
-    cosine_1_1_2_right_noflip_up = _runtime.select(t1079, by_c_1_1_2_right_noflip_up, 1.0)
-    del by_c_1_1_2_right_noflip_up
-    t1080 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t1079, -t1077, 0.0)
-    del t1077, t1079
-    t1081 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_3_right_noflip_up = t1080 - t1081
-    del t1080, t1081
-    t1082 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t1083 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_3_right_noflip_up = t1082 + t1083
-    del t1082, t1083
-    axisx_1_1_3_right_noflip_up = T13 * c_1_1_3_right_noflip_up + T23 * s_1_1_3_right_noflip_up
-    t1084 = axisx_1_1_3_right_noflip_up * axisx_1_1_3_right_noflip_up
-    h_1_1_3_right_noflip_up = np.sqrt(t5 + t1084)
-    del t1084
-    t1085 = h_1_1_3_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_3_right_noflip_up = w_x * c_1_1_3_right_noflip_up + w_y * s_1_1_3_right_noflip_up
-    t1086 = h_1_1_3_right_noflip_up == 0.0
-    t1087 = 1.0 / h_1_1_3_right_noflip_up
-    uc_1_1_3_right_noflip_up = _runtime.select(t1086, 0.0, T33 * t1087)
-    t1088 = qx_1_1_3_right_noflip_up - d5 * uc_1_1_3_right_noflip_up
-    x_1_1_3_right_noflip_up = _runtime.select(t1085, qx_1_1_3_right_noflip_up, t1088)
-    del t1088
-    dqx_1_1_3_right_noflip_up = w_y * c_1_1_3_right_noflip_up - w_x * s_1_1_3_right_noflip_up
-    t1089 = T13 * s_1_1_3_right_noflip_up - T23 * c_1_1_3_right_noflip_up
-    t1090 = h_1_1_3_right_noflip_up * h_1_1_3_right_noflip_up
-    del h_1_1_3_right_noflip_up
-    spin_1_1_3_right_noflip_up = _runtime.select(t1085, 0.0, T33 * t1089 / t1090)
-    del t1089, t1090
-    rate_1_1_3_right_noflip_up = d5 * spin_1_1_3_right_noflip_up
-    t1091 = _runtime.select(t1086, 1.0, axisx_1_1_3_right_noflip_up * t1087)
-    del axisx_1_1_3_right_noflip_up, t1086, t1087
-    t1092 = dqx_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1091
-    dx_1_1_3_right_noflip_up = _runtime.select(t1085, dqx_1_1_3_right_noflip_up, t1092)
-    del t1092
-    t1093 = x_1_1_3_right_noflip_up * dx_1_1_3_right_noflip_up
-    del dx_1_1_3_right_noflip_up
-    t1094 = _runtime.select(t1085, t23, t23 - d5 * t1091)
-    t1095 = rate_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
-    slope_1_1_3_right_noflip_up = t1093 + t1094 * _runtime.select(t1085, 0.0, t1095)
-    del t1093, t1095
-    t1096 = slope_1_1_3_right_noflip_up * slope_1_1_3_right_noflip_up
-    straight_1_1_3_right_noflip_up = dqx_1_1_3_right_noflip_up * dqx_1_1_3_right_noflip_up
-    t1097 = qx_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
-    del qx_1_1_3_right_noflip_up, uc_1_1_3_right_noflip_up
-    t1098 = spin_1_1_3_right_noflip_up * (t1097 + t23 * t1091)
-    del spin_1_1_3_right_noflip_up, t1097
-    t1099 = 2.0 * dqx_1_1_3_right_noflip_up * t1091 - t1098
-    del dqx_1_1_3_right_noflip_up, t1091, t1098
-    t1100 = straight_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1099
-    del rate_1_1_3_right_noflip_up, t1099
-    bends_1_1_3_right_noflip_up = _runtime.select(t1085, straight_1_1_3_right_noflip_up, t1100)
-    del straight_1_1_3_right_noflip_up, t1100
-    t1101 = x_1_1_3_right_noflip_up * x_1_1_3_right_noflip_up
-    del x_1_1_3_right_noflip_up
-    square_1_1_3_right_noflip_up = t1101 + t1094 * t1094
-    del t1094, t1101
-    t1102 = _runtime.select(t1085, t29, fold_1_1) - whole_1_1
-    t1103 = np.maximum(0.0, t1102)
-    del t1102
-    t1104 = whole_1_1 + _runtime.select(t1085, t3, full_1_1)
-    del t1085
-    t1105 = np.minimum(t1104 * t1104, square_1_1_3_right_noflip_up)
-    del t1104
-    miss_1_1_3_right_noflip_up = square_1_1_3_right_noflip_up - np.maximum(t1103 * t1103, t1105)
-    del square_1_1_3_right_noflip_up, t1103, t1105
-    t1106 = bends_1_1_3_right_noflip_up * miss_1_1_3_right_noflip_up
-    inner_1_1_3_right_noflip_up = t1096 - t1106
-    del t1096, t1106
-    t1107 = inner_1_1_3_right_noflip_up < 0.0
-    t1108 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_noflip_up))
-    del inner_1_1_3_right_noflip_up
-    t1109 = _runtime.sign(slope_1_1_3_right_noflip_up) * t1108
-    del t1108
-    below_1_1_3_right_noflip_up = _runtime.select(t1107, 2.0 * bends_1_1_3_right_noflip_up, 2.0 * (slope_1_1_3_right_noflip_up + t1109))
-    del bends_1_1_3_right_noflip_up, t1109
-    above_1_1_3_right_noflip_up = _runtime.select(t1107, slope_1_1_3_right_noflip_up, miss_1_1_3_right_noflip_up)
-    del miss_1_1_3_right_noflip_up, slope_1_1_3_right_noflip_up, t1107
-    t1110 = np.abs(below_1_1_3_right_noflip_up) <= np.abs(above_1_1_3_right_noflip_up)
-    t1111 = above_1_1_3_right_noflip_up / below_1_1_3_right_noflip_up
-    del above_1_1_3_right_noflip_up, below_1_1_3_right_noflip_up
-    t1112 = _runtime.select(t1110, 0.0, t1111)
-    del t1110, t1111
-    t1113 = t1112 * t1112
-    t1114 = 1.0 / (1.0 + t1113)
-    by_c_1_1_3_right_noflip_up = (1.0 - t1113) * t1114
-    del t1113
-    t1115 = t1114 * (2.0 * t1112)
-    del t1112, t1114
-    t1116 = t1115 * t1115 / (1.0 + np.abs(by_c_1_1_3_right_noflip_up))
-    versine_1_1_3_right_noflip_up = _runtime.select(0.0 < by_c_1_1_3_right_noflip_up, t1116, 1.0 - by_c_1_1_3_right_noflip_up)
-    del t1116
-    cost_1_1_3_right_noflip_up = d4 * versine_1_1_3_right_noflip_up + root1 * np.abs(t1115)
-    del versine_1_1_3_right_noflip_up
-    t1117 = cost_1_1_3_right_noflip_up <= whole_1_1
-    del cost_1_1_3_right_noflip_up
-    cosine_1_1_3_right_noflip_up = _runtime.select(t1117, by_c_1_1_3_right_noflip_up, 1.0)
-    del by_c_1_1_3_right_noflip_up
-    t1118 = c_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
-    sine_1_1_3_right_noflip_up = _runtime.select(t1117, -t1115, 0.0)
-    del t1115, t1117
-    t1119 = s_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
-    c_1_1_4_right_noflip_up = t1118 - t1119
-    del t1118, t1119
-    t1120 = c_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
-    del c_1_1_3_right_noflip_up, sine_1_1_3_right_noflip_up
-    t1121 = s_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
-    del cosine_1_1_3_right_noflip_up, s_1_1_3_right_noflip_up
-    s_1_1_4_right_noflip_up = t1120 + t1121
-    del t1120, t1121
-    axisx_1_1_4_right_noflip_up = T13 * c_1_1_4_right_noflip_up + T23 * s_1_1_4_right_noflip_up
-    t1122 = axisx_1_1_4_right_noflip_up * axisx_1_1_4_right_noflip_up
-    t1123 = T13 * s_1_1_4_right_noflip_up - T23 * c_1_1_4_right_noflip_up
-    most_1_1_4_right_noflip_up = np.sqrt(t1122 + t1123 * t1123)
-    t1124 = most_1_1_4_right_noflip_up <= 8.881784197001252e-16
-    qx_1_1_4_right_noflip_up = w_x * c_1_1_4_right_noflip_up + w_y * s_1_1_4_right_noflip_up
-    t1125 = qx_1_1_4_right_noflip_up * qx_1_1_4_right_noflip_up
-    r_1_1_4_right_noflip_up = np.sqrt(t85 + t1125)
-    del t1125
-    t1126 = r_1_1_4_right_noflip_up <= t86
-    t1127 = d5 + r_1_1_4_right_noflip_up
-    h_1_1_4_right_noflip_up = np.sqrt(t5 + t1122)
-    del t1122
-    t1128 = h_1_1_4_right_noflip_up == 0.0
-    t1129 = 1.0 / h_1_1_4_right_noflip_up
-    uc_1_1_4_right_noflip_up = _runtime.select(t1128, 0.0, T33 * t1129)
-    t1130 = qx_1_1_4_right_noflip_up - d5 * uc_1_1_4_right_noflip_up
-    t1131 = _runtime.select(t1128, 1.0, axisx_1_1_4_right_noflip_up * t1129)
-    del t1128, t1129
-    t1132 = t23 - d5 * t1131
-    t1133 = np.maximum(np.sqrt(t1130 * t1130 + t1132 * t1132), fold_1_1)
-    goal_1_1_4_right_noflip_up = np.minimum(full_1_1, t1133)
-    del t1133
-    t1134 = (t1127 - goal_1_1_4_right_noflip_up) * (t1127 + goal_1_1_4_right_noflip_up)
-    k_v_1_1_4_right_noflip_up = np.maximum(0.0, t1134)
-    del t1134
-    t1135 = d5 - r_1_1_4_right_noflip_up
-    t1136 = (goal_1_1_4_right_noflip_up - t1135) * (goal_1_1_4_right_noflip_up + t1135)
-    del goal_1_1_4_right_noflip_up, t1135
-    d_v_1_1_4_right_noflip_up = np.maximum(0.0, t1136)
-    del t1136
-    n_v_1_1_4_right_noflip_up = k_v_1_1_4_right_noflip_up + d_v_1_1_4_right_noflip_up
-    t1137 = n_v_1_1_4_right_noflip_up <= size * t1127 * 8.881784197001252e-16
-    del t1127
-    t1138 = k_v_1_1_4_right_noflip_up - d_v_1_1_4_right_noflip_up
-    t1139 = 1.0 / n_v_1_1_4_right_noflip_up
-    del n_v_1_1_4_right_noflip_up
-    uc_v_1_1_4_right_noflip_up = _runtime.select(t1137, 1.0, t1138 * t1139)
-    del t1138
-    t1140 = qx_1_1_4_right_noflip_up * uc_v_1_1_4_right_noflip_up
-    t1141 = t23 * uc_1_1_4_right_noflip_up - qx_1_1_4_right_noflip_up * t1131
-    del t1131, uc_1_1_4_right_noflip_up
-    t1142 = k_v_1_1_4_right_noflip_up * d_v_1_1_4_right_noflip_up
-    del d_v_1_1_4_right_noflip_up, k_v_1_1_4_right_noflip_up
-    t1143 = t1139 * (2.0 * _runtime.sign(t1141) * np.sqrt(t1142))
-    del t1139, t1141, t1142
-    us_v_1_1_4_right_noflip_up = _runtime.select(t1137, 0.0, t1143)
-    del t1137, t1143
-    t1144 = t23 * us_v_1_1_4_right_noflip_up
-    t1145 = 1.0 / r_1_1_4_right_noflip_up
-    del r_1_1_4_right_noflip_up
-    c_v_1_1_4_right_noflip_up = _runtime.select(t1126, 1.0, (t1140 + t1144) * t1145)
-    t1146 = T33 * c_v_1_1_4_right_noflip_up < 0.0
-    t1147 = qx_1_1_4_right_noflip_up * us_v_1_1_4_right_noflip_up
-    del us_v_1_1_4_right_noflip_up
-    t1148 = t23 * uc_v_1_1_4_right_noflip_up
-    del uc_v_1_1_4_right_noflip_up
-    wc_1_1_4_right_noflip_up = _runtime.select(t1126, 0.0, t1145 * (t1147 + t1148))
-    s_v_1_1_4_right_noflip_up = _runtime.select(t1126, 0.0, t1145 * (t1147 - t1148))
-    del t1147, t1148
-    to_c_1_1_4_right_noflip_up = _runtime.select(t1146, wc_1_1_4_right_noflip_up, -s_v_1_1_4_right_noflip_up)
-    del s_v_1_1_4_right_noflip_up, wc_1_1_4_right_noflip_up
-    c_w_1_1_4_right_noflip_up = _runtime.select(t1126, 1.0, t1145 * (t1140 - t1144))
-    del t1126, t1140, t1144, t1145
-    to_s_1_1_4_right_noflip_up = _runtime.select(t1146, c_w_1_1_4_right_noflip_up, c_v_1_1_4_right_noflip_up)
-    del c_v_1_1_4_right_noflip_up, c_w_1_1_4_right_noflip_up, t1146
-    t1149 = T33 * to_c_1_1_4_right_noflip_up * _runtime.sign(to_s_1_1_4_right_noflip_up)
-    del to_c_1_1_4_right_noflip_up
-    across_1_1_4_right_noflip_up = _runtime.select(t84, 0.0, t1149)
-    del t1149
-    t1150 = np.abs(to_s_1_1_4_right_noflip_up)
-    del to_s_1_1_4_right_noflip_up
-    t1151 = most_1_1_4_right_noflip_up * t1150 <= np.abs(across_1_1_4_right_noflip_up)
-    t1152 = most_1_1_4_right_noflip_up * _runtime.sign(across_1_1_4_right_noflip_up)
-    t1153 = _runtime.select(t1151, t1152, across_1_1_4_right_noflip_up / t1150)
-    del t1150, t1151, t1152
-    wanted_1_1_4_right_noflip_up = _runtime.select(across_1_1_4_right_noflip_up == 0.0, 0.0, t1153)
-    del across_1_1_4_right_noflip_up, t1153
-    t1154 = axisx_1_1_4_right_noflip_up * wanted_1_1_4_right_noflip_up
-    t1155 = most_1_1_4_right_noflip_up - wanted_1_1_4_right_noflip_up
-    t1156 = most_1_1_4_right_noflip_up + wanted_1_1_4_right_noflip_up
-    rest_1_1_4_right_noflip_up = np.sqrt(np.maximum(0.0, t1155 * t1156)) * _runtime.sign(-t1123)
-    del t1155, t1156
-    t1157 = most_1_1_4_right_noflip_up * most_1_1_4_right_noflip_up
-    del most_1_1_4_right_noflip_up
-    t1158 = 1.0 / t1157
-    del t1157
-    t1159 = (t1154 - t1123 * rest_1_1_4_right_noflip_up) * t1158
-    del t1154
-    by_c_1_1_4_right_noflip_up = _runtime.select(t1124, 1.0, t1159)
-    del t1159
-    t1160 = axisx_1_1_4_right_noflip_up * rest_1_1_4_right_noflip_up
-    del axisx_1_1_4_right_noflip_up, rest_1_1_4_right_noflip_up
-    t1161 = t1158 * (t1160 + t1123 * wanted_1_1_4_right_noflip_up)
-    del t1123, t1158, t1160, wanted_1_1_4_right_noflip_up
-    t1162 = _runtime.select(t1124, 0.0, t1161)
-    del t1124, t1161
-    t1163 = t1162 * t1162 / (1.0 + np.abs(by_c_1_1_4_right_noflip_up))
-    versine_1_1_4_right_noflip_up = _runtime.select(0.0 < by_c_1_1_4_right_noflip_up, t1163, 1.0 - by_c_1_1_4_right_noflip_up)
-    del t1163
-    cost_1_1_4_right_noflip_up = d4 * versine_1_1_4_right_noflip_up + root1 * np.abs(t1162)
-    del versine_1_1_4_right_noflip_up
-    t1164 = cost_1_1_4_right_noflip_up <= whole_1_1
-    del cost_1_1_4_right_noflip_up
-    cosine_1_1_4_right_noflip_up = _runtime.select(t1164, by_c_1_1_4_right_noflip_up, 1.0)
-    del by_c_1_1_4_right_noflip_up
-    t1165 = c_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
-    sine_1_1_4_right_noflip_up = _runtime.select(t1164, -t1162, 0.0)
-    del t1162, t1164
-    t1166 = s_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
-    c_1_1_5_right_noflip_up = t1165 - t1166
-    del t1165, t1166
-    t1167 = c_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
-    del sine_1_1_4_right_noflip_up
-    t1168 = s_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
-    del cosine_1_1_4_right_noflip_up
-    s_1_1_5_right_noflip_up = t1167 + t1168
-    del t1167, t1168
-    axisx_1_1_5_right_noflip_up = T13 * c_1_1_5_right_noflip_up + T23 * s_1_1_5_right_noflip_up
-    t1169 = axisx_1_1_5_right_noflip_up * axisx_1_1_5_right_noflip_up
-    h_1_1_5_right_noflip_up = np.sqrt(t5 + t1169)
-    del t1169
-    t1170 = h_1_1_5_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_5_right_noflip_up = w_x * c_1_1_5_right_noflip_up + w_y * s_1_1_5_right_noflip_up
-    t1171 = h_1_1_5_right_noflip_up == 0.0
-    t1172 = 1.0 / h_1_1_5_right_noflip_up
-    uc_1_1_5_right_noflip_up = _runtime.select(t1171, 0.0, T33 * t1172)
-    t1173 = qx_1_1_5_right_noflip_up - d5 * uc_1_1_5_right_noflip_up
-    x_1_1_5_right_noflip_up = _runtime.select(t1170, qx_1_1_5_right_noflip_up, t1173)
-    del t1173
-    dqx_1_1_5_right_noflip_up = w_y * c_1_1_5_right_noflip_up - w_x * s_1_1_5_right_noflip_up
-    t1174 = T13 * s_1_1_5_right_noflip_up - T23 * c_1_1_5_right_noflip_up
-    t1175 = h_1_1_5_right_noflip_up * h_1_1_5_right_noflip_up
-    del h_1_1_5_right_noflip_up
-    spin_1_1_5_right_noflip_up = _runtime.select(t1170, 0.0, T33 * t1174 / t1175)
-    del t1174, t1175
-    rate_1_1_5_right_noflip_up = d5 * spin_1_1_5_right_noflip_up
-    t1176 = _runtime.select(t1171, 1.0, axisx_1_1_5_right_noflip_up * t1172)
-    del axisx_1_1_5_right_noflip_up, t1171, t1172
-    t1177 = dqx_1_1_5_right_noflip_up - rate_1_1_5_right_noflip_up * t1176
-    dx_1_1_5_right_noflip_up = _runtime.select(t1170, dqx_1_1_5_right_noflip_up, t1177)
-    del t1177
-    t1178 = x_1_1_5_right_noflip_up * dx_1_1_5_right_noflip_up
-    del dx_1_1_5_right_noflip_up
-    t1179 = _runtime.select(t1170, t23, t23 - d5 * t1176)
-    t1180 = rate_1_1_5_right_noflip_up * uc_1_1_5_right_noflip_up
-    slope_1_1_5_right_noflip_up = t1178 + t1179 * _runtime.select(t1170, 0.0, t1180)
-    del t1178, t1180
-    t1181 = slope_1_1_5_right_noflip_up * slope_1_1_5_right_noflip_up
-    straight_1_1_5_right_noflip_up = dqx_1_1_5_right_noflip_up * dqx_1_1_5_right_noflip_up
-    t1182 = qx_1_1_5_right_noflip_up * uc_1_1_5_right_noflip_up
-    del qx_1_1_5_right_noflip_up, uc_1_1_5_right_noflip_up
-    t1183 = spin_1_1_5_right_noflip_up * (t1182 + t23 * t1176)
-    del spin_1_1_5_right_noflip_up, t1182
-    t1184 = 2.0 * dqx_1_1_5_right_noflip_up * t1176 - t1183
-    del dqx_1_1_5_right_noflip_up, t1176, t1183
-    t1185 = straight_1_1_5_right_noflip_up - rate_1_1_5_right_noflip_up * t1184
-    del rate_1_1_5_right_noflip_up, t1184
-    bends_1_1_5_right_noflip_up = _runtime.select(t1170, straight_1_1_5_right_noflip_up, t1185)
-    del straight_1_1_5_right_noflip_up, t1185
-    t1186 = x_1_1_5_right_noflip_up * x_1_1_5_right_noflip_up
-    del x_1_1_5_right_noflip_up
-    square_1_1_5_right_noflip_up = t1186 + t1179 * t1179
-    del t1179, t1186
-    t1187 = _runtime.select(t1170, t29, fold_1_1) - whole_1_1
-    t1188 = np.maximum(0.0, t1187)
-    del t1187
-    t1189 = whole_1_1 + _runtime.select(t1170, t3, full_1_1)
-    del t1170
-    t1190 = np.minimum(t1189 * t1189, square_1_1_5_right_noflip_up)
-    del t1189
-    miss_1_1_5_right_noflip_up = square_1_1_5_right_noflip_up - np.maximum(t1188 * t1188, t1190)
-    del square_1_1_5_right_noflip_up, t1188, t1190
-    t1191 = bends_1_1_5_right_noflip_up * miss_1_1_5_right_noflip_up
-    inner_1_1_5_right_noflip_up = t1181 - t1191
-    del t1181, t1191
-    t1192 = inner_1_1_5_right_noflip_up < 0.0
-    t1193 = np.sqrt(np.maximum(0.0, inner_1_1_5_right_noflip_up))
-    del inner_1_1_5_right_noflip_up
-    t1194 = _runtime.sign(slope_1_1_5_right_noflip_up) * t1193
-    del t1193
-    below_1_1_5_right_noflip_up = _runtime.select(t1192, 2.0 * bends_1_1_5_right_noflip_up, 2.0 * (slope_1_1_5_right_noflip_up + t1194))
-    del bends_1_1_5_right_noflip_up, t1194
-    above_1_1_5_right_noflip_up = _runtime.select(t1192, slope_1_1_5_right_noflip_up, miss_1_1_5_right_noflip_up)
-    del miss_1_1_5_right_noflip_up, slope_1_1_5_right_noflip_up, t1192
-    t1195 = np.abs(below_1_1_5_right_noflip_up) <= np.abs(above_1_1_5_right_noflip_up)
-    t1196 = above_1_1_5_right_noflip_up / below_1_1_5_right_noflip_up
-    del above_1_1_5_right_noflip_up, below_1_1_5_right_noflip_up
-    t1197 = _runtime.select(t1195, 0.0, t1196)
-    del t1195, t1196
-    t1198 = t1197 * t1197
-    t1199 = 1.0 / (1.0 + t1198)
-    by_c_1_1_5_right_noflip_up = (1.0 - t1198) * t1199
-    del t1198
-    t1200 = t1199 * (2.0 * t1197)
-    del t1197, t1199
-    t1201 = t1200 * t1200 / (1.0 + np.abs(by_c_1_1_5_right_noflip_up))
-    versine_1_1_5_right_noflip_up = _runtime.select(0.0 < by_c_1_1_5_right_noflip_up, t1201, 1.0 - by_c_1_1_5_right_noflip_up)
-    del t1201
-    cost_1_1_5_right_noflip_up = d4 * versine_1_1_5_right_noflip_up + root1 * np.abs(t1200)
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t980
+    t981 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    daxisx_1_1_right_noflip_up = T13 * t980 + T23 * c_1_1_right_noflip_up
+    t982 = daxisx_1_1_right_noflip_up * daxisx_1_1_right_noflip_up
+    most_1_1_5_right_noflip_up = np.sqrt(t981 + t982)
+    del t982
+    t983 = most_1_1_5_right_noflip_up <= 8.881784197001252e-16
+    margin_1_1_5_right_noflip_up = most_1_1_5_right_noflip_up * most_1_1_5_right_noflip_up
+    del most_1_1_5_right_noflip_up
+    rest_1_1_5_right_noflip_up = np.sqrt(margin_1_1_5_right_noflip_up) * _runtime.sign(daxisx_1_1_right_noflip_up)
+    t984 = daxisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
+    t985 = 1.0 / margin_1_1_5_right_noflip_up
+    del margin_1_1_5_right_noflip_up
+    by_c_1_1_5_right_noflip_up = _runtime.select(t983, 1.0, t984 * t985)
+    del t984
+    t986 = axisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
+    del rest_1_1_5_right_noflip_up
+    t987 = _runtime.select(t983, 0.0, t985 * t986)
+    del t983, t985, t986
+    t988 = t987 * t987 / (1.0 + np.abs(by_c_1_1_5_right_noflip_up))
+    versine_1_1_5_right_noflip_up = _runtime.select(0.0 < by_c_1_1_5_right_noflip_up, t988, 1.0 - by_c_1_1_5_right_noflip_up)
+    del t988
+    cost_1_1_5_right_noflip_up = d4 * versine_1_1_5_right_noflip_up + root1 * np.abs(t987)
     del versine_1_1_5_right_noflip_up
-    t1202 = cost_1_1_5_right_noflip_up <= whole_1_1
+    t989 = cost_1_1_5_right_noflip_up <= whole_1_1
     del cost_1_1_5_right_noflip_up
-    cosine_1_1_5_right_noflip_up = _runtime.select(t1202, by_c_1_1_5_right_noflip_up, 1.0)
+    cosine_1_1_5_right_noflip_up = _runtime.select(t989, by_c_1_1_5_right_noflip_up, 1.0)
     del by_c_1_1_5_right_noflip_up
-    t1203 = c_1_1_5_right_noflip_up * cosine_1_1_5_right_noflip_up
-    sine_1_1_5_right_noflip_up = _runtime.select(t1202, -t1200, 0.0)
-    del t1200, t1202
-    t1204 = s_1_1_5_right_noflip_up * sine_1_1_5_right_noflip_up
-    c_1_1_6_right_noflip_up = t1203 - t1204
-    del t1203, t1204
-    t1205 = c_1_1_5_right_noflip_up * sine_1_1_5_right_noflip_up
-    del c_1_1_5_right_noflip_up, sine_1_1_5_right_noflip_up
-    t1206 = s_1_1_5_right_noflip_up * cosine_1_1_5_right_noflip_up
-    del cosine_1_1_5_right_noflip_up, s_1_1_5_right_noflip_up
-    s_1_1_6_right_noflip_up = t1205 + t1206
-    del t1205, t1206
-    axisx_1_1_6_right_noflip_up = T13 * c_1_1_6_right_noflip_up + T23 * s_1_1_6_right_noflip_up
-    t1207 = axisx_1_1_6_right_noflip_up * axisx_1_1_6_right_noflip_up
-    h_1_1_6_right_noflip_up = np.sqrt(t5 + t1207)
-    del t1207
-    t1208 = h_1_1_6_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_6_right_noflip_up = w_x * c_1_1_6_right_noflip_up + w_y * s_1_1_6_right_noflip_up
-    t1209 = h_1_1_6_right_noflip_up == 0.0
-    t1210 = 1.0 / h_1_1_6_right_noflip_up
-    uc_1_1_6_right_noflip_up = _runtime.select(t1209, 0.0, T33 * t1210)
-    t1211 = qx_1_1_6_right_noflip_up - d5 * uc_1_1_6_right_noflip_up
-    x_1_1_6_right_noflip_up = _runtime.select(t1208, qx_1_1_6_right_noflip_up, t1211)
-    del t1211
-    dqx_1_1_6_right_noflip_up = w_y * c_1_1_6_right_noflip_up - w_x * s_1_1_6_right_noflip_up
-    t1212 = T13 * s_1_1_6_right_noflip_up - T23 * c_1_1_6_right_noflip_up
-    t1213 = h_1_1_6_right_noflip_up * h_1_1_6_right_noflip_up
-    del h_1_1_6_right_noflip_up
-    spin_1_1_6_right_noflip_up = _runtime.select(t1208, 0.0, T33 * t1212 / t1213)
-    del t1212, t1213
-    rate_1_1_6_right_noflip_up = d5 * spin_1_1_6_right_noflip_up
-    t1214 = _runtime.select(t1209, 1.0, axisx_1_1_6_right_noflip_up * t1210)
-    del axisx_1_1_6_right_noflip_up, t1209, t1210
-    t1215 = dqx_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1214
-    dx_1_1_6_right_noflip_up = _runtime.select(t1208, dqx_1_1_6_right_noflip_up, t1215)
-    del t1215
-    t1216 = x_1_1_6_right_noflip_up * dx_1_1_6_right_noflip_up
-    del dx_1_1_6_right_noflip_up
-    t1217 = _runtime.select(t1208, t23, t23 - d5 * t1214)
-    t1218 = rate_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
-    slope_1_1_6_right_noflip_up = t1216 + t1217 * _runtime.select(t1208, 0.0, t1218)
-    del t1216, t1218
-    t1219 = slope_1_1_6_right_noflip_up * slope_1_1_6_right_noflip_up
-    straight_1_1_6_right_noflip_up = dqx_1_1_6_right_noflip_up * dqx_1_1_6_right_noflip_up
-    t1220 = qx_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
-    del qx_1_1_6_right_noflip_up, uc_1_1_6_right_noflip_up
-    t1221 = spin_1_1_6_right_noflip_up * (t1220 + t23 * t1214)
-    del spin_1_1_6_right_noflip_up, t1220
-    t1222 = 2.0 * dqx_1_1_6_right_noflip_up * t1214 - t1221
-    del dqx_1_1_6_right_noflip_up, t1214, t1221
-    t1223 = straight_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1222
-    del rate_1_1_6_right_noflip_up, t1222
-    bends_1_1_6_right_noflip_up = _runtime.select(t1208, straight_1_1_6_right_noflip_up, t1223)
-    del straight_1_1_6_right_noflip_up, t1223
-    t1224 = x_1_1_6_right_noflip_up * x_1_1_6_right_noflip_up
-    del x_1_1_6_right_noflip_up
-    square_1_1_6_right_noflip_up = t1224 + t1217 * t1217
-    del t1217, t1224
-    t1225 = _runtime.select(t1208, t29, fold_1_1) - whole_1_1
-    t1226 = np.maximum(0.0, t1225)
-    del t1225
-    t1227 = whole_1_1 + _runtime.select(t1208, t3, full_1_1)
-    del t1208
-    t1228 = np.minimum(t1227 * t1227, square_1_1_6_right_noflip_up)
-    del t1227
-    miss_1_1_6_right_noflip_up = square_1_1_6_right_noflip_up - np.maximum(t1226 * t1226, t1228)
-    del square_1_1_6_right_noflip_up, t1226, t1228
-    t1229 = bends_1_1_6_right_noflip_up * miss_1_1_6_right_noflip_up
-    inner_1_1_6_right_noflip_up = t1219 - t1229
-    del t1219, t1229
-    t1230 = inner_1_1_6_right_noflip_up < 0.0
-    t1231 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_noflip_up))
-    del inner_1_1_6_right_noflip_up
-    t1232 = _runtime.sign(slope_1_1_6_right_noflip_up) * t1231
-    del t1231
-    below_1_1_6_right_noflip_up = _runtime.select(t1230, 2.0 * bends_1_1_6_right_noflip_up, 2.0 * (slope_1_1_6_right_noflip_up + t1232))
-    del bends_1_1_6_right_noflip_up, t1232
-    above_1_1_6_right_noflip_up = _runtime.select(t1230, slope_1_1_6_right_noflip_up, miss_1_1_6_right_noflip_up)
-    del miss_1_1_6_right_noflip_up, slope_1_1_6_right_noflip_up, t1230
-    t1233 = np.abs(below_1_1_6_right_noflip_up) <= np.abs(above_1_1_6_right_noflip_up)
-    t1234 = above_1_1_6_right_noflip_up / below_1_1_6_right_noflip_up
-    del above_1_1_6_right_noflip_up, below_1_1_6_right_noflip_up
-    t1235 = _runtime.select(t1233, 0.0, t1234)
-    del t1233, t1234
-    t1236 = t1235 * t1235
-    t1237 = 1.0 / (1.0 + t1236)
-    by_c_1_1_6_right_noflip_up = (1.0 - t1236) * t1237
-    del t1236
-    t1238 = t1237 * (2.0 * t1235)
-    del t1235, t1237
-    t1239 = t1238 * t1238 / (1.0 + np.abs(by_c_1_1_6_right_noflip_up))
-    versine_1_1_6_right_noflip_up = _runtime.select(0.0 < by_c_1_1_6_right_noflip_up, t1239, 1.0 - by_c_1_1_6_right_noflip_up)
-    del t1239
-    cost_1_1_6_right_noflip_up = d4 * versine_1_1_6_right_noflip_up + root1 * np.abs(t1238)
-    del versine_1_1_6_right_noflip_up
-    t1240 = cost_1_1_6_right_noflip_up <= whole_1_1
-    del cost_1_1_6_right_noflip_up
-    cosine_1_1_6_right_noflip_up = _runtime.select(t1240, by_c_1_1_6_right_noflip_up, 1.0)
-    del by_c_1_1_6_right_noflip_up
-    t1241 = c_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
-    sine_1_1_6_right_noflip_up = _runtime.select(t1240, -t1238, 0.0)
-    del t1238, t1240
-    t1242 = s_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
-    c_1_1_7_right_noflip_up = t1241 - t1242
-    del t1241, t1242
-    t1243 = c_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
-    del c_1_1_6_right_noflip_up, sine_1_1_6_right_noflip_up
-    t1244 = s_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
-    del cosine_1_1_6_right_noflip_up, s_1_1_6_right_noflip_up
-    s_1_1_7_right_noflip_up = t1243 + t1244
-    del t1243, t1244
-    axisx_1_1_7_right_noflip_up = T13 * c_1_1_7_right_noflip_up + T23 * s_1_1_7_right_noflip_up
-    t1245 = axisx_1_1_7_right_noflip_up * axisx_1_1_7_right_noflip_up
-    h_1_1_7_right_noflip_up = np.sqrt(t5 + t1245)
-    del t1245
-    t1246 = h_1_1_7_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_7_right_noflip_up = w_x * c_1_1_7_right_noflip_up + w_y * s_1_1_7_right_noflip_up
-    t1247 = h_1_1_7_right_noflip_up == 0.0
-    t1248 = 1.0 / h_1_1_7_right_noflip_up
-    del h_1_1_7_right_noflip_up
-    t1249 = d5 * _runtime.select(t1247, 0.0, T33 * t1248)
-    x_1_1_7_right_noflip_up = _runtime.select(t1246, qx_1_1_7_right_noflip_up, qx_1_1_7_right_noflip_up - t1249)
-    del qx_1_1_7_right_noflip_up, t1249
-    t1250 = x_1_1_7_right_noflip_up * x_1_1_7_right_noflip_up
-    del x_1_1_7_right_noflip_up
-    t1251 = _runtime.select(t1247, 1.0, axisx_1_1_7_right_noflip_up * t1248)
-    del axisx_1_1_7_right_noflip_up, t1247, t1248
-    t1252 = _runtime.select(t1246, t23, t23 - d5 * t1251)
-    del t1251
-    t1253 = np.sqrt(t1250 + t1252 * t1252)
-    del t1250, t1252
-    t1254 = np.maximum(0.0, t1253 - _runtime.select(t1246, t3, full_1_1))
-    t1255 = _runtime.select(t1246, t29, fold_1_1) - t1253
-    del t1246, t1253
-    t1256 = h_1_1_4_right_noflip_up <= 1.4210854715202004e-14
-    del h_1_1_4_right_noflip_up
-    x_1_1_4_right_noflip_up = _runtime.select(t1256, qx_1_1_4_right_noflip_up, t1130)
-    del qx_1_1_4_right_noflip_up, t1130
-    t1257 = x_1_1_4_right_noflip_up * x_1_1_4_right_noflip_up
-    del x_1_1_4_right_noflip_up
-    t1258 = _runtime.select(t1256, t23, t1132)
-    del t1132
-    t1259 = np.sqrt(t1257 + t1258 * t1258)
-    del t1257, t1258
-    t1260 = np.maximum(0.0, t1259 - _runtime.select(t1256, t3, full_1_1))
-    t1261 = _runtime.select(t1256, t29, fold_1_1) - t1259
-    del t1256, t1259
-    t1262 = np.maximum(t1254, t1255) < np.maximum(t1260, t1261)
-    del t1254, t1255, t1260, t1261
-    c_1_1_8_right_noflip_up = _runtime.select(t1262, c_1_1_7_right_noflip_up, c_1_1_4_right_noflip_up)
-    del c_1_1_4_right_noflip_up, c_1_1_7_right_noflip_up
-    s_1_1_8_right_noflip_up = _runtime.select(t1262, s_1_1_7_right_noflip_up, s_1_1_4_right_noflip_up)
-    del s_1_1_4_right_noflip_up, s_1_1_7_right_noflip_up, t1262
-    axisx_1_1_8_right_noflip_up = T13 * c_1_1_8_right_noflip_up + T23 * s_1_1_8_right_noflip_up
-    t1263 = axisx_1_1_8_right_noflip_up * axisx_1_1_8_right_noflip_up
-    t1264 = T13 * s_1_1_8_right_noflip_up - T23 * c_1_1_8_right_noflip_up
-    most_1_1_8_right_noflip_up = np.sqrt(t1263 + t1264 * t1264)
-    t1265 = most_1_1_8_right_noflip_up <= 8.881784197001252e-16
-    margin_1_1_8_right_noflip_up = most_1_1_8_right_noflip_up * most_1_1_8_right_noflip_up
-    del most_1_1_8_right_noflip_up
-    rest_1_1_8_right_noflip_up = np.sqrt(margin_1_1_8_right_noflip_up) * _runtime.sign(-t1264)
-    t1266 = 1.0 / margin_1_1_8_right_noflip_up
-    del margin_1_1_8_right_noflip_up
-    t1267 = -(t1264 * rest_1_1_8_right_noflip_up * t1266)
-    del t1264
-    by_c_1_1_8_right_noflip_up = _runtime.select(t1265, 1.0, t1267)
-    del t1267
-    t1268 = axisx_1_1_8_right_noflip_up * rest_1_1_8_right_noflip_up
-    del rest_1_1_8_right_noflip_up
-    t1269 = _runtime.select(t1265, 0.0, t1266 * t1268)
-    del t1265, t1266, t1268
-    t1270 = t1269 * t1269 / (1.0 + np.abs(by_c_1_1_8_right_noflip_up))
-    versine_1_1_8_right_noflip_up = _runtime.select(0.0 < by_c_1_1_8_right_noflip_up, t1270, 1.0 - by_c_1_1_8_right_noflip_up)
-    del t1270
-    cost_1_1_8_right_noflip_up = d4 * versine_1_1_8_right_noflip_up + root1 * np.abs(t1269)
-    del versine_1_1_8_right_noflip_up
-    t1271 = cost_1_1_8_right_noflip_up <= whole_1_1
-    del cost_1_1_8_right_noflip_up
-    cosine_1_1_8_right_noflip_up = _runtime.select(t1271, by_c_1_1_8_right_noflip_up, 1.0)
-    del by_c_1_1_8_right_noflip_up
-    t1272 = c_1_1_8_right_noflip_up * cosine_1_1_8_right_noflip_up
-    sine_1_1_8_right_noflip_up = _runtime.select(t1271, -t1269, 0.0)
-    del t1269, t1271
-    t1273 = s_1_1_8_right_noflip_up * sine_1_1_8_right_noflip_up
-    c_1_1_9_right_noflip_up = t1272 - t1273
-    del t1272, t1273
-    t1274 = c_1_1_8_right_noflip_up * sine_1_1_8_right_noflip_up
-    del sine_1_1_8_right_noflip_up
-    t1275 = s_1_1_8_right_noflip_up * cosine_1_1_8_right_noflip_up
-    del cosine_1_1_8_right_noflip_up
-    s_1_1_9_right_noflip_up = t1274 + t1275
-    del t1274, t1275
-    axisx_1_1_9_right_noflip_up = T13 * c_1_1_9_right_noflip_up + T23 * s_1_1_9_right_noflip_up
-    t1276 = axisx_1_1_9_right_noflip_up * axisx_1_1_9_right_noflip_up
-    t1277 = T13 * s_1_1_9_right_noflip_up - T23 * c_1_1_9_right_noflip_up
-    most_1_1_9_right_noflip_up = np.sqrt(t1276 + t1277 * t1277)
-    t1278 = most_1_1_9_right_noflip_up <= 8.881784197001252e-16
-    qx_1_1_9_right_noflip_up = w_x * c_1_1_9_right_noflip_up + w_y * s_1_1_9_right_noflip_up
-    t1279 = qx_1_1_9_right_noflip_up * qx_1_1_9_right_noflip_up
-    r_1_1_9_right_noflip_up = np.sqrt(t85 + t1279)
-    del t1279
-    t1280 = r_1_1_9_right_noflip_up <= t86
-    t1281 = d5 + r_1_1_9_right_noflip_up
-    h_1_1_9_right_noflip_up = np.sqrt(t5 + t1276)
-    del t1276
-    t1282 = h_1_1_9_right_noflip_up == 0.0
-    t1283 = 1.0 / h_1_1_9_right_noflip_up
-    del h_1_1_9_right_noflip_up
-    uc_1_1_9_right_noflip_up = _runtime.select(t1282, 0.0, T33 * t1283)
-    t1284 = qx_1_1_9_right_noflip_up - d5 * uc_1_1_9_right_noflip_up
-    t1285 = _runtime.select(t1282, 1.0, axisx_1_1_9_right_noflip_up * t1283)
-    del t1282, t1283
-    t1286 = t23 - d5 * t1285
-    t1287 = np.maximum(np.sqrt(t1284 * t1284 + t1286 * t1286), fold_1_1)
-    del t1284, t1286
-    goal_1_1_9_right_noflip_up = np.minimum(full_1_1, t1287)
-    del t1287
-    t1288 = (t1281 - goal_1_1_9_right_noflip_up) * (t1281 + goal_1_1_9_right_noflip_up)
-    k_v_1_1_9_right_noflip_up = np.maximum(0.0, t1288)
-    del t1288
-    t1289 = d5 - r_1_1_9_right_noflip_up
-    t1290 = (goal_1_1_9_right_noflip_up - t1289) * (goal_1_1_9_right_noflip_up + t1289)
-    del goal_1_1_9_right_noflip_up, t1289
-    d_v_1_1_9_right_noflip_up = np.maximum(0.0, t1290)
-    del t1290
-    n_v_1_1_9_right_noflip_up = k_v_1_1_9_right_noflip_up + d_v_1_1_9_right_noflip_up
-    t1291 = n_v_1_1_9_right_noflip_up <= size * t1281 * 8.881784197001252e-16
-    del t1281
-    t1292 = k_v_1_1_9_right_noflip_up - d_v_1_1_9_right_noflip_up
-    t1293 = 1.0 / n_v_1_1_9_right_noflip_up
-    del n_v_1_1_9_right_noflip_up
-    uc_v_1_1_9_right_noflip_up = _runtime.select(t1291, 1.0, t1292 * t1293)
-    del t1292
-    t1294 = qx_1_1_9_right_noflip_up * uc_v_1_1_9_right_noflip_up
-    t1295 = t23 * uc_1_1_9_right_noflip_up - qx_1_1_9_right_noflip_up * t1285
-    del t1285, uc_1_1_9_right_noflip_up
-    t1296 = k_v_1_1_9_right_noflip_up * d_v_1_1_9_right_noflip_up
-    del d_v_1_1_9_right_noflip_up, k_v_1_1_9_right_noflip_up
-    t1297 = t1293 * (2.0 * _runtime.sign(t1295) * np.sqrt(t1296))
-    del t1293, t1295, t1296
-    us_v_1_1_9_right_noflip_up = _runtime.select(t1291, 0.0, t1297)
-    del t1291, t1297
-    t1298 = t23 * us_v_1_1_9_right_noflip_up
-    t1299 = 1.0 / r_1_1_9_right_noflip_up
-    del r_1_1_9_right_noflip_up
-    c_v_1_1_9_right_noflip_up = _runtime.select(t1280, 1.0, (t1294 + t1298) * t1299)
-    t1300 = T33 * c_v_1_1_9_right_noflip_up < 0.0
-    t1301 = qx_1_1_9_right_noflip_up * us_v_1_1_9_right_noflip_up
-    del qx_1_1_9_right_noflip_up, us_v_1_1_9_right_noflip_up
-    t1302 = t23 * uc_v_1_1_9_right_noflip_up
-    del uc_v_1_1_9_right_noflip_up
-    wc_1_1_9_right_noflip_up = _runtime.select(t1280, 0.0, t1299 * (t1301 + t1302))
-    s_v_1_1_9_right_noflip_up = _runtime.select(t1280, 0.0, t1299 * (t1301 - t1302))
-    del t1301, t1302
-    to_c_1_1_9_right_noflip_up = _runtime.select(t1300, wc_1_1_9_right_noflip_up, -s_v_1_1_9_right_noflip_up)
-    del s_v_1_1_9_right_noflip_up, wc_1_1_9_right_noflip_up
-    c_w_1_1_9_right_noflip_up = _runtime.select(t1280, 1.0, t1299 * (t1294 - t1298))
-    del t1280, t1294, t1298, t1299
-    to_s_1_1_9_right_noflip_up = _runtime.select(t1300, c_w_1_1_9_right_noflip_up, c_v_1_1_9_right_noflip_up)
-    del c_v_1_1_9_right_noflip_up, c_w_1_1_9_right_noflip_up, t1300
-    t1303 = T33 * to_c_1_1_9_right_noflip_up * _runtime.sign(to_s_1_1_9_right_noflip_up)
-    del to_c_1_1_9_right_noflip_up
-    across_1_1_9_right_noflip_up = _runtime.select(t84, 0.0, t1303)
-    del t1303
-    t1304 = np.abs(to_s_1_1_9_right_noflip_up)
-    del to_s_1_1_9_right_noflip_up
-    t1305 = most_1_1_9_right_noflip_up * t1304 <= np.abs(across_1_1_9_right_noflip_up)
-    t1306 = most_1_1_9_right_noflip_up * _runtime.sign(across_1_1_9_right_noflip_up)
-    t1307 = _runtime.select(t1305, t1306, across_1_1_9_right_noflip_up / t1304)
-    del t1304, t1305, t1306
-    wanted_1_1_9_right_noflip_up = _runtime.select(across_1_1_9_right_noflip_up == 0.0, 0.0, t1307)
-    del across_1_1_9_right_noflip_up, t1307
-    t1308 = axisx_1_1_9_right_noflip_up * wanted_1_1_9_right_noflip_up
-    t1309 = most_1_1_9_right_noflip_up - wanted_1_1_9_right_noflip_up
-    t1310 = most_1_1_9_right_noflip_up + wanted_1_1_9_right_noflip_up
-    rest_1_1_9_right_noflip_up = np.sqrt(np.maximum(0.0, t1309 * t1310)) * _runtime.sign(-t1277)
-    del t1309, t1310
-    t1311 = most_1_1_9_right_noflip_up * most_1_1_9_right_noflip_up
-    del most_1_1_9_right_noflip_up
-    t1312 = 1.0 / t1311
-    del t1311
-    t1313 = (t1308 - t1277 * rest_1_1_9_right_noflip_up) * t1312
-    del t1308
-    by_c_1_1_9_right_noflip_up = _runtime.select(t1278, 1.0, t1313)
-    del t1313
-    t1314 = axisx_1_1_9_right_noflip_up * rest_1_1_9_right_noflip_up
-    del axisx_1_1_9_right_noflip_up, rest_1_1_9_right_noflip_up
-    t1315 = t1312 * (t1314 + t1277 * wanted_1_1_9_right_noflip_up)
-    del t1277, t1312, t1314, wanted_1_1_9_right_noflip_up
-    t1316 = _runtime.select(t1278, 0.0, t1315)
-    del t1278, t1315
-    t1317 = t1316 * t1316 / (1.0 + np.abs(by_c_1_1_9_right_noflip_up))
-    versine_1_1_9_right_noflip_up = _runtime.select(0.0 < by_c_1_1_9_right_noflip_up, t1317, 1.0 - by_c_1_1_9_right_noflip_up)
-    del t1317
-    cost_1_1_9_right_noflip_up = d4 * versine_1_1_9_right_noflip_up + root1 * np.abs(t1316)
-    del versine_1_1_9_right_noflip_up
-    t1318 = cost_1_1_9_right_noflip_up <= whole_1_1
-    del cost_1_1_9_right_noflip_up
-    cosine_1_1_9_right_noflip_up = _runtime.select(t1318, by_c_1_1_9_right_noflip_up, 1.0)
-    del by_c_1_1_9_right_noflip_up
-    t1319 = c_1_1_9_right_noflip_up * cosine_1_1_9_right_noflip_up
-    sine_1_1_9_right_noflip_up = _runtime.select(t1318, -t1316, 0.0)
-    del t1316, t1318
-    t1320 = s_1_1_9_right_noflip_up * sine_1_1_9_right_noflip_up
-    c_1_1_10_right_noflip_up = t1319 - t1320
-    del t1319, t1320
-    t1321 = c_1_1_9_right_noflip_up * sine_1_1_9_right_noflip_up
-    del c_1_1_9_right_noflip_up, sine_1_1_9_right_noflip_up
-    t1322 = s_1_1_9_right_noflip_up * cosine_1_1_9_right_noflip_up
-    del cosine_1_1_9_right_noflip_up, s_1_1_9_right_noflip_up
-    s_1_1_10_right_noflip_up = t1321 + t1322
-    del t1321, t1322
+    t990 = c_1_1_right_noflip_up * cosine_1_1_5_right_noflip_up
+    sine_1_1_5_right_noflip_up = _runtime.select(t989, -t987, 0.0)
+    del t987, t989
+    c_1_1_10_right_noflip_up = t990 + t980 * sine_1_1_5_right_noflip_up
+    del t990
+    t991 = c_1_1_right_noflip_up * sine_1_1_5_right_noflip_up
+    del sine_1_1_5_right_noflip_up
+    s_1_1_10_right_noflip_up = t991 - t980 * cosine_1_1_5_right_noflip_up
+    del cosine_1_1_5_right_noflip_up, t991
     axisx_1_1_10_right_noflip_up = T13 * c_1_1_10_right_noflip_up + T23 * s_1_1_10_right_noflip_up
-    t1323 = axisx_1_1_10_right_noflip_up * axisx_1_1_10_right_noflip_up
-    t1324 = T13 * s_1_1_10_right_noflip_up - T23 * c_1_1_10_right_noflip_up
-    most_1_1_10_right_noflip_up = np.sqrt(t1323 + t1324 * t1324)
-    t1325 = most_1_1_10_right_noflip_up <= 8.881784197001252e-16
+    t992 = axisx_1_1_10_right_noflip_up * axisx_1_1_10_right_noflip_up
+    t993 = T13 * s_1_1_10_right_noflip_up - T23 * c_1_1_10_right_noflip_up
+    most_1_1_10_right_noflip_up = np.sqrt(t992 + t993 * t993)
+    t994 = most_1_1_10_right_noflip_up <= 8.881784197001252e-16
     qx_1_1_10_right_noflip_up = w_x * c_1_1_10_right_noflip_up + w_y * s_1_1_10_right_noflip_up
-    t1326 = qx_1_1_10_right_noflip_up * qx_1_1_10_right_noflip_up
-    r_1_1_10_right_noflip_up = np.sqrt(t85 + t1326)
-    del t1326
-    t1327 = r_1_1_10_right_noflip_up <= t86
-    t1328 = d5 + r_1_1_10_right_noflip_up
-    h_1_1_10_right_noflip_up = np.sqrt(t5 + t1323)
-    del t1323
-    t1329 = h_1_1_10_right_noflip_up == 0.0
-    t1330 = 1.0 / h_1_1_10_right_noflip_up
+    t995 = qx_1_1_10_right_noflip_up * qx_1_1_10_right_noflip_up
+    r_1_1_10_right_noflip_up = np.sqrt(t24 + t995)
+    del t995
+    t996 = r_1_1_10_right_noflip_up <= t25
+    t997 = d5 + r_1_1_10_right_noflip_up
+    h_1_1_10_right_noflip_up = np.sqrt(t5 + t992)
+    del t992
+    t998 = h_1_1_10_right_noflip_up == 0.0
+    t999 = 1.0 / h_1_1_10_right_noflip_up
     del h_1_1_10_right_noflip_up
-    uc_1_1_10_right_noflip_up = _runtime.select(t1329, 0.0, T33 * t1330)
-    t1331 = qx_1_1_10_right_noflip_up - d5 * uc_1_1_10_right_noflip_up
-    t1332 = _runtime.select(t1329, 1.0, axisx_1_1_10_right_noflip_up * t1330)
-    del t1329, t1330
-    t1333 = t23 - d5 * t1332
-    t1334 = np.maximum(np.sqrt(t1331 * t1331 + t1333 * t1333), fold_1_1)
-    del t1331, t1333
-    goal_1_1_10_right_noflip_up = np.minimum(full_1_1, t1334)
-    del t1334
-    t1335 = (t1328 - goal_1_1_10_right_noflip_up) * (t1328 + goal_1_1_10_right_noflip_up)
-    k_v_1_1_10_right_noflip_up = np.maximum(0.0, t1335)
-    del t1335
-    t1336 = d5 - r_1_1_10_right_noflip_up
-    t1337 = (goal_1_1_10_right_noflip_up - t1336) * (goal_1_1_10_right_noflip_up + t1336)
-    del goal_1_1_10_right_noflip_up, t1336
-    d_v_1_1_10_right_noflip_up = np.maximum(0.0, t1337)
-    del t1337
+    uc_1_1_10_right_noflip_up = _runtime.select(t998, 0.0, T33 * t999)
+    t1000 = d5 * uc_1_1_10_right_noflip_up
+    t1001 = qx_1_1_10_right_noflip_up - t1000
+    t1002 = axisx_1_1_10_right_noflip_up * t999
+    del t999
+    t1003 = _runtime.select(t998, 1.0, t1002)
+    t1004 = t23 - d5 * t1003
+    t1005 = np.maximum(np.sqrt(t1001 * t1001 + t1004 * t1004), fold_1_1)
+    del t1001, t1004
+    goal_1_1_10_right_noflip_up = np.minimum(full_1_1, t1005)
+    del t1005
+    t1006 = (t997 - goal_1_1_10_right_noflip_up) * (t997 + goal_1_1_10_right_noflip_up)
+    k_v_1_1_10_right_noflip_up = np.maximum(0.0, t1006)
+    del t1006
+    t1007 = d5 - r_1_1_10_right_noflip_up
+    t1008 = (goal_1_1_10_right_noflip_up - t1007) * (goal_1_1_10_right_noflip_up + t1007)
+    del goal_1_1_10_right_noflip_up
+    d_v_1_1_10_right_noflip_up = np.maximum(0.0, t1008)
+    del t1008
     n_v_1_1_10_right_noflip_up = k_v_1_1_10_right_noflip_up + d_v_1_1_10_right_noflip_up
-    t1338 = n_v_1_1_10_right_noflip_up <= size * t1328 * 8.881784197001252e-16
-    del t1328
-    t1339 = k_v_1_1_10_right_noflip_up - d_v_1_1_10_right_noflip_up
-    t1340 = 1.0 / n_v_1_1_10_right_noflip_up
+    t1009 = size * t997 * 8.881784197001252e-16
+    t1010 = n_v_1_1_10_right_noflip_up <= t1009
+    t1011 = k_v_1_1_10_right_noflip_up - d_v_1_1_10_right_noflip_up
+    t1012 = 1.0 / n_v_1_1_10_right_noflip_up
     del n_v_1_1_10_right_noflip_up
-    uc_v_1_1_10_right_noflip_up = _runtime.select(t1338, 1.0, t1339 * t1340)
-    del t1339
-    t1341 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_noflip_up
-    t1342 = t23 * uc_1_1_10_right_noflip_up - qx_1_1_10_right_noflip_up * t1332
-    del t1332, uc_1_1_10_right_noflip_up
-    t1343 = k_v_1_1_10_right_noflip_up * d_v_1_1_10_right_noflip_up
+    uc_v_1_1_10_right_noflip_up = _runtime.select(t1010, 1.0, t1011 * t1012)
+    del t1011
+    t1013 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_noflip_up
+    t1014 = t23 * uc_1_1_10_right_noflip_up
+    del uc_1_1_10_right_noflip_up
+    side_1_1_10_right_noflip_up = _runtime.sign(t1014 - qx_1_1_10_right_noflip_up * t1003)
+    del t1003
+    t1015 = k_v_1_1_10_right_noflip_up * d_v_1_1_10_right_noflip_up
     del d_v_1_1_10_right_noflip_up, k_v_1_1_10_right_noflip_up
-    t1344 = t1340 * (2.0 * _runtime.sign(t1342) * np.sqrt(t1343))
-    del t1340, t1342, t1343
-    us_v_1_1_10_right_noflip_up = _runtime.select(t1338, 0.0, t1344)
-    del t1338, t1344
-    t1345 = t23 * us_v_1_1_10_right_noflip_up
-    t1346 = 1.0 / r_1_1_10_right_noflip_up
+    t1016 = 2.0 * side_1_1_10_right_noflip_up * np.sqrt(t1015)
+    del side_1_1_10_right_noflip_up, t1015
+    us_v_1_1_10_right_noflip_up = _runtime.select(t1010, 0.0, t1012 * t1016)
+    del t1010, t1012, t1016
+    t1017 = t23 * us_v_1_1_10_right_noflip_up
+    t1018 = 1.0 / r_1_1_10_right_noflip_up
     del r_1_1_10_right_noflip_up
-    c_v_1_1_10_right_noflip_up = _runtime.select(t1327, 1.0, (t1341 + t1345) * t1346)
-    t1347 = T33 * c_v_1_1_10_right_noflip_up < 0.0
-    t1348 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_noflip_up
-    del qx_1_1_10_right_noflip_up, us_v_1_1_10_right_noflip_up
-    t1349 = t23 * uc_v_1_1_10_right_noflip_up
+    c_v_1_1_10_right_noflip_up = _runtime.select(t996, 1.0, (t1013 + t1017) * t1018)
+    t1019 = T33 * c_v_1_1_10_right_noflip_up < 0.0
+    t1020 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_noflip_up
+    del us_v_1_1_10_right_noflip_up
+    t1021 = t23 * uc_v_1_1_10_right_noflip_up
     del uc_v_1_1_10_right_noflip_up
-    wc_1_1_10_right_noflip_up = _runtime.select(t1327, 0.0, t1346 * (t1348 + t1349))
-    s_v_1_1_10_right_noflip_up = _runtime.select(t1327, 0.0, t1346 * (t1348 - t1349))
-    del t1348, t1349
-    to_c_1_1_10_right_noflip_up = _runtime.select(t1347, wc_1_1_10_right_noflip_up, -s_v_1_1_10_right_noflip_up)
+    wc_1_1_10_right_noflip_up = _runtime.select(t996, 0.0, t1018 * (t1020 + t1021))
+    s_v_1_1_10_right_noflip_up = _runtime.select(t996, 0.0, t1018 * (t1020 - t1021))
+    del t1020, t1021
+    to_c_1_1_10_right_noflip_up = _runtime.select(t1019, wc_1_1_10_right_noflip_up, -s_v_1_1_10_right_noflip_up)
     del s_v_1_1_10_right_noflip_up, wc_1_1_10_right_noflip_up
-    c_w_1_1_10_right_noflip_up = _runtime.select(t1327, 1.0, t1346 * (t1341 - t1345))
-    del t1327, t1341, t1345, t1346
-    to_s_1_1_10_right_noflip_up = _runtime.select(t1347, c_w_1_1_10_right_noflip_up, c_v_1_1_10_right_noflip_up)
-    del c_v_1_1_10_right_noflip_up, c_w_1_1_10_right_noflip_up, t1347
-    t1350 = T33 * to_c_1_1_10_right_noflip_up * _runtime.sign(to_s_1_1_10_right_noflip_up)
+    c_w_1_1_10_right_noflip_up = _runtime.select(t996, 1.0, t1018 * (t1013 - t1017))
+    del t1013, t1017
+    to_s_1_1_10_right_noflip_up = _runtime.select(t1019, c_w_1_1_10_right_noflip_up, c_v_1_1_10_right_noflip_up)
+    del c_v_1_1_10_right_noflip_up, c_w_1_1_10_right_noflip_up, t1019
+    t1022 = T33 * to_c_1_1_10_right_noflip_up * _runtime.sign(to_s_1_1_10_right_noflip_up)
     del to_c_1_1_10_right_noflip_up
-    across_1_1_10_right_noflip_up = _runtime.select(t84, 0.0, t1350)
-    del t1350
-    t1351 = np.abs(to_s_1_1_10_right_noflip_up)
+    across_1_1_10_right_noflip_up = _runtime.select(t22, 0.0, t1022)
+    del t1022
+    t1023 = np.abs(to_s_1_1_10_right_noflip_up)
     del to_s_1_1_10_right_noflip_up
-    t1352 = most_1_1_10_right_noflip_up * t1351 <= np.abs(across_1_1_10_right_noflip_up)
-    t1353 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_noflip_up)
-    t1354 = _runtime.select(t1352, t1353, across_1_1_10_right_noflip_up / t1351)
-    del t1351, t1352, t1353
-    wanted_1_1_10_right_noflip_up = _runtime.select(across_1_1_10_right_noflip_up == 0.0, 0.0, t1354)
-    del across_1_1_10_right_noflip_up, t1354
-    t1355 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_noflip_up
-    t1356 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_noflip_up
-    t1357 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_noflip_up
-    rest_1_1_10_right_noflip_up = np.sqrt(np.maximum(0.0, t1356 * t1357)) * _runtime.sign(-t1324)
-    del t1356, t1357
-    t1358 = most_1_1_10_right_noflip_up * most_1_1_10_right_noflip_up
-    del most_1_1_10_right_noflip_up
-    t1359 = 1.0 / t1358
-    del t1358
-    t1360 = (t1355 - t1324 * rest_1_1_10_right_noflip_up) * t1359
-    del t1355
-    by_c_1_1_10_right_noflip_up = _runtime.select(t1325, 1.0, t1360)
-    del t1360
-    t1361 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_noflip_up
-    del axisx_1_1_10_right_noflip_up, rest_1_1_10_right_noflip_up
-    t1362 = t1361 + t1324 * wanted_1_1_10_right_noflip_up
-    del t1324, t1361, wanted_1_1_10_right_noflip_up
-    t1363 = _runtime.select(t1325, 0.0, t1359 * t1362)
-    del t1325, t1359, t1362
-    t1364 = t1363 * t1363 / (1.0 + np.abs(by_c_1_1_10_right_noflip_up))
-    versine_1_1_10_right_noflip_up = _runtime.select(0.0 < by_c_1_1_10_right_noflip_up, t1364, 1.0 - by_c_1_1_10_right_noflip_up)
-    del t1364
-    cost_1_1_10_right_noflip_up = d4 * versine_1_1_10_right_noflip_up + root1 * np.abs(t1363)
+    t1024 = most_1_1_10_right_noflip_up * t1023 <= np.abs(across_1_1_10_right_noflip_up)
+    t1025 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_noflip_up)
+    t1026 = _runtime.select(t1024, t1025, across_1_1_10_right_noflip_up / t1023)
+    del t1023, t1024, t1025
+    wanted_1_1_10_right_noflip_up = _runtime.select(across_1_1_10_right_noflip_up == 0.0, 0.0, t1026)
+    del across_1_1_10_right_noflip_up, t1026
+    t1027 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_noflip_up
+    t1028 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_noflip_up
+    t1029 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_noflip_up
+    t1030 = _runtime.sign(-t993)
+    rest_1_1_10_right_noflip_up = np.sqrt(np.maximum(0.0, t1028 * t1029)) * t1030
+    del t1028, t1029
+    t1031 = most_1_1_10_right_noflip_up * most_1_1_10_right_noflip_up
+    t1032 = 1.0 / t1031
+    del t1031
+    t1033 = (t1027 - t993 * rest_1_1_10_right_noflip_up) * t1032
+    del t1027
+    by_c_1_1_10_right_noflip_up = _runtime.select(t994, 1.0, t1033)
+    del t1033
+    t1034 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_noflip_up
+    del rest_1_1_10_right_noflip_up
+    t1035 = t1032 * (t1034 + t993 * wanted_1_1_10_right_noflip_up)
+    del t1034, wanted_1_1_10_right_noflip_up
+    t1036 = _runtime.select(t994, 0.0, t1035)
+    del t1035
+    t1037 = t1036 * t1036 / (1.0 + np.abs(by_c_1_1_10_right_noflip_up))
+    versine_1_1_10_right_noflip_up = _runtime.select(0.0 < by_c_1_1_10_right_noflip_up, t1037, 1.0 - by_c_1_1_10_right_noflip_up)
+    del t1037
+    cost_1_1_10_right_noflip_up = d4 * versine_1_1_10_right_noflip_up + root1 * np.abs(t1036)
     del versine_1_1_10_right_noflip_up
-    t1365 = cost_1_1_10_right_noflip_up <= whole_1_1
+    t1038 = cost_1_1_10_right_noflip_up <= whole_1_1
     del cost_1_1_10_right_noflip_up
-    cosine_1_1_10_right_noflip_up = _runtime.select(t1365, by_c_1_1_10_right_noflip_up, 1.0)
+    cosine_1_1_10_right_noflip_up = _runtime.select(t1038, by_c_1_1_10_right_noflip_up, 1.0)
     del by_c_1_1_10_right_noflip_up
-    t1366 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
-    sine_1_1_10_right_noflip_up = _runtime.select(t1365, -t1363, 0.0)
-    del t1363, t1365
-    t1367 = s_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
-    c_1_1_11_right_noflip_up = t1366 - t1367
-    del t1366, t1367
-    t1368 = c_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
-    del c_1_1_10_right_noflip_up, sine_1_1_10_right_noflip_up
-    t1369 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
-    del cosine_1_1_10_right_noflip_up, s_1_1_10_right_noflip_up
-    s_1_1_11_right_noflip_up = t1368 + t1369
-    del t1368, t1369
+    t1039 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
+    sine_1_1_10_right_noflip_up = _runtime.select(t1038, -t1036, 0.0)
+    del t1036, t1038
+    t1040 = s_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
+    c_1_1_11_right_noflip_up = t1039 - t1040
+    del t1039, t1040
+    t1041 = c_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
+    del sine_1_1_10_right_noflip_up
+    t1042 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
+    del cosine_1_1_10_right_noflip_up
+    s_1_1_11_right_noflip_up = t1041 + t1042
+    del t1041, t1042
     axisx_1_1_11_right_noflip_up = T13 * c_1_1_11_right_noflip_up + T23 * s_1_1_11_right_noflip_up
-    t1370 = axisx_1_1_11_right_noflip_up * axisx_1_1_11_right_noflip_up
-    h_1_1_11_right_noflip_up = np.sqrt(t5 + t1370)
-    del t1370
-    t1371 = h_1_1_11_right_noflip_up <= 1.4210854715202004e-14
+    t1043 = axisx_1_1_11_right_noflip_up * axisx_1_1_11_right_noflip_up
+    t1044 = T13 * s_1_1_11_right_noflip_up - T23 * c_1_1_11_right_noflip_up
+    most_1_1_11_right_noflip_up = np.sqrt(t1043 + t1044 * t1044)
+    t1045 = most_1_1_11_right_noflip_up <= 8.881784197001252e-16
     qx_1_1_11_right_noflip_up = w_x * c_1_1_11_right_noflip_up + w_y * s_1_1_11_right_noflip_up
-    t1372 = h_1_1_11_right_noflip_up == 0.0
-    t1373 = 1.0 / h_1_1_11_right_noflip_up
-    uc_1_1_11_right_noflip_up = _runtime.select(t1372, 0.0, T33 * t1373)
-    t1374 = qx_1_1_11_right_noflip_up - d5 * uc_1_1_11_right_noflip_up
-    x_1_1_11_right_noflip_up = _runtime.select(t1371, qx_1_1_11_right_noflip_up, t1374)
-    del t1374
-    dqx_1_1_11_right_noflip_up = w_y * c_1_1_11_right_noflip_up - w_x * s_1_1_11_right_noflip_up
-    t1375 = T13 * s_1_1_11_right_noflip_up - T23 * c_1_1_11_right_noflip_up
-    t1376 = h_1_1_11_right_noflip_up * h_1_1_11_right_noflip_up
+    t1046 = qx_1_1_11_right_noflip_up * qx_1_1_11_right_noflip_up
+    r_1_1_11_right_noflip_up = np.sqrt(t24 + t1046)
+    del t1046
+    t1047 = r_1_1_11_right_noflip_up <= t25
+    t1048 = d5 + r_1_1_11_right_noflip_up
+    h_1_1_11_right_noflip_up = np.sqrt(t5 + t1043)
+    del t1043
+    t1049 = h_1_1_11_right_noflip_up == 0.0
+    t1050 = 1.0 / h_1_1_11_right_noflip_up
     del h_1_1_11_right_noflip_up
-    spin_1_1_11_right_noflip_up = _runtime.select(t1371, 0.0, T33 * t1375 / t1376)
-    del t1375, t1376
-    rate_1_1_11_right_noflip_up = d5 * spin_1_1_11_right_noflip_up
-    t1377 = _runtime.select(t1372, 1.0, axisx_1_1_11_right_noflip_up * t1373)
-    del axisx_1_1_11_right_noflip_up, t1372, t1373
-    t1378 = dqx_1_1_11_right_noflip_up - rate_1_1_11_right_noflip_up * t1377
-    dx_1_1_11_right_noflip_up = _runtime.select(t1371, dqx_1_1_11_right_noflip_up, t1378)
-    del t1378
-    t1379 = x_1_1_11_right_noflip_up * dx_1_1_11_right_noflip_up
-    del dx_1_1_11_right_noflip_up
-    t1380 = _runtime.select(t1371, t23, t23 - d5 * t1377)
-    t1381 = rate_1_1_11_right_noflip_up * uc_1_1_11_right_noflip_up
-    slope_1_1_11_right_noflip_up = t1379 + t1380 * _runtime.select(t1371, 0.0, t1381)
-    del t1379, t1381
-    t1382 = slope_1_1_11_right_noflip_up * slope_1_1_11_right_noflip_up
-    straight_1_1_11_right_noflip_up = dqx_1_1_11_right_noflip_up * dqx_1_1_11_right_noflip_up
-    t1383 = qx_1_1_11_right_noflip_up * uc_1_1_11_right_noflip_up
-    del qx_1_1_11_right_noflip_up, uc_1_1_11_right_noflip_up
-    t1384 = spin_1_1_11_right_noflip_up * (t1383 + t23 * t1377)
-    del spin_1_1_11_right_noflip_up, t1383
-    t1385 = 2.0 * dqx_1_1_11_right_noflip_up * t1377 - t1384
-    del dqx_1_1_11_right_noflip_up, t1377, t1384
-    t1386 = straight_1_1_11_right_noflip_up - rate_1_1_11_right_noflip_up * t1385
-    del rate_1_1_11_right_noflip_up, t1385
-    bends_1_1_11_right_noflip_up = _runtime.select(t1371, straight_1_1_11_right_noflip_up, t1386)
-    del straight_1_1_11_right_noflip_up, t1386
-    t1387 = x_1_1_11_right_noflip_up * x_1_1_11_right_noflip_up
-    del x_1_1_11_right_noflip_up
-    square_1_1_11_right_noflip_up = t1387 + t1380 * t1380
-    del t1380, t1387
-    t1388 = _runtime.select(t1371, t29, fold_1_1) - whole_1_1
-    t1389 = np.maximum(0.0, t1388)
-    del t1388
-    t1390 = whole_1_1 + _runtime.select(t1371, t3, full_1_1)
-    del t1371
-    t1391 = np.minimum(t1390 * t1390, square_1_1_11_right_noflip_up)
-    del t1390
-    miss_1_1_11_right_noflip_up = square_1_1_11_right_noflip_up - np.maximum(t1389 * t1389, t1391)
-    del square_1_1_11_right_noflip_up, t1389, t1391
-    t1392 = bends_1_1_11_right_noflip_up * miss_1_1_11_right_noflip_up
-    inner_1_1_11_right_noflip_up = t1382 - t1392
-    del t1382, t1392
-    t1393 = inner_1_1_11_right_noflip_up < 0.0
-    t1394 = np.maximum(0.0, inner_1_1_11_right_noflip_up)
-    del inner_1_1_11_right_noflip_up
-    t1395 = _runtime.sign(slope_1_1_11_right_noflip_up) * np.sqrt(t1394)
-    del t1394
-    below_1_1_11_right_noflip_up = _runtime.select(t1393, 2.0 * bends_1_1_11_right_noflip_up, 2.0 * (slope_1_1_11_right_noflip_up + t1395))
-    del bends_1_1_11_right_noflip_up, t1395
-    above_1_1_11_right_noflip_up = _runtime.select(t1393, slope_1_1_11_right_noflip_up, miss_1_1_11_right_noflip_up)
-    del miss_1_1_11_right_noflip_up, slope_1_1_11_right_noflip_up, t1393
-    t1396 = np.abs(below_1_1_11_right_noflip_up) <= np.abs(above_1_1_11_right_noflip_up)
-    t1397 = above_1_1_11_right_noflip_up / below_1_1_11_right_noflip_up
-    del above_1_1_11_right_noflip_up, below_1_1_11_right_noflip_up
-    t1398 = _runtime.select(t1396, 0.0, t1397)
-    del t1396, t1397
-    t1399 = t1398 * t1398
-    t1400 = 1.0 / (1.0 + t1399)
-    by_c_1_1_11_right_noflip_up = (1.0 - t1399) * t1400
-    del t1399
-    t1401 = t1400 * (2.0 * t1398)
-    del t1398, t1400
-    t1402 = t1401 * t1401 / (1.0 + np.abs(by_c_1_1_11_right_noflip_up))
-    versine_1_1_11_right_noflip_up = _runtime.select(0.0 < by_c_1_1_11_right_noflip_up, t1402, 1.0 - by_c_1_1_11_right_noflip_up)
-    del t1402
-    cost_1_1_11_right_noflip_up = d4 * versine_1_1_11_right_noflip_up + root1 * np.abs(t1401)
+    uc_1_1_11_right_noflip_up = _runtime.select(t1049, 0.0, T33 * t1050)
+    t1051 = qx_1_1_11_right_noflip_up - d5 * uc_1_1_11_right_noflip_up
+    t1052 = _runtime.select(t1049, 1.0, axisx_1_1_11_right_noflip_up * t1050)
+    del t1049, t1050
+    t1053 = t23 - d5 * t1052
+    t1054 = np.maximum(np.sqrt(t1051 * t1051 + t1053 * t1053), fold_1_1)
+    del t1051, t1053
+    goal_1_1_11_right_noflip_up = np.minimum(full_1_1, t1054)
+    del t1054
+    t1055 = (t1048 - goal_1_1_11_right_noflip_up) * (t1048 + goal_1_1_11_right_noflip_up)
+    k_v_1_1_11_right_noflip_up = np.maximum(0.0, t1055)
+    del t1055
+    t1056 = d5 - r_1_1_11_right_noflip_up
+    t1057 = (goal_1_1_11_right_noflip_up - t1056) * (goal_1_1_11_right_noflip_up + t1056)
+    del goal_1_1_11_right_noflip_up, t1056
+    d_v_1_1_11_right_noflip_up = np.maximum(0.0, t1057)
+    del t1057
+    n_v_1_1_11_right_noflip_up = k_v_1_1_11_right_noflip_up + d_v_1_1_11_right_noflip_up
+    t1058 = n_v_1_1_11_right_noflip_up <= size * t1048 * 8.881784197001252e-16
+    del t1048
+    t1059 = k_v_1_1_11_right_noflip_up - d_v_1_1_11_right_noflip_up
+    t1060 = 1.0 / n_v_1_1_11_right_noflip_up
+    del n_v_1_1_11_right_noflip_up
+    uc_v_1_1_11_right_noflip_up = _runtime.select(t1058, 1.0, t1059 * t1060)
+    del t1059
+    t1061 = qx_1_1_11_right_noflip_up * uc_v_1_1_11_right_noflip_up
+    t1062 = t23 * uc_1_1_11_right_noflip_up - qx_1_1_11_right_noflip_up * t1052
+    del t1052, uc_1_1_11_right_noflip_up
+    t1063 = k_v_1_1_11_right_noflip_up * d_v_1_1_11_right_noflip_up
+    del d_v_1_1_11_right_noflip_up, k_v_1_1_11_right_noflip_up
+    t1064 = t1060 * (2.0 * _runtime.sign(t1062) * np.sqrt(t1063))
+    del t1060, t1062, t1063
+    us_v_1_1_11_right_noflip_up = _runtime.select(t1058, 0.0, t1064)
+    del t1058, t1064
+    t1065 = t23 * us_v_1_1_11_right_noflip_up
+    t1066 = 1.0 / r_1_1_11_right_noflip_up
+    del r_1_1_11_right_noflip_up
+    c_v_1_1_11_right_noflip_up = _runtime.select(t1047, 1.0, (t1061 + t1065) * t1066)
+    t1067 = T33 * c_v_1_1_11_right_noflip_up < 0.0
+    t1068 = qx_1_1_11_right_noflip_up * us_v_1_1_11_right_noflip_up
+    del qx_1_1_11_right_noflip_up, us_v_1_1_11_right_noflip_up
+    t1069 = t23 * uc_v_1_1_11_right_noflip_up
+    del uc_v_1_1_11_right_noflip_up
+    wc_1_1_11_right_noflip_up = _runtime.select(t1047, 0.0, t1066 * (t1068 + t1069))
+    s_v_1_1_11_right_noflip_up = _runtime.select(t1047, 0.0, t1066 * (t1068 - t1069))
+    del t1068, t1069
+    to_c_1_1_11_right_noflip_up = _runtime.select(t1067, wc_1_1_11_right_noflip_up, -s_v_1_1_11_right_noflip_up)
+    del s_v_1_1_11_right_noflip_up, wc_1_1_11_right_noflip_up
+    c_w_1_1_11_right_noflip_up = _runtime.select(t1047, 1.0, t1066 * (t1061 - t1065))
+    del t1047, t1061, t1065, t1066
+    to_s_1_1_11_right_noflip_up = _runtime.select(t1067, c_w_1_1_11_right_noflip_up, c_v_1_1_11_right_noflip_up)
+    del c_v_1_1_11_right_noflip_up, c_w_1_1_11_right_noflip_up, t1067
+    t1070 = T33 * to_c_1_1_11_right_noflip_up * _runtime.sign(to_s_1_1_11_right_noflip_up)
+    del to_c_1_1_11_right_noflip_up
+    across_1_1_11_right_noflip_up = _runtime.select(t22, 0.0, t1070)
+    del t1070
+    t1071 = np.abs(to_s_1_1_11_right_noflip_up)
+    del to_s_1_1_11_right_noflip_up
+    t1072 = most_1_1_11_right_noflip_up * t1071 <= np.abs(across_1_1_11_right_noflip_up)
+    t1073 = most_1_1_11_right_noflip_up * _runtime.sign(across_1_1_11_right_noflip_up)
+    t1074 = _runtime.select(t1072, t1073, across_1_1_11_right_noflip_up / t1071)
+    del t1071, t1072, t1073
+    wanted_1_1_11_right_noflip_up = _runtime.select(across_1_1_11_right_noflip_up == 0.0, 0.0, t1074)
+    del across_1_1_11_right_noflip_up, t1074
+    t1075 = axisx_1_1_11_right_noflip_up * wanted_1_1_11_right_noflip_up
+    t1076 = most_1_1_11_right_noflip_up - wanted_1_1_11_right_noflip_up
+    t1077 = most_1_1_11_right_noflip_up + wanted_1_1_11_right_noflip_up
+    rest_1_1_11_right_noflip_up = np.sqrt(np.maximum(0.0, t1076 * t1077)) * _runtime.sign(-t1044)
+    del t1076, t1077
+    t1078 = most_1_1_11_right_noflip_up * most_1_1_11_right_noflip_up
+    del most_1_1_11_right_noflip_up
+    t1079 = 1.0 / t1078
+    del t1078
+    t1080 = (t1075 - t1044 * rest_1_1_11_right_noflip_up) * t1079
+    del t1075
+    by_c_1_1_11_right_noflip_up = _runtime.select(t1045, 1.0, t1080)
+    del t1080
+    t1081 = axisx_1_1_11_right_noflip_up * rest_1_1_11_right_noflip_up
+    del axisx_1_1_11_right_noflip_up, rest_1_1_11_right_noflip_up
+    t1082 = t1081 + t1044 * wanted_1_1_11_right_noflip_up
+    del t1044, t1081, wanted_1_1_11_right_noflip_up
+    t1083 = _runtime.select(t1045, 0.0, t1079 * t1082)
+    del t1045, t1079, t1082
+    t1084 = t1083 * t1083 / (1.0 + np.abs(by_c_1_1_11_right_noflip_up))
+    versine_1_1_11_right_noflip_up = _runtime.select(0.0 < by_c_1_1_11_right_noflip_up, t1084, 1.0 - by_c_1_1_11_right_noflip_up)
+    del t1084
+    cost_1_1_11_right_noflip_up = d4 * versine_1_1_11_right_noflip_up + root1 * np.abs(t1083)
     del versine_1_1_11_right_noflip_up
-    t1403 = cost_1_1_11_right_noflip_up <= whole_1_1
+    t1085 = cost_1_1_11_right_noflip_up <= whole_1_1
     del cost_1_1_11_right_noflip_up
-    cosine_1_1_11_right_noflip_up = _runtime.select(t1403, by_c_1_1_11_right_noflip_up, 1.0)
+    cosine_1_1_11_right_noflip_up = _runtime.select(t1085, by_c_1_1_11_right_noflip_up, 1.0)
     del by_c_1_1_11_right_noflip_up
-    t1404 = c_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
-    sine_1_1_11_right_noflip_up = _runtime.select(t1403, -t1401, 0.0)
-    del t1401, t1403
-    t1405 = s_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
-    c_1_1_12_right_noflip_up = t1404 - t1405
-    del t1404, t1405
-    t1406 = c_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
+    t1086 = c_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
+    sine_1_1_11_right_noflip_up = _runtime.select(t1085, -t1083, 0.0)
+    del t1083, t1085
+    t1087 = s_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
+    c_1_1_12_right_noflip_up = t1086 - t1087
+    del t1086, t1087
+    t1088 = c_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
     del c_1_1_11_right_noflip_up, sine_1_1_11_right_noflip_up
-    t1407 = s_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
+    t1089 = s_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
     del cosine_1_1_11_right_noflip_up, s_1_1_11_right_noflip_up
-    s_1_1_12_right_noflip_up = t1406 + t1407
-    del t1406, t1407
+    s_1_1_12_right_noflip_up = t1088 + t1089
+    del t1088, t1089
     axisx_1_1_12_right_noflip_up = T13 * c_1_1_12_right_noflip_up + T23 * s_1_1_12_right_noflip_up
-    t1408 = axisx_1_1_12_right_noflip_up * axisx_1_1_12_right_noflip_up
-    h_1_1_12_right_noflip_up = np.sqrt(t5 + t1408)
-    del t1408
-    t1409 = h_1_1_12_right_noflip_up <= 1.4210854715202004e-14
+    t1090 = axisx_1_1_12_right_noflip_up * axisx_1_1_12_right_noflip_up
+    h_1_1_12_right_noflip_up = np.sqrt(t5 + t1090)
+    del t1090
+    t1091 = h_1_1_12_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_12_right_noflip_up = w_x * c_1_1_12_right_noflip_up + w_y * s_1_1_12_right_noflip_up
-    t1410 = h_1_1_12_right_noflip_up == 0.0
-    t1411 = 1.0 / h_1_1_12_right_noflip_up
-    uc_1_1_12_right_noflip_up = _runtime.select(t1410, 0.0, T33 * t1411)
-    t1412 = qx_1_1_12_right_noflip_up - d5 * uc_1_1_12_right_noflip_up
-    x_1_1_12_right_noflip_up = _runtime.select(t1409, qx_1_1_12_right_noflip_up, t1412)
-    del t1412
+    t1092 = h_1_1_12_right_noflip_up == 0.0
+    t1093 = 1.0 / h_1_1_12_right_noflip_up
+    uc_1_1_12_right_noflip_up = _runtime.select(t1092, 0.0, T33 * t1093)
+    t1094 = qx_1_1_12_right_noflip_up - d5 * uc_1_1_12_right_noflip_up
+    x_1_1_12_right_noflip_up = _runtime.select(t1091, qx_1_1_12_right_noflip_up, t1094)
+    del t1094
     dqx_1_1_12_right_noflip_up = w_y * c_1_1_12_right_noflip_up - w_x * s_1_1_12_right_noflip_up
-    t1413 = T13 * s_1_1_12_right_noflip_up - T23 * c_1_1_12_right_noflip_up
-    t1414 = h_1_1_12_right_noflip_up * h_1_1_12_right_noflip_up
+    t1095 = T13 * s_1_1_12_right_noflip_up - T23 * c_1_1_12_right_noflip_up
+    t1096 = h_1_1_12_right_noflip_up * h_1_1_12_right_noflip_up
     del h_1_1_12_right_noflip_up
-    spin_1_1_12_right_noflip_up = _runtime.select(t1409, 0.0, T33 * t1413 / t1414)
-    del t1413, t1414
+    spin_1_1_12_right_noflip_up = _runtime.select(t1091, 0.0, T33 * t1095 / t1096)
+    del t1095, t1096
     rate_1_1_12_right_noflip_up = d5 * spin_1_1_12_right_noflip_up
-    t1415 = _runtime.select(t1410, 1.0, axisx_1_1_12_right_noflip_up * t1411)
-    del axisx_1_1_12_right_noflip_up, t1410, t1411
-    t1416 = dqx_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1415
-    dx_1_1_12_right_noflip_up = _runtime.select(t1409, dqx_1_1_12_right_noflip_up, t1416)
-    del t1416
-    t1417 = x_1_1_12_right_noflip_up * dx_1_1_12_right_noflip_up
+    t1097 = _runtime.select(t1092, 1.0, axisx_1_1_12_right_noflip_up * t1093)
+    del axisx_1_1_12_right_noflip_up, t1092, t1093
+    t1098 = dqx_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1097
+    dx_1_1_12_right_noflip_up = _runtime.select(t1091, dqx_1_1_12_right_noflip_up, t1098)
+    del t1098
+    t1099 = x_1_1_12_right_noflip_up * dx_1_1_12_right_noflip_up
     del dx_1_1_12_right_noflip_up
-    t1418 = _runtime.select(t1409, t23, t23 - d5 * t1415)
-    t1419 = rate_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
-    slope_1_1_12_right_noflip_up = t1417 + t1418 * _runtime.select(t1409, 0.0, t1419)
-    del t1417, t1419
-    t1420 = slope_1_1_12_right_noflip_up * slope_1_1_12_right_noflip_up
+    t1100 = _runtime.select(t1091, t23, t23 - d5 * t1097)
+    t1101 = rate_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
+    slope_1_1_12_right_noflip_up = t1099 + t1100 * _runtime.select(t1091, 0.0, t1101)
+    del t1099, t1101
+    t1102 = slope_1_1_12_right_noflip_up * slope_1_1_12_right_noflip_up
     straight_1_1_12_right_noflip_up = dqx_1_1_12_right_noflip_up * dqx_1_1_12_right_noflip_up
-    t1421 = qx_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
+    t1103 = qx_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
     del qx_1_1_12_right_noflip_up, uc_1_1_12_right_noflip_up
-    t1422 = spin_1_1_12_right_noflip_up * (t1421 + t23 * t1415)
-    del spin_1_1_12_right_noflip_up, t1421
-    t1423 = 2.0 * dqx_1_1_12_right_noflip_up * t1415 - t1422
-    del dqx_1_1_12_right_noflip_up, t1415, t1422
-    t1424 = straight_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1423
-    del rate_1_1_12_right_noflip_up, t1423
-    bends_1_1_12_right_noflip_up = _runtime.select(t1409, straight_1_1_12_right_noflip_up, t1424)
-    del straight_1_1_12_right_noflip_up, t1424
-    t1425 = x_1_1_12_right_noflip_up * x_1_1_12_right_noflip_up
+    t1104 = spin_1_1_12_right_noflip_up * (t1103 + t23 * t1097)
+    del spin_1_1_12_right_noflip_up, t1103
+    t1105 = 2.0 * dqx_1_1_12_right_noflip_up * t1097 - t1104
+    del dqx_1_1_12_right_noflip_up, t1097, t1104
+    t1106 = straight_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1105
+    del rate_1_1_12_right_noflip_up, t1105
+    bends_1_1_12_right_noflip_up = _runtime.select(t1091, straight_1_1_12_right_noflip_up, t1106)
+    del straight_1_1_12_right_noflip_up, t1106
+    t1107 = x_1_1_12_right_noflip_up * x_1_1_12_right_noflip_up
     del x_1_1_12_right_noflip_up
-    square_1_1_12_right_noflip_up = t1425 + t1418 * t1418
-    del t1418, t1425
-    t1426 = _runtime.select(t1409, t29, fold_1_1) - whole_1_1
-    t1427 = np.maximum(0.0, t1426)
-    del t1426
-    t1428 = whole_1_1 + _runtime.select(t1409, t3, full_1_1)
-    del t1409
-    t1429 = np.minimum(t1428 * t1428, square_1_1_12_right_noflip_up)
-    del t1428
-    miss_1_1_12_right_noflip_up = square_1_1_12_right_noflip_up - np.maximum(t1427 * t1427, t1429)
-    del square_1_1_12_right_noflip_up, t1427, t1429
-    t1430 = bends_1_1_12_right_noflip_up * miss_1_1_12_right_noflip_up
-    inner_1_1_12_right_noflip_up = t1420 - t1430
-    del t1420, t1430
-    t1431 = inner_1_1_12_right_noflip_up < 0.0
-    t1432 = np.maximum(0.0, inner_1_1_12_right_noflip_up)
+    square_1_1_12_right_noflip_up = t1107 + t1100 * t1100
+    del t1100, t1107
+    t1108 = _runtime.select(t1091, t98, fold_1_1) - whole_1_1
+    t1109 = np.maximum(0.0, t1108)
+    del t1108
+    t1110 = whole_1_1 + _runtime.select(t1091, t3, full_1_1)
+    del t1091
+    t1111 = np.minimum(t1110 * t1110, square_1_1_12_right_noflip_up)
+    del t1110
+    miss_1_1_12_right_noflip_up = square_1_1_12_right_noflip_up - np.maximum(t1109 * t1109, t1111)
+    del square_1_1_12_right_noflip_up, t1109, t1111
+    t1112 = bends_1_1_12_right_noflip_up * miss_1_1_12_right_noflip_up
+    inner_1_1_12_right_noflip_up = t1102 - t1112
+    del t1102, t1112
+    t1113 = inner_1_1_12_right_noflip_up < 0.0
+    t1114 = np.maximum(0.0, inner_1_1_12_right_noflip_up)
     del inner_1_1_12_right_noflip_up
-    t1433 = _runtime.sign(slope_1_1_12_right_noflip_up) * np.sqrt(t1432)
-    del t1432
-    below_1_1_12_right_noflip_up = _runtime.select(t1431, 2.0 * bends_1_1_12_right_noflip_up, 2.0 * (slope_1_1_12_right_noflip_up + t1433))
-    del bends_1_1_12_right_noflip_up, t1433
-    above_1_1_12_right_noflip_up = _runtime.select(t1431, slope_1_1_12_right_noflip_up, miss_1_1_12_right_noflip_up)
-    del miss_1_1_12_right_noflip_up, slope_1_1_12_right_noflip_up, t1431
-    t1434 = np.abs(below_1_1_12_right_noflip_up) <= np.abs(above_1_1_12_right_noflip_up)
-    t1435 = above_1_1_12_right_noflip_up / below_1_1_12_right_noflip_up
+    t1115 = _runtime.sign(slope_1_1_12_right_noflip_up) * np.sqrt(t1114)
+    del t1114
+    below_1_1_12_right_noflip_up = _runtime.select(t1113, 2.0 * bends_1_1_12_right_noflip_up, 2.0 * (slope_1_1_12_right_noflip_up + t1115))
+    del bends_1_1_12_right_noflip_up, t1115
+    above_1_1_12_right_noflip_up = _runtime.select(t1113, slope_1_1_12_right_noflip_up, miss_1_1_12_right_noflip_up)
+    del miss_1_1_12_right_noflip_up, slope_1_1_12_right_noflip_up, t1113
+    t1116 = np.abs(below_1_1_12_right_noflip_up) <= np.abs(above_1_1_12_right_noflip_up)
+    t1117 = above_1_1_12_right_noflip_up / below_1_1_12_right_noflip_up
     del above_1_1_12_right_noflip_up, below_1_1_12_right_noflip_up
-    t1436 = _runtime.select(t1434, 0.0, t1435)
-    del t1434, t1435
-    t1437 = t1436 * t1436
-    t1438 = 1.0 / (1.0 + t1437)
-    by_c_1_1_12_right_noflip_up = (1.0 - t1437) * t1438
-    del t1437
-    t1439 = t1438 * (2.0 * t1436)
-    del t1436, t1438
-    t1440 = t1439 * t1439 / (1.0 + np.abs(by_c_1_1_12_right_noflip_up))
-    versine_1_1_12_right_noflip_up = _runtime.select(0.0 < by_c_1_1_12_right_noflip_up, t1440, 1.0 - by_c_1_1_12_right_noflip_up)
-    del t1440
-    cost_1_1_12_right_noflip_up = d4 * versine_1_1_12_right_noflip_up + root1 * np.abs(t1439)
+    t1118 = _runtime.select(t1116, 0.0, t1117)
+    del t1116, t1117
+    t1119 = t1118 * t1118
+    t1120 = 1.0 / (1.0 + t1119)
+    by_c_1_1_12_right_noflip_up = (1.0 - t1119) * t1120
+    del t1119
+    t1121 = t1120 * (2.0 * t1118)
+    del t1118, t1120
+    t1122 = t1121 * t1121 / (1.0 + np.abs(by_c_1_1_12_right_noflip_up))
+    versine_1_1_12_right_noflip_up = _runtime.select(0.0 < by_c_1_1_12_right_noflip_up, t1122, 1.0 - by_c_1_1_12_right_noflip_up)
+    del t1122
+    cost_1_1_12_right_noflip_up = d4 * versine_1_1_12_right_noflip_up + root1 * np.abs(t1121)
     del versine_1_1_12_right_noflip_up
-    t1441 = cost_1_1_12_right_noflip_up <= whole_1_1
+    t1123 = cost_1_1_12_right_noflip_up <= whole_1_1
     del cost_1_1_12_right_noflip_up
-    cosine_1_1_12_right_noflip_up = _runtime.select(t1441, by_c_1_1_12_right_noflip_up, 1.0)
+    cosine_1_1_12_right_noflip_up = _runtime.select(t1123, by_c_1_1_12_right_noflip_up, 1.0)
     del by_c_1_1_12_right_noflip_up
-    t1442 = c_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
-    sine_1_1_12_right_noflip_up = _runtime.select(t1441, -t1439, 0.0)
-    del t1439, t1441
-    t1443 = s_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
-    c_1_1_13_right_noflip_up = t1442 - t1443
-    del t1442, t1443
-    t1444 = c_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
+    t1124 = c_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
+    sine_1_1_12_right_noflip_up = _runtime.select(t1123, -t1121, 0.0)
+    del t1121, t1123
+    t1125 = s_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
+    c_1_1_13_right_noflip_up = t1124 - t1125
+    del t1124, t1125
+    t1126 = c_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
     del c_1_1_12_right_noflip_up, sine_1_1_12_right_noflip_up
-    t1445 = s_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
+    t1127 = s_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
     del cosine_1_1_12_right_noflip_up, s_1_1_12_right_noflip_up
-    s_1_1_13_right_noflip_up = t1444 + t1445
-    del t1444, t1445
+    s_1_1_13_right_noflip_up = t1126 + t1127
+    del t1126, t1127
     axisx_1_1_13_right_noflip_up = T13 * c_1_1_13_right_noflip_up + T23 * s_1_1_13_right_noflip_up
-    t1446 = axisx_1_1_13_right_noflip_up * axisx_1_1_13_right_noflip_up
-    h_1_1_13_right_noflip_up = np.sqrt(t5 + t1446)
-    del t1446
-    t1447 = h_1_1_13_right_noflip_up <= 1.4210854715202004e-14
+    t1128 = axisx_1_1_13_right_noflip_up * axisx_1_1_13_right_noflip_up
+    h_1_1_13_right_noflip_up = np.sqrt(t5 + t1128)
+    del t1128
+    t1129 = h_1_1_13_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_13_right_noflip_up = w_x * c_1_1_13_right_noflip_up + w_y * s_1_1_13_right_noflip_up
-    t1448 = h_1_1_13_right_noflip_up == 0.0
-    t1449 = 1.0 / h_1_1_13_right_noflip_up
-    uc_1_1_13_right_noflip_up = _runtime.select(t1448, 0.0, T33 * t1449)
-    t1450 = qx_1_1_13_right_noflip_up - d5 * uc_1_1_13_right_noflip_up
-    x_1_1_13_right_noflip_up = _runtime.select(t1447, qx_1_1_13_right_noflip_up, t1450)
-    del t1450
+    t1130 = h_1_1_13_right_noflip_up == 0.0
+    t1131 = 1.0 / h_1_1_13_right_noflip_up
+    uc_1_1_13_right_noflip_up = _runtime.select(t1130, 0.0, T33 * t1131)
+    t1132 = qx_1_1_13_right_noflip_up - d5 * uc_1_1_13_right_noflip_up
+    x_1_1_13_right_noflip_up = _runtime.select(t1129, qx_1_1_13_right_noflip_up, t1132)
+    del t1132
     dqx_1_1_13_right_noflip_up = w_y * c_1_1_13_right_noflip_up - w_x * s_1_1_13_right_noflip_up
-    t1451 = T13 * s_1_1_13_right_noflip_up - T23 * c_1_1_13_right_noflip_up
-    t1452 = h_1_1_13_right_noflip_up * h_1_1_13_right_noflip_up
+    t1133 = T13 * s_1_1_13_right_noflip_up - T23 * c_1_1_13_right_noflip_up
+    t1134 = h_1_1_13_right_noflip_up * h_1_1_13_right_noflip_up
     del h_1_1_13_right_noflip_up
-    spin_1_1_13_right_noflip_up = _runtime.select(t1447, 0.0, T33 * t1451 / t1452)
-    del t1451, t1452
+    spin_1_1_13_right_noflip_up = _runtime.select(t1129, 0.0, T33 * t1133 / t1134)
+    del t1133, t1134
     rate_1_1_13_right_noflip_up = d5 * spin_1_1_13_right_noflip_up
-    t1453 = _runtime.select(t1448, 1.0, axisx_1_1_13_right_noflip_up * t1449)
-    del axisx_1_1_13_right_noflip_up, t1448, t1449
-    t1454 = dqx_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1453
-    dx_1_1_13_right_noflip_up = _runtime.select(t1447, dqx_1_1_13_right_noflip_up, t1454)
-    del t1454
-    t1455 = x_1_1_13_right_noflip_up * dx_1_1_13_right_noflip_up
+    t1135 = _runtime.select(t1130, 1.0, axisx_1_1_13_right_noflip_up * t1131)
+    del axisx_1_1_13_right_noflip_up, t1130, t1131
+    t1136 = dqx_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1135
+    dx_1_1_13_right_noflip_up = _runtime.select(t1129, dqx_1_1_13_right_noflip_up, t1136)
+    del t1136
+    t1137 = x_1_1_13_right_noflip_up * dx_1_1_13_right_noflip_up
     del dx_1_1_13_right_noflip_up
-    t1456 = _runtime.select(t1447, t23, t23 - d5 * t1453)
-    t1457 = rate_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
-    slope_1_1_13_right_noflip_up = t1455 + t1456 * _runtime.select(t1447, 0.0, t1457)
-    del t1455, t1457
-    t1458 = slope_1_1_13_right_noflip_up * slope_1_1_13_right_noflip_up
+    t1138 = _runtime.select(t1129, t23, t23 - d5 * t1135)
+    t1139 = rate_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
+    slope_1_1_13_right_noflip_up = t1137 + t1138 * _runtime.select(t1129, 0.0, t1139)
+    del t1137, t1139
+    t1140 = slope_1_1_13_right_noflip_up * slope_1_1_13_right_noflip_up
     straight_1_1_13_right_noflip_up = dqx_1_1_13_right_noflip_up * dqx_1_1_13_right_noflip_up
-    t1459 = qx_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
+    t1141 = qx_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
     del qx_1_1_13_right_noflip_up, uc_1_1_13_right_noflip_up
-    t1460 = spin_1_1_13_right_noflip_up * (t1459 + t23 * t1453)
-    del spin_1_1_13_right_noflip_up, t1459
-    t1461 = 2.0 * dqx_1_1_13_right_noflip_up * t1453 - t1460
-    del dqx_1_1_13_right_noflip_up, t1453, t1460
-    t1462 = straight_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1461
-    del rate_1_1_13_right_noflip_up, t1461
-    bends_1_1_13_right_noflip_up = _runtime.select(t1447, straight_1_1_13_right_noflip_up, t1462)
-    del straight_1_1_13_right_noflip_up, t1462
-    t1463 = x_1_1_13_right_noflip_up * x_1_1_13_right_noflip_up
+    t1142 = spin_1_1_13_right_noflip_up * (t1141 + t23 * t1135)
+    del spin_1_1_13_right_noflip_up, t1141
+    t1143 = 2.0 * dqx_1_1_13_right_noflip_up * t1135 - t1142
+    del dqx_1_1_13_right_noflip_up, t1135, t1142
+    t1144 = straight_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1143
+    del rate_1_1_13_right_noflip_up, t1143
+    bends_1_1_13_right_noflip_up = _runtime.select(t1129, straight_1_1_13_right_noflip_up, t1144)
+    del straight_1_1_13_right_noflip_up, t1144
+    t1145 = x_1_1_13_right_noflip_up * x_1_1_13_right_noflip_up
     del x_1_1_13_right_noflip_up
-    square_1_1_13_right_noflip_up = t1463 + t1456 * t1456
-    del t1456, t1463
-    t1464 = _runtime.select(t1447, t29, fold_1_1) - whole_1_1
-    t1465 = np.maximum(0.0, t1464)
-    del t1464
-    t1466 = whole_1_1 + _runtime.select(t1447, t3, full_1_1)
-    del t1447
-    t1467 = np.minimum(t1466 * t1466, square_1_1_13_right_noflip_up)
-    del t1466
-    miss_1_1_13_right_noflip_up = square_1_1_13_right_noflip_up - np.maximum(t1465 * t1465, t1467)
-    del square_1_1_13_right_noflip_up, t1465, t1467
-    t1468 = bends_1_1_13_right_noflip_up * miss_1_1_13_right_noflip_up
-    inner_1_1_13_right_noflip_up = t1458 - t1468
-    del t1458, t1468
-    t1469 = inner_1_1_13_right_noflip_up < 0.0
-    t1470 = np.maximum(0.0, inner_1_1_13_right_noflip_up)
+    square_1_1_13_right_noflip_up = t1145 + t1138 * t1138
+    del t1138, t1145
+    t1146 = _runtime.select(t1129, t98, fold_1_1) - whole_1_1
+    t1147 = np.maximum(0.0, t1146)
+    del t1146
+    t1148 = whole_1_1 + _runtime.select(t1129, t3, full_1_1)
+    del t1129
+    t1149 = np.minimum(t1148 * t1148, square_1_1_13_right_noflip_up)
+    del t1148
+    miss_1_1_13_right_noflip_up = square_1_1_13_right_noflip_up - np.maximum(t1147 * t1147, t1149)
+    del square_1_1_13_right_noflip_up, t1147, t1149
+    t1150 = bends_1_1_13_right_noflip_up * miss_1_1_13_right_noflip_up
+    inner_1_1_13_right_noflip_up = t1140 - t1150
+    del t1140, t1150
+    t1151 = inner_1_1_13_right_noflip_up < 0.0
+    t1152 = np.maximum(0.0, inner_1_1_13_right_noflip_up)
     del inner_1_1_13_right_noflip_up
-    t1471 = _runtime.sign(slope_1_1_13_right_noflip_up) * np.sqrt(t1470)
-    del t1470
-    below_1_1_13_right_noflip_up = _runtime.select(t1469, 2.0 * bends_1_1_13_right_noflip_up, 2.0 * (slope_1_1_13_right_noflip_up + t1471))
-    del bends_1_1_13_right_noflip_up, t1471
-    above_1_1_13_right_noflip_up = _runtime.select(t1469, slope_1_1_13_right_noflip_up, miss_1_1_13_right_noflip_up)
-    del miss_1_1_13_right_noflip_up, slope_1_1_13_right_noflip_up, t1469
-    t1472 = np.abs(below_1_1_13_right_noflip_up) <= np.abs(above_1_1_13_right_noflip_up)
-    t1473 = above_1_1_13_right_noflip_up / below_1_1_13_right_noflip_up
+    t1153 = _runtime.sign(slope_1_1_13_right_noflip_up) * np.sqrt(t1152)
+    del t1152
+    below_1_1_13_right_noflip_up = _runtime.select(t1151, 2.0 * bends_1_1_13_right_noflip_up, 2.0 * (slope_1_1_13_right_noflip_up + t1153))
+    del bends_1_1_13_right_noflip_up, t1153
+    above_1_1_13_right_noflip_up = _runtime.select(t1151, slope_1_1_13_right_noflip_up, miss_1_1_13_right_noflip_up)
+    del miss_1_1_13_right_noflip_up, slope_1_1_13_right_noflip_up, t1151
+    t1154 = np.abs(below_1_1_13_right_noflip_up) <= np.abs(above_1_1_13_right_noflip_up)
+    t1155 = above_1_1_13_right_noflip_up / below_1_1_13_right_noflip_up
     del above_1_1_13_right_noflip_up, below_1_1_13_right_noflip_up
-    t1474 = _runtime.select(t1472, 0.0, t1473)
-    del t1472, t1473
-    t1475 = t1474 * t1474
-    t1476 = 1.0 / (1.0 + t1475)
-    by_c_1_1_13_right_noflip_up = (1.0 - t1475) * t1476
-    del t1475
-    t1477 = t1476 * (2.0 * t1474)
-    del t1474, t1476
-    t1478 = t1477 * t1477 / (1.0 + np.abs(by_c_1_1_13_right_noflip_up))
-    versine_1_1_13_right_noflip_up = _runtime.select(0.0 < by_c_1_1_13_right_noflip_up, t1478, 1.0 - by_c_1_1_13_right_noflip_up)
-    del t1478
-    cost_1_1_13_right_noflip_up = d4 * versine_1_1_13_right_noflip_up + root1 * np.abs(t1477)
+    t1156 = _runtime.select(t1154, 0.0, t1155)
+    del t1154, t1155
+    t1157 = t1156 * t1156
+    t1158 = 1.0 / (1.0 + t1157)
+    by_c_1_1_13_right_noflip_up = (1.0 - t1157) * t1158
+    del t1157
+    t1159 = t1158 * (2.0 * t1156)
+    del t1156, t1158
+    t1160 = t1159 * t1159 / (1.0 + np.abs(by_c_1_1_13_right_noflip_up))
+    versine_1_1_13_right_noflip_up = _runtime.select(0.0 < by_c_1_1_13_right_noflip_up, t1160, 1.0 - by_c_1_1_13_right_noflip_up)
+    del t1160
+    cost_1_1_13_right_noflip_up = d4 * versine_1_1_13_right_noflip_up + root1 * np.abs(t1159)
     del versine_1_1_13_right_noflip_up
-    t1479 = cost_1_1_13_right_noflip_up <= whole_1_1
+    t1161 = cost_1_1_13_right_noflip_up <= whole_1_1
     del cost_1_1_13_right_noflip_up
-    cosine_1_1_13_right_noflip_up = _runtime.select(t1479, by_c_1_1_13_right_noflip_up, 1.0)
+    cosine_1_1_13_right_noflip_up = _runtime.select(t1161, by_c_1_1_13_right_noflip_up, 1.0)
     del by_c_1_1_13_right_noflip_up
-    t1480 = c_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
-    sine_1_1_13_right_noflip_up = _runtime.select(t1479, -t1477, 0.0)
-    del t1477, t1479
-    t1481 = s_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
-    c_1_1_14_right_noflip_up = t1480 - t1481
-    del t1480, t1481
-    t1482 = c_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
+    t1162 = c_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
+    sine_1_1_13_right_noflip_up = _runtime.select(t1161, -t1159, 0.0)
+    del t1159, t1161
+    t1163 = s_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
+    c_1_1_14_right_noflip_up = t1162 - t1163
+    del t1162, t1163
+    t1164 = c_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
     del c_1_1_13_right_noflip_up, sine_1_1_13_right_noflip_up
-    t1483 = s_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
+    t1165 = s_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
     del cosine_1_1_13_right_noflip_up, s_1_1_13_right_noflip_up
-    s_1_1_14_right_noflip_up = t1482 + t1483
-    del t1482, t1483
+    s_1_1_14_right_noflip_up = t1164 + t1165
+    del t1164, t1165
     axisx_1_1_14_right_noflip_up = T13 * c_1_1_14_right_noflip_up + T23 * s_1_1_14_right_noflip_up
-    t1484 = axisx_1_1_14_right_noflip_up * axisx_1_1_14_right_noflip_up
-    h_1_1_14_right_noflip_up = np.sqrt(t5 + t1484)
-    del t1484
-    t1485 = h_1_1_14_right_noflip_up <= 1.4210854715202004e-14
+    t1166 = axisx_1_1_14_right_noflip_up * axisx_1_1_14_right_noflip_up
+    h_1_1_14_right_noflip_up = np.sqrt(t5 + t1166)
+    del t1166
+    t1167 = h_1_1_14_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_14_right_noflip_up = w_x * c_1_1_14_right_noflip_up + w_y * s_1_1_14_right_noflip_up
-    t1486 = h_1_1_14_right_noflip_up == 0.0
-    t1487 = 1.0 / h_1_1_14_right_noflip_up
-    uc_1_1_14_right_noflip_up = _runtime.select(t1486, 0.0, T33 * t1487)
-    t1488 = qx_1_1_14_right_noflip_up - d5 * uc_1_1_14_right_noflip_up
-    x_1_1_14_right_noflip_up = _runtime.select(t1485, qx_1_1_14_right_noflip_up, t1488)
-    del t1488
+    t1168 = h_1_1_14_right_noflip_up == 0.0
+    t1169 = 1.0 / h_1_1_14_right_noflip_up
+    uc_1_1_14_right_noflip_up = _runtime.select(t1168, 0.0, T33 * t1169)
+    t1170 = qx_1_1_14_right_noflip_up - d5 * uc_1_1_14_right_noflip_up
+    x_1_1_14_right_noflip_up = _runtime.select(t1167, qx_1_1_14_right_noflip_up, t1170)
+    del t1170
     dqx_1_1_14_right_noflip_up = w_y * c_1_1_14_right_noflip_up - w_x * s_1_1_14_right_noflip_up
-    t1489 = T13 * s_1_1_14_right_noflip_up - T23 * c_1_1_14_right_noflip_up
-    t1490 = h_1_1_14_right_noflip_up * h_1_1_14_right_noflip_up
+    t1171 = T13 * s_1_1_14_right_noflip_up - T23 * c_1_1_14_right_noflip_up
+    t1172 = h_1_1_14_right_noflip_up * h_1_1_14_right_noflip_up
     del h_1_1_14_right_noflip_up
-    spin_1_1_14_right_noflip_up = _runtime.select(t1485, 0.0, T33 * t1489 / t1490)
-    del t1489, t1490
+    spin_1_1_14_right_noflip_up = _runtime.select(t1167, 0.0, T33 * t1171 / t1172)
+    del t1171, t1172
     rate_1_1_14_right_noflip_up = d5 * spin_1_1_14_right_noflip_up
-    t1491 = _runtime.select(t1486, 1.0, axisx_1_1_14_right_noflip_up * t1487)
-    del axisx_1_1_14_right_noflip_up, t1486, t1487
-    t1492 = dqx_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1491
-    dx_1_1_14_right_noflip_up = _runtime.select(t1485, dqx_1_1_14_right_noflip_up, t1492)
-    del t1492
-    t1493 = x_1_1_14_right_noflip_up * dx_1_1_14_right_noflip_up
+    t1173 = _runtime.select(t1168, 1.0, axisx_1_1_14_right_noflip_up * t1169)
+    del axisx_1_1_14_right_noflip_up, t1168, t1169
+    t1174 = dqx_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1173
+    dx_1_1_14_right_noflip_up = _runtime.select(t1167, dqx_1_1_14_right_noflip_up, t1174)
+    del t1174
+    t1175 = x_1_1_14_right_noflip_up * dx_1_1_14_right_noflip_up
     del dx_1_1_14_right_noflip_up
-    t1494 = _runtime.select(t1485, t23, t23 - d5 * t1491)
-    t1495 = rate_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
-    slope_1_1_14_right_noflip_up = t1493 + t1494 * _runtime.select(t1485, 0.0, t1495)
-    del t1493, t1495
-    t1496 = slope_1_1_14_right_noflip_up * slope_1_1_14_right_noflip_up
+    t1176 = _runtime.select(t1167, t23, t23 - d5 * t1173)
+    t1177 = rate_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
+    slope_1_1_14_right_noflip_up = t1175 + t1176 * _runtime.select(t1167, 0.0, t1177)
+    del t1175, t1177
+    t1178 = slope_1_1_14_right_noflip_up * slope_1_1_14_right_noflip_up
     straight_1_1_14_right_noflip_up = dqx_1_1_14_right_noflip_up * dqx_1_1_14_right_noflip_up
-    t1497 = qx_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
+    t1179 = qx_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
     del qx_1_1_14_right_noflip_up, uc_1_1_14_right_noflip_up
-    t1498 = spin_1_1_14_right_noflip_up * (t1497 + t23 * t1491)
-    del spin_1_1_14_right_noflip_up, t1497
-    t1499 = 2.0 * dqx_1_1_14_right_noflip_up * t1491 - t1498
-    del dqx_1_1_14_right_noflip_up, t1491, t1498
-    t1500 = straight_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1499
-    del rate_1_1_14_right_noflip_up, t1499
-    bends_1_1_14_right_noflip_up = _runtime.select(t1485, straight_1_1_14_right_noflip_up, t1500)
-    del straight_1_1_14_right_noflip_up, t1500
-    t1501 = x_1_1_14_right_noflip_up * x_1_1_14_right_noflip_up
+    t1180 = spin_1_1_14_right_noflip_up * (t1179 + t23 * t1173)
+    del spin_1_1_14_right_noflip_up, t1179
+    t1181 = 2.0 * dqx_1_1_14_right_noflip_up * t1173 - t1180
+    del dqx_1_1_14_right_noflip_up, t1173, t1180
+    t1182 = straight_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1181
+    del rate_1_1_14_right_noflip_up, t1181
+    bends_1_1_14_right_noflip_up = _runtime.select(t1167, straight_1_1_14_right_noflip_up, t1182)
+    del straight_1_1_14_right_noflip_up, t1182
+    t1183 = x_1_1_14_right_noflip_up * x_1_1_14_right_noflip_up
     del x_1_1_14_right_noflip_up
-    square_1_1_14_right_noflip_up = t1501 + t1494 * t1494
-    del t1494, t1501
-    t1502 = _runtime.select(t1485, t29, fold_1_1) - whole_1_1
-    t1503 = np.maximum(0.0, t1502)
-    del t1502
-    t1504 = whole_1_1 + _runtime.select(t1485, t3, full_1_1)
-    del t1485
-    t1505 = np.minimum(t1504 * t1504, square_1_1_14_right_noflip_up)
-    del t1504
-    miss_1_1_14_right_noflip_up = square_1_1_14_right_noflip_up - np.maximum(t1503 * t1503, t1505)
-    del square_1_1_14_right_noflip_up, t1503, t1505
-    t1506 = bends_1_1_14_right_noflip_up * miss_1_1_14_right_noflip_up
-    inner_1_1_14_right_noflip_up = t1496 - t1506
-    del t1496, t1506
-    t1507 = inner_1_1_14_right_noflip_up < 0.0
-    t1508 = np.maximum(0.0, inner_1_1_14_right_noflip_up)
+    square_1_1_14_right_noflip_up = t1183 + t1176 * t1176
+    del t1176, t1183
+    t1184 = _runtime.select(t1167, t98, fold_1_1) - whole_1_1
+    t1185 = np.maximum(0.0, t1184)
+    del t1184
+    t1186 = whole_1_1 + _runtime.select(t1167, t3, full_1_1)
+    del t1167
+    t1187 = np.minimum(t1186 * t1186, square_1_1_14_right_noflip_up)
+    del t1186
+    miss_1_1_14_right_noflip_up = square_1_1_14_right_noflip_up - np.maximum(t1185 * t1185, t1187)
+    del square_1_1_14_right_noflip_up, t1185, t1187
+    t1188 = bends_1_1_14_right_noflip_up * miss_1_1_14_right_noflip_up
+    inner_1_1_14_right_noflip_up = t1178 - t1188
+    del t1178, t1188
+    t1189 = inner_1_1_14_right_noflip_up < 0.0
+    t1190 = np.maximum(0.0, inner_1_1_14_right_noflip_up)
     del inner_1_1_14_right_noflip_up
-    t1509 = _runtime.sign(slope_1_1_14_right_noflip_up) * np.sqrt(t1508)
-    del t1508
-    below_1_1_14_right_noflip_up = _runtime.select(t1507, 2.0 * bends_1_1_14_right_noflip_up, 2.0 * (slope_1_1_14_right_noflip_up + t1509))
-    del bends_1_1_14_right_noflip_up, t1509
-    above_1_1_14_right_noflip_up = _runtime.select(t1507, slope_1_1_14_right_noflip_up, miss_1_1_14_right_noflip_up)
-    del miss_1_1_14_right_noflip_up, slope_1_1_14_right_noflip_up, t1507
-    t1510 = np.abs(below_1_1_14_right_noflip_up) <= np.abs(above_1_1_14_right_noflip_up)
-    t1511 = above_1_1_14_right_noflip_up / below_1_1_14_right_noflip_up
+    t1191 = _runtime.sign(slope_1_1_14_right_noflip_up) * np.sqrt(t1190)
+    del t1190
+    below_1_1_14_right_noflip_up = _runtime.select(t1189, 2.0 * bends_1_1_14_right_noflip_up, 2.0 * (slope_1_1_14_right_noflip_up + t1191))
+    del bends_1_1_14_right_noflip_up, t1191
+    above_1_1_14_right_noflip_up = _runtime.select(t1189, slope_1_1_14_right_noflip_up, miss_1_1_14_right_noflip_up)
+    del miss_1_1_14_right_noflip_up, slope_1_1_14_right_noflip_up, t1189
+    t1192 = np.abs(below_1_1_14_right_noflip_up) <= np.abs(above_1_1_14_right_noflip_up)
+    t1193 = above_1_1_14_right_noflip_up / below_1_1_14_right_noflip_up
     del above_1_1_14_right_noflip_up, below_1_1_14_right_noflip_up
-    t1512 = _runtime.select(t1510, 0.0, t1511)
-    del t1510, t1511
-    t1513 = t1512 * t1512
-    t1514 = 1.0 / (1.0 + t1513)
-    by_c_1_1_14_right_noflip_up = (1.0 - t1513) * t1514
-    del t1513
-    t1515 = t1514 * (2.0 * t1512)
-    del t1512, t1514
-    t1516 = t1515 * t1515 / (1.0 + np.abs(by_c_1_1_14_right_noflip_up))
-    versine_1_1_14_right_noflip_up = _runtime.select(0.0 < by_c_1_1_14_right_noflip_up, t1516, 1.0 - by_c_1_1_14_right_noflip_up)
-    del t1516
-    cost_1_1_14_right_noflip_up = d4 * versine_1_1_14_right_noflip_up + root1 * np.abs(t1515)
+    t1194 = _runtime.select(t1192, 0.0, t1193)
+    del t1192, t1193
+    t1195 = t1194 * t1194
+    t1196 = 1.0 / (1.0 + t1195)
+    by_c_1_1_14_right_noflip_up = (1.0 - t1195) * t1196
+    del t1195
+    t1197 = t1196 * (2.0 * t1194)
+    del t1194, t1196
+    t1198 = t1197 * t1197 / (1.0 + np.abs(by_c_1_1_14_right_noflip_up))
+    versine_1_1_14_right_noflip_up = _runtime.select(0.0 < by_c_1_1_14_right_noflip_up, t1198, 1.0 - by_c_1_1_14_right_noflip_up)
+    del t1198
+    cost_1_1_14_right_noflip_up = d4 * versine_1_1_14_right_noflip_up + root1 * np.abs(t1197)
     del versine_1_1_14_right_noflip_up
-    t1517 = cost_1_1_14_right_noflip_up <= whole_1_1
+    t1199 = cost_1_1_14_right_noflip_up <= whole_1_1
     del cost_1_1_14_right_noflip_up
-    cosine_1_1_14_right_noflip_up = _runtime.select(t1517, by_c_1_1_14_right_noflip_up, 1.0)
+    cosine_1_1_14_right_noflip_up = _runtime.select(t1199, by_c_1_1_14_right_noflip_up, 1.0)
     del by_c_1_1_14_right_noflip_up
-    t1518 = c_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
-    sine_1_1_14_right_noflip_up = _runtime.select(t1517, -t1515, 0.0)
-    del t1515, t1517
-    t1519 = s_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
-    c_1_1_15_right_noflip_up = t1518 - t1519
-    del t1518, t1519
-    t1520 = c_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
+    t1200 = c_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
+    sine_1_1_14_right_noflip_up = _runtime.select(t1199, -t1197, 0.0)
+    del t1197, t1199
+    t1201 = s_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
+    c_1_1_15_right_noflip_up = t1200 - t1201
+    del t1200, t1201
+    t1202 = c_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
     del c_1_1_14_right_noflip_up, sine_1_1_14_right_noflip_up
-    t1521 = s_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
+    t1203 = s_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
     del cosine_1_1_14_right_noflip_up, s_1_1_14_right_noflip_up
-    s_1_1_15_right_noflip_up = t1520 + t1521
-    del t1520, t1521
+    s_1_1_15_right_noflip_up = t1202 + t1203
+    del t1202, t1203
     axisx_1_1_15_right_noflip_up = T13 * c_1_1_15_right_noflip_up + T23 * s_1_1_15_right_noflip_up
-    t1522 = axisx_1_1_15_right_noflip_up * axisx_1_1_15_right_noflip_up
-    h_1_1_15_right_noflip_up = np.sqrt(t5 + t1522)
-    del t1522
-    t1523 = h_1_1_15_right_noflip_up <= 1.4210854715202004e-14
+    t1204 = axisx_1_1_15_right_noflip_up * axisx_1_1_15_right_noflip_up
+    h_1_1_15_right_noflip_up = np.sqrt(t5 + t1204)
+    del t1204
+    t1205 = h_1_1_15_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_15_right_noflip_up = w_x * c_1_1_15_right_noflip_up + w_y * s_1_1_15_right_noflip_up
-    t1524 = h_1_1_15_right_noflip_up == 0.0
-    t1525 = 1.0 / h_1_1_15_right_noflip_up
-    uc_1_1_15_right_noflip_up = _runtime.select(t1524, 0.0, T33 * t1525)
-    t1526 = qx_1_1_15_right_noflip_up - d5 * uc_1_1_15_right_noflip_up
-    x_1_1_15_right_noflip_up = _runtime.select(t1523, qx_1_1_15_right_noflip_up, t1526)
-    del t1526
+    t1206 = h_1_1_15_right_noflip_up == 0.0
+    t1207 = 1.0 / h_1_1_15_right_noflip_up
+    uc_1_1_15_right_noflip_up = _runtime.select(t1206, 0.0, T33 * t1207)
+    t1208 = qx_1_1_15_right_noflip_up - d5 * uc_1_1_15_right_noflip_up
+    x_1_1_15_right_noflip_up = _runtime.select(t1205, qx_1_1_15_right_noflip_up, t1208)
+    del t1208
     dqx_1_1_15_right_noflip_up = w_y * c_1_1_15_right_noflip_up - w_x * s_1_1_15_right_noflip_up
-    t1527 = T13 * s_1_1_15_right_noflip_up - T23 * c_1_1_15_right_noflip_up
-    t1528 = h_1_1_15_right_noflip_up * h_1_1_15_right_noflip_up
+    t1209 = T13 * s_1_1_15_right_noflip_up - T23 * c_1_1_15_right_noflip_up
+    t1210 = h_1_1_15_right_noflip_up * h_1_1_15_right_noflip_up
     del h_1_1_15_right_noflip_up
-    spin_1_1_15_right_noflip_up = _runtime.select(t1523, 0.0, T33 * t1527 / t1528)
-    del t1527, t1528
+    spin_1_1_15_right_noflip_up = _runtime.select(t1205, 0.0, T33 * t1209 / t1210)
+    del t1209, t1210
     rate_1_1_15_right_noflip_up = d5 * spin_1_1_15_right_noflip_up
-    t1529 = _runtime.select(t1524, 1.0, axisx_1_1_15_right_noflip_up * t1525)
-    del axisx_1_1_15_right_noflip_up, t1524, t1525
-    t1530 = dqx_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1529
-    dx_1_1_15_right_noflip_up = _runtime.select(t1523, dqx_1_1_15_right_noflip_up, t1530)
-    del t1530
-    t1531 = x_1_1_15_right_noflip_up * dx_1_1_15_right_noflip_up
+    t1211 = _runtime.select(t1206, 1.0, axisx_1_1_15_right_noflip_up * t1207)
+    del axisx_1_1_15_right_noflip_up, t1206, t1207
+    t1212 = dqx_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1211
+    dx_1_1_15_right_noflip_up = _runtime.select(t1205, dqx_1_1_15_right_noflip_up, t1212)
+    del t1212
+    t1213 = x_1_1_15_right_noflip_up * dx_1_1_15_right_noflip_up
     del dx_1_1_15_right_noflip_up
-    t1532 = _runtime.select(t1523, t23, t23 - d5 * t1529)
-    t1533 = rate_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
-    slope_1_1_15_right_noflip_up = t1531 + t1532 * _runtime.select(t1523, 0.0, t1533)
-    del t1531, t1533
-    t1534 = slope_1_1_15_right_noflip_up * slope_1_1_15_right_noflip_up
+    t1214 = _runtime.select(t1205, t23, t23 - d5 * t1211)
+    t1215 = rate_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
+    slope_1_1_15_right_noflip_up = t1213 + t1214 * _runtime.select(t1205, 0.0, t1215)
+    del t1213, t1215
+    t1216 = slope_1_1_15_right_noflip_up * slope_1_1_15_right_noflip_up
     straight_1_1_15_right_noflip_up = dqx_1_1_15_right_noflip_up * dqx_1_1_15_right_noflip_up
-    t1535 = qx_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
+    t1217 = qx_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
     del qx_1_1_15_right_noflip_up, uc_1_1_15_right_noflip_up
-    t1536 = spin_1_1_15_right_noflip_up * (t1535 + t23 * t1529)
-    del spin_1_1_15_right_noflip_up, t1535
-    t1537 = 2.0 * dqx_1_1_15_right_noflip_up * t1529 - t1536
-    del dqx_1_1_15_right_noflip_up, t1529, t1536
-    t1538 = straight_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1537
-    del rate_1_1_15_right_noflip_up, t1537
-    bends_1_1_15_right_noflip_up = _runtime.select(t1523, straight_1_1_15_right_noflip_up, t1538)
-    del straight_1_1_15_right_noflip_up, t1538
-    t1539 = x_1_1_15_right_noflip_up * x_1_1_15_right_noflip_up
+    t1218 = spin_1_1_15_right_noflip_up * (t1217 + t23 * t1211)
+    del spin_1_1_15_right_noflip_up, t1217
+    t1219 = 2.0 * dqx_1_1_15_right_noflip_up * t1211 - t1218
+    del dqx_1_1_15_right_noflip_up, t1211, t1218
+    t1220 = straight_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1219
+    del rate_1_1_15_right_noflip_up, t1219
+    bends_1_1_15_right_noflip_up = _runtime.select(t1205, straight_1_1_15_right_noflip_up, t1220)
+    del straight_1_1_15_right_noflip_up, t1220
+    t1221 = x_1_1_15_right_noflip_up * x_1_1_15_right_noflip_up
     del x_1_1_15_right_noflip_up
-    square_1_1_15_right_noflip_up = t1539 + t1532 * t1532
-    del t1532, t1539
-    t1540 = _runtime.select(t1523, t29, fold_1_1) - whole_1_1
-    t1541 = np.maximum(0.0, t1540)
-    del t1540
-    t1542 = whole_1_1 + _runtime.select(t1523, t3, full_1_1)
-    del t1523
-    t1543 = np.minimum(t1542 * t1542, square_1_1_15_right_noflip_up)
-    del t1542
-    miss_1_1_15_right_noflip_up = square_1_1_15_right_noflip_up - np.maximum(t1541 * t1541, t1543)
-    del square_1_1_15_right_noflip_up, t1541, t1543
-    t1544 = bends_1_1_15_right_noflip_up * miss_1_1_15_right_noflip_up
-    inner_1_1_15_right_noflip_up = t1534 - t1544
-    del t1534, t1544
-    t1545 = inner_1_1_15_right_noflip_up < 0.0
-    t1546 = np.maximum(0.0, inner_1_1_15_right_noflip_up)
+    square_1_1_15_right_noflip_up = t1221 + t1214 * t1214
+    del t1214, t1221
+    t1222 = _runtime.select(t1205, t98, fold_1_1) - whole_1_1
+    t1223 = np.maximum(0.0, t1222)
+    del t1222
+    t1224 = whole_1_1 + _runtime.select(t1205, t3, full_1_1)
+    del t1205
+    t1225 = np.minimum(t1224 * t1224, square_1_1_15_right_noflip_up)
+    del t1224
+    miss_1_1_15_right_noflip_up = square_1_1_15_right_noflip_up - np.maximum(t1223 * t1223, t1225)
+    del square_1_1_15_right_noflip_up, t1223, t1225
+    t1226 = bends_1_1_15_right_noflip_up * miss_1_1_15_right_noflip_up
+    inner_1_1_15_right_noflip_up = t1216 - t1226
+    del t1216, t1226
+    t1227 = inner_1_1_15_right_noflip_up < 0.0
+    t1228 = np.maximum(0.0, inner_1_1_15_right_noflip_up)
     del inner_1_1_15_right_noflip_up
-    t1547 = _runtime.sign(slope_1_1_15_right_noflip_up) * np.sqrt(t1546)
-    del t1546
-    below_1_1_15_right_noflip_up = _runtime.select(t1545, 2.0 * bends_1_1_15_right_noflip_up, 2.0 * (slope_1_1_15_right_noflip_up + t1547))
-    del bends_1_1_15_right_noflip_up, t1547
-    above_1_1_15_right_noflip_up = _runtime.select(t1545, slope_1_1_15_right_noflip_up, miss_1_1_15_right_noflip_up)
-    del miss_1_1_15_right_noflip_up, slope_1_1_15_right_noflip_up, t1545
-    t1548 = np.abs(below_1_1_15_right_noflip_up) <= np.abs(above_1_1_15_right_noflip_up)
-    t1549 = above_1_1_15_right_noflip_up / below_1_1_15_right_noflip_up
+    t1229 = _runtime.sign(slope_1_1_15_right_noflip_up) * np.sqrt(t1228)
+    del t1228
+    below_1_1_15_right_noflip_up = _runtime.select(t1227, 2.0 * bends_1_1_15_right_noflip_up, 2.0 * (slope_1_1_15_right_noflip_up + t1229))
+    del bends_1_1_15_right_noflip_up, t1229
+    above_1_1_15_right_noflip_up = _runtime.select(t1227, slope_1_1_15_right_noflip_up, miss_1_1_15_right_noflip_up)
+    del miss_1_1_15_right_noflip_up, slope_1_1_15_right_noflip_up, t1227
+    t1230 = np.abs(below_1_1_15_right_noflip_up) <= np.abs(above_1_1_15_right_noflip_up)
+    t1231 = above_1_1_15_right_noflip_up / below_1_1_15_right_noflip_up
     del above_1_1_15_right_noflip_up, below_1_1_15_right_noflip_up
-    t1550 = _runtime.select(t1548, 0.0, t1549)
-    del t1548, t1549
-    t1551 = t1550 * t1550
-    t1552 = 1.0 / (1.0 + t1551)
-    by_c_1_1_15_right_noflip_up = (1.0 - t1551) * t1552
-    del t1551
-    t1553 = t1552 * (2.0 * t1550)
-    del t1550, t1552
-    t1554 = t1553 * t1553 / (1.0 + np.abs(by_c_1_1_15_right_noflip_up))
-    versine_1_1_15_right_noflip_up = _runtime.select(0.0 < by_c_1_1_15_right_noflip_up, t1554, 1.0 - by_c_1_1_15_right_noflip_up)
-    del t1554
-    cost_1_1_15_right_noflip_up = d4 * versine_1_1_15_right_noflip_up + root1 * np.abs(t1553)
+    t1232 = _runtime.select(t1230, 0.0, t1231)
+    del t1230, t1231
+    t1233 = t1232 * t1232
+    t1234 = 1.0 / (1.0 + t1233)
+    by_c_1_1_15_right_noflip_up = (1.0 - t1233) * t1234
+    del t1233
+    t1235 = t1234 * (2.0 * t1232)
+    del t1232, t1234
+    t1236 = t1235 * t1235 / (1.0 + np.abs(by_c_1_1_15_right_noflip_up))
+    versine_1_1_15_right_noflip_up = _runtime.select(0.0 < by_c_1_1_15_right_noflip_up, t1236, 1.0 - by_c_1_1_15_right_noflip_up)
+    del t1236
+    cost_1_1_15_right_noflip_up = d4 * versine_1_1_15_right_noflip_up + root1 * np.abs(t1235)
     del versine_1_1_15_right_noflip_up
-    t1555 = cost_1_1_15_right_noflip_up <= whole_1_1
+    t1237 = cost_1_1_15_right_noflip_up <= whole_1_1
     del cost_1_1_15_right_noflip_up
-    cosine_1_1_15_right_noflip_up = _runtime.select(t1555, by_c_1_1_15_right_noflip_up, 1.0)
+    cosine_1_1_15_right_noflip_up = _runtime.select(t1237, by_c_1_1_15_right_noflip_up, 1.0)
     del by_c_1_1_15_right_noflip_up
-    t1556 = c_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
-    sine_1_1_15_right_noflip_up = _runtime.select(t1555, -t1553, 0.0)
-    del t1553, t1555
-    t1557 = s_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
-    c_1_1_16_right_noflip_up = t1556 - t1557
-    del t1556, t1557
-    t1558 = c_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
+    t1238 = c_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
+    sine_1_1_15_right_noflip_up = _runtime.select(t1237, -t1235, 0.0)
+    del t1235, t1237
+    t1239 = s_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
+    c_1_1_16_right_noflip_up = t1238 - t1239
+    del t1238, t1239
+    t1240 = c_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
     del c_1_1_15_right_noflip_up, sine_1_1_15_right_noflip_up
-    t1559 = s_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
+    t1241 = s_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
     del cosine_1_1_15_right_noflip_up, s_1_1_15_right_noflip_up
-    s_1_1_16_right_noflip_up = t1558 + t1559
-    del t1558, t1559
+    s_1_1_16_right_noflip_up = t1240 + t1241
+    del t1240, t1241
     axisx_1_1_16_right_noflip_up = T13 * c_1_1_16_right_noflip_up + T23 * s_1_1_16_right_noflip_up
-    t1560 = axisx_1_1_16_right_noflip_up * axisx_1_1_16_right_noflip_up
-    h_1_1_16_right_noflip_up = np.sqrt(t5 + t1560)
-    del t1560
-    t1561 = h_1_1_16_right_noflip_up <= 1.4210854715202004e-14
+    t1242 = axisx_1_1_16_right_noflip_up * axisx_1_1_16_right_noflip_up
+    h_1_1_16_right_noflip_up = np.sqrt(t5 + t1242)
+    del t1242
+    t1243 = h_1_1_16_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_16_right_noflip_up = w_x * c_1_1_16_right_noflip_up + w_y * s_1_1_16_right_noflip_up
-    t1562 = h_1_1_16_right_noflip_up == 0.0
-    t1563 = 1.0 / h_1_1_16_right_noflip_up
+    t1244 = h_1_1_16_right_noflip_up == 0.0
+    t1245 = 1.0 / h_1_1_16_right_noflip_up
+    uc_1_1_16_right_noflip_up = _runtime.select(t1244, 0.0, T33 * t1245)
+    t1246 = qx_1_1_16_right_noflip_up - d5 * uc_1_1_16_right_noflip_up
+    x_1_1_16_right_noflip_up = _runtime.select(t1243, qx_1_1_16_right_noflip_up, t1246)
+    del t1246
+    dqx_1_1_16_right_noflip_up = w_y * c_1_1_16_right_noflip_up - w_x * s_1_1_16_right_noflip_up
+    t1247 = T13 * s_1_1_16_right_noflip_up - T23 * c_1_1_16_right_noflip_up
+    t1248 = h_1_1_16_right_noflip_up * h_1_1_16_right_noflip_up
     del h_1_1_16_right_noflip_up
-    t1564 = d5 * _runtime.select(t1562, 0.0, T33 * t1563)
-    x_1_1_16_right_noflip_up = _runtime.select(t1561, qx_1_1_16_right_noflip_up, qx_1_1_16_right_noflip_up - t1564)
-    del qx_1_1_16_right_noflip_up, t1564
-    t1565 = x_1_1_16_right_noflip_up * x_1_1_16_right_noflip_up
+    spin_1_1_16_right_noflip_up = _runtime.select(t1243, 0.0, T33 * t1247 / t1248)
+    del t1247, t1248
+    rate_1_1_16_right_noflip_up = d5 * spin_1_1_16_right_noflip_up
+    t1249 = _runtime.select(t1244, 1.0, axisx_1_1_16_right_noflip_up * t1245)
+    del axisx_1_1_16_right_noflip_up, t1244, t1245
+    t1250 = dqx_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1249
+    dx_1_1_16_right_noflip_up = _runtime.select(t1243, dqx_1_1_16_right_noflip_up, t1250)
+    del t1250
+    t1251 = x_1_1_16_right_noflip_up * dx_1_1_16_right_noflip_up
+    del dx_1_1_16_right_noflip_up
+    t1252 = _runtime.select(t1243, t23, t23 - d5 * t1249)
+    t1253 = rate_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
+    slope_1_1_16_right_noflip_up = t1251 + t1252 * _runtime.select(t1243, 0.0, t1253)
+    del t1251, t1253
+    t1254 = slope_1_1_16_right_noflip_up * slope_1_1_16_right_noflip_up
+    straight_1_1_16_right_noflip_up = dqx_1_1_16_right_noflip_up * dqx_1_1_16_right_noflip_up
+    t1255 = qx_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
+    del qx_1_1_16_right_noflip_up, uc_1_1_16_right_noflip_up
+    t1256 = spin_1_1_16_right_noflip_up * (t1255 + t23 * t1249)
+    del spin_1_1_16_right_noflip_up, t1255
+    t1257 = 2.0 * dqx_1_1_16_right_noflip_up * t1249 - t1256
+    del dqx_1_1_16_right_noflip_up, t1249, t1256
+    t1258 = straight_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1257
+    del rate_1_1_16_right_noflip_up, t1257
+    bends_1_1_16_right_noflip_up = _runtime.select(t1243, straight_1_1_16_right_noflip_up, t1258)
+    del straight_1_1_16_right_noflip_up, t1258
+    t1259 = x_1_1_16_right_noflip_up * x_1_1_16_right_noflip_up
     del x_1_1_16_right_noflip_up
-    t1566 = _runtime.select(t1562, 1.0, axisx_1_1_16_right_noflip_up * t1563)
-    del axisx_1_1_16_right_noflip_up, t1562, t1563
-    t1567 = _runtime.select(t1561, t23, t23 - d5 * t1566)
-    del t1566
-    t1568 = np.sqrt(t1565 + t1567 * t1567)
-    del t1565, t1567
-    t1569 = np.maximum(0.0, t1568 - _runtime.select(t1561, t3, full_1_1))
-    t1570 = _runtime.select(t1561, t29, fold_1_1) - t1568
-    del t1561, t1568
-    h_1_1_8_right_noflip_up = np.sqrt(t5 + t1263)
-    del t1263
-    t1571 = h_1_1_8_right_noflip_up <= 1.4210854715202004e-14
+    square_1_1_16_right_noflip_up = t1259 + t1252 * t1252
+    del t1252, t1259
+    t1260 = _runtime.select(t1243, t98, fold_1_1) - whole_1_1
+    t1261 = np.maximum(0.0, t1260)
+    del t1260
+    t1262 = whole_1_1 + _runtime.select(t1243, t3, full_1_1)
+    del t1243
+    t1263 = np.minimum(t1262 * t1262, square_1_1_16_right_noflip_up)
+    del t1262
+    miss_1_1_16_right_noflip_up = square_1_1_16_right_noflip_up - np.maximum(t1261 * t1261, t1263)
+    del square_1_1_16_right_noflip_up, t1261, t1263
+    t1264 = bends_1_1_16_right_noflip_up * miss_1_1_16_right_noflip_up
+    inner_1_1_16_right_noflip_up = t1254 - t1264
+    del t1254, t1264
+    t1265 = inner_1_1_16_right_noflip_up < 0.0
+    t1266 = np.maximum(0.0, inner_1_1_16_right_noflip_up)
+    del inner_1_1_16_right_noflip_up
+    t1267 = _runtime.sign(slope_1_1_16_right_noflip_up) * np.sqrt(t1266)
+    del t1266
+    below_1_1_16_right_noflip_up = _runtime.select(t1265, 2.0 * bends_1_1_16_right_noflip_up, 2.0 * (slope_1_1_16_right_noflip_up + t1267))
+    del bends_1_1_16_right_noflip_up, t1267
+    above_1_1_16_right_noflip_up = _runtime.select(t1265, slope_1_1_16_right_noflip_up, miss_1_1_16_right_noflip_up)
+    del miss_1_1_16_right_noflip_up, slope_1_1_16_right_noflip_up, t1265
+    t1268 = np.abs(below_1_1_16_right_noflip_up) <= np.abs(above_1_1_16_right_noflip_up)
+    t1269 = above_1_1_16_right_noflip_up / below_1_1_16_right_noflip_up
+    del above_1_1_16_right_noflip_up, below_1_1_16_right_noflip_up
+    t1270 = _runtime.select(t1268, 0.0, t1269)
+    del t1268, t1269
+    t1271 = t1270 * t1270
+    t1272 = 1.0 / (1.0 + t1271)
+    by_c_1_1_16_right_noflip_up = (1.0 - t1271) * t1272
+    del t1271
+    t1273 = t1272 * (2.0 * t1270)
+    del t1270, t1272
+    t1274 = t1273 * t1273 / (1.0 + np.abs(by_c_1_1_16_right_noflip_up))
+    versine_1_1_16_right_noflip_up = _runtime.select(0.0 < by_c_1_1_16_right_noflip_up, t1274, 1.0 - by_c_1_1_16_right_noflip_up)
+    del t1274
+    cost_1_1_16_right_noflip_up = d4 * versine_1_1_16_right_noflip_up + root1 * np.abs(t1273)
+    del versine_1_1_16_right_noflip_up
+    t1275 = cost_1_1_16_right_noflip_up <= whole_1_1
+    del cost_1_1_16_right_noflip_up
+    cosine_1_1_16_right_noflip_up = _runtime.select(t1275, by_c_1_1_16_right_noflip_up, 1.0)
+    del by_c_1_1_16_right_noflip_up
+    t1276 = c_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
+    sine_1_1_16_right_noflip_up = _runtime.select(t1275, -t1273, 0.0)
+    del t1273, t1275
+    t1277 = s_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
+    c_1_1_17_right_noflip_up = t1276 - t1277
+    del t1276, t1277
+    t1278 = c_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
+    del c_1_1_16_right_noflip_up, sine_1_1_16_right_noflip_up
+    t1279 = s_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
+    del cosine_1_1_16_right_noflip_up, s_1_1_16_right_noflip_up
+    s_1_1_17_right_noflip_up = t1278 + t1279
+    del t1278, t1279
+    axisx_1_1_17_right_noflip_up = T13 * c_1_1_17_right_noflip_up + T23 * s_1_1_17_right_noflip_up
+    t1280 = axisx_1_1_17_right_noflip_up * axisx_1_1_17_right_noflip_up
+    h_1_1_17_right_noflip_up = np.sqrt(t5 + t1280)
+    del t1280
+    t1281 = h_1_1_17_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_17_right_noflip_up = w_x * c_1_1_17_right_noflip_up + w_y * s_1_1_17_right_noflip_up
+    t1282 = h_1_1_17_right_noflip_up == 0.0
+    t1283 = 1.0 / h_1_1_17_right_noflip_up
+    del h_1_1_17_right_noflip_up
+    t1284 = d5 * _runtime.select(t1282, 0.0, T33 * t1283)
+    x_1_1_17_right_noflip_up = _runtime.select(t1281, qx_1_1_17_right_noflip_up, qx_1_1_17_right_noflip_up - t1284)
+    del qx_1_1_17_right_noflip_up, t1284
+    t1285 = x_1_1_17_right_noflip_up * x_1_1_17_right_noflip_up
+    del x_1_1_17_right_noflip_up
+    t1286 = _runtime.select(t1282, 1.0, axisx_1_1_17_right_noflip_up * t1283)
+    del axisx_1_1_17_right_noflip_up, t1282, t1283
+    t1287 = _runtime.select(t1281, t23, t23 - d5 * t1286)
+    del t1286
+    t1288 = np.sqrt(t1285 + t1287 * t1287)
+    del t1285, t1287
+    t1289 = np.maximum(0.0, t1288 - _runtime.select(t1281, t3, full_1_1))
+    t1290 = _runtime.select(t1281, t98, fold_1_1) - t1288
+    del t1281, t1288
+    h_1_1_right_noflip_up = np.sqrt(t5 + t981)
+    del t981
+    t1291 = h_1_1_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t980
+    t1292 = h_1_1_right_noflip_up == 0.0
+    t1293 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = _runtime.select(t1292, 0.0, T33 * t1293)
+    t1294 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t1291, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t1294)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t980
+    t1295 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    del h_1_1_right_noflip_up
+    t1296 = _runtime.select(t1291, 0.0, T33 * daxisx_1_1_right_noflip_up / t1295)
+    del daxisx_1_1_right_noflip_up, t1295
+    t1297 = d5 * t1296
+    t1298 = axisx_1_1_right_noflip_up * t1293
+    del axisx_1_1_right_noflip_up, t1293
+    t1299 = _runtime.select(t1292, 1.0, t1298)
+    dx_1_1_right_noflip_up = _runtime.select(t1291, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1297 * t1299)
+    t1300 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    del dx_1_1_right_noflip_up
+    t1301 = _runtime.select(t1291, t23, t23 - d5 * t1299)
+    t1302 = _runtime.select(t1291, 0.0, t1297 * uc_1_1_right_noflip_up)
+    slope_1_1_right_noflip_up = t1300 - t1301 * t1302
+    del t1300
+    t1303 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    straight_1_1_right_noflip_up = dqx_1_1_right_noflip_up * dqx_1_1_right_noflip_up
+    t1304 = 2.0 * dqx_1_1_right_noflip_up
+    t1305 = qx_1_1_right_noflip_up * uc_1_1_right_noflip_up
+    del uc_1_1_right_noflip_up
+    t1306 = t1304 * t1299 + t1296 * (t1305 + t23 * t1299)
+    del t1299
+    bends_1_1_right_noflip_up = _runtime.select(t1291, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1297 * t1306)
+    del t1306
+    t1307 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    del x_1_1_right_noflip_up
+    square_1_1_right_noflip_up = t1307 + t1301 * t1301
+    del t1301, t1307
+    t1308 = _runtime.select(t1291, t98, fold_1_1) - whole_1_1
+    t1309 = np.maximum(0.0, t1308)
+    del t1308
+    low_1_1_right_noflip_up = t1309 * t1309
+    del t1309
+    t1310 = whole_1_1 + _runtime.select(t1291, t3, full_1_1)
+    high_1_1_right_noflip_up = t1310 * t1310
+    del t1310
+    t1311 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t1311)
+    del square_1_1_right_noflip_up, t1311
+    t1312 = bends_1_1_right_noflip_up * miss_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t1303 - t1312
+    del t1303, t1312
+    t1313 = inner_1_1_right_noflip_up < 0.0
+    t1314 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    del inner_1_1_right_noflip_up
+    t1315 = _runtime.sign(slope_1_1_right_noflip_up) * t1314
+    del t1314
+    below_1_1_right_noflip_up = _runtime.select(t1313, 2.0 * bends_1_1_right_noflip_up, 2.0 * (slope_1_1_right_noflip_up + t1315))
+    del bends_1_1_right_noflip_up, t1315
+    above_1_1_right_noflip_up = _runtime.select(t1313, slope_1_1_right_noflip_up, miss_1_1_right_noflip_up)
+    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t1313
+    t1316 = np.abs(below_1_1_right_noflip_up) <= np.abs(above_1_1_right_noflip_up)
+    t1317 = above_1_1_right_noflip_up / below_1_1_right_noflip_up
+    del above_1_1_right_noflip_up, below_1_1_right_noflip_up
+    t1318 = _runtime.select(t1316, 0.0, t1317)
+    del t1316, t1317
+    t1319 = t1318 * t1318
+    t1320 = 1.0 / (1.0 + t1319)
+    by_c_1_1_right_noflip_up = (1.0 - t1319) * t1320
+    del t1319
+    t1321 = t1320 * (2.0 * t1318)
+    del t1318, t1320
+    t1322 = t1321 * t1321 / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    versine_1_1_right_noflip_up = _runtime.select(0.0 < by_c_1_1_right_noflip_up, t1322, 1.0 - by_c_1_1_right_noflip_up)
+    del t1322
+    cost_1_1_right_noflip_up = d4 * versine_1_1_right_noflip_up + root1 * np.abs(t1321)
+    del versine_1_1_right_noflip_up
+    t1323 = cost_1_1_right_noflip_up <= whole_1_1
+    del cost_1_1_right_noflip_up
+    cosine_1_1_right_noflip_up = _runtime.select(t1323, by_c_1_1_right_noflip_up, 1.0)
+    del by_c_1_1_right_noflip_up
+    t1324 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t1323, -t1321, 0.0)
+    del t1321, t1323
+    c_1_1_2_right_noflip_up = t1324 + t980 * sine_1_1_right_noflip_up
+    del t1324
+    t1325 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    del sine_1_1_right_noflip_up
+    s_1_1_2_right_noflip_up = t1325 - t980 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t1325
+    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
+    t1326 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    h_1_1_2_right_noflip_up = np.sqrt(t5 + t1326)
+    del t1326
+    t1327 = h_1_1_2_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
+    t1328 = h_1_1_2_right_noflip_up == 0.0
+    t1329 = 1.0 / h_1_1_2_right_noflip_up
+    uc_1_1_2_right_noflip_up = _runtime.select(t1328, 0.0, T33 * t1329)
+    t1330 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    x_1_1_2_right_noflip_up = _runtime.select(t1327, qx_1_1_2_right_noflip_up, t1330)
+    del t1330
+    dqx_1_1_2_right_noflip_up = w_y * c_1_1_2_right_noflip_up - w_x * s_1_1_2_right_noflip_up
+    t1331 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    t1332 = h_1_1_2_right_noflip_up * h_1_1_2_right_noflip_up
+    del h_1_1_2_right_noflip_up
+    spin_1_1_2_right_noflip_up = _runtime.select(t1327, 0.0, T33 * t1331 / t1332)
+    del t1331, t1332
+    rate_1_1_2_right_noflip_up = d5 * spin_1_1_2_right_noflip_up
+    t1333 = _runtime.select(t1328, 1.0, axisx_1_1_2_right_noflip_up * t1329)
+    del axisx_1_1_2_right_noflip_up, t1328, t1329
+    t1334 = dqx_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1333
+    dx_1_1_2_right_noflip_up = _runtime.select(t1327, dqx_1_1_2_right_noflip_up, t1334)
+    del t1334
+    t1335 = x_1_1_2_right_noflip_up * dx_1_1_2_right_noflip_up
+    del dx_1_1_2_right_noflip_up
+    t1336 = _runtime.select(t1327, t23, t23 - d5 * t1333)
+    t1337 = rate_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
+    slope_1_1_2_right_noflip_up = t1335 + t1336 * _runtime.select(t1327, 0.0, t1337)
+    del t1335, t1337
+    t1338 = slope_1_1_2_right_noflip_up * slope_1_1_2_right_noflip_up
+    straight_1_1_2_right_noflip_up = dqx_1_1_2_right_noflip_up * dqx_1_1_2_right_noflip_up
+    t1339 = qx_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
+    del qx_1_1_2_right_noflip_up, uc_1_1_2_right_noflip_up
+    t1340 = spin_1_1_2_right_noflip_up * (t1339 + t23 * t1333)
+    del spin_1_1_2_right_noflip_up, t1339
+    t1341 = 2.0 * dqx_1_1_2_right_noflip_up * t1333 - t1340
+    del dqx_1_1_2_right_noflip_up, t1333, t1340
+    t1342 = straight_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1341
+    del rate_1_1_2_right_noflip_up, t1341
+    bends_1_1_2_right_noflip_up = _runtime.select(t1327, straight_1_1_2_right_noflip_up, t1342)
+    del straight_1_1_2_right_noflip_up, t1342
+    t1343 = x_1_1_2_right_noflip_up * x_1_1_2_right_noflip_up
+    del x_1_1_2_right_noflip_up
+    square_1_1_2_right_noflip_up = t1343 + t1336 * t1336
+    del t1336, t1343
+    t1344 = _runtime.select(t1327, t98, fold_1_1) - whole_1_1
+    t1345 = np.maximum(0.0, t1344)
+    del t1344
+    t1346 = whole_1_1 + _runtime.select(t1327, t3, full_1_1)
+    del t1327
+    t1347 = np.minimum(t1346 * t1346, square_1_1_2_right_noflip_up)
+    del t1346
+    miss_1_1_2_right_noflip_up = square_1_1_2_right_noflip_up - np.maximum(t1345 * t1345, t1347)
+    del square_1_1_2_right_noflip_up, t1345, t1347
+    t1348 = bends_1_1_2_right_noflip_up * miss_1_1_2_right_noflip_up
+    inner_1_1_2_right_noflip_up = t1338 - t1348
+    del t1338, t1348
+    t1349 = inner_1_1_2_right_noflip_up < 0.0
+    t1350 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_noflip_up))
+    del inner_1_1_2_right_noflip_up
+    t1351 = _runtime.sign(slope_1_1_2_right_noflip_up) * t1350
+    del t1350
+    below_1_1_2_right_noflip_up = _runtime.select(t1349, 2.0 * bends_1_1_2_right_noflip_up, 2.0 * (slope_1_1_2_right_noflip_up + t1351))
+    del bends_1_1_2_right_noflip_up, t1351
+    above_1_1_2_right_noflip_up = _runtime.select(t1349, slope_1_1_2_right_noflip_up, miss_1_1_2_right_noflip_up)
+    del miss_1_1_2_right_noflip_up, slope_1_1_2_right_noflip_up, t1349
+    t1352 = np.abs(below_1_1_2_right_noflip_up) <= np.abs(above_1_1_2_right_noflip_up)
+    t1353 = above_1_1_2_right_noflip_up / below_1_1_2_right_noflip_up
+    del above_1_1_2_right_noflip_up, below_1_1_2_right_noflip_up
+    t1354 = _runtime.select(t1352, 0.0, t1353)
+    del t1352, t1353
+    t1355 = t1354 * t1354
+    t1356 = 1.0 / (1.0 + t1355)
+    by_c_1_1_2_right_noflip_up = (1.0 - t1355) * t1356
+    del t1355
+    t1357 = t1356 * (2.0 * t1354)
+    del t1354, t1356
+    t1358 = t1357 * t1357 / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    versine_1_1_2_right_noflip_up = _runtime.select(0.0 < by_c_1_1_2_right_noflip_up, t1358, 1.0 - by_c_1_1_2_right_noflip_up)
+    del t1358
+    cost_1_1_2_right_noflip_up = d4 * versine_1_1_2_right_noflip_up + root1 * np.abs(t1357)
+    del versine_1_1_2_right_noflip_up
+    t1359 = cost_1_1_2_right_noflip_up <= whole_1_1
+    del cost_1_1_2_right_noflip_up
+    cosine_1_1_2_right_noflip_up = _runtime.select(t1359, by_c_1_1_2_right_noflip_up, 1.0)
+    del by_c_1_1_2_right_noflip_up
+    t1360 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t1359, -t1357, 0.0)
+    del t1357, t1359
+    t1361 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_3_right_noflip_up = t1360 - t1361
+    del t1360, t1361
+    t1362 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
+    t1363 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
+    s_1_1_3_right_noflip_up = t1362 + t1363
+    del t1362, t1363
+    axisx_1_1_3_right_noflip_up = T13 * c_1_1_3_right_noflip_up + T23 * s_1_1_3_right_noflip_up
+    t1364 = axisx_1_1_3_right_noflip_up * axisx_1_1_3_right_noflip_up
+    h_1_1_3_right_noflip_up = np.sqrt(t5 + t1364)
+    del t1364
+    t1365 = h_1_1_3_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_3_right_noflip_up = w_x * c_1_1_3_right_noflip_up + w_y * s_1_1_3_right_noflip_up
+    t1366 = h_1_1_3_right_noflip_up == 0.0
+    t1367 = 1.0 / h_1_1_3_right_noflip_up
+    uc_1_1_3_right_noflip_up = _runtime.select(t1366, 0.0, T33 * t1367)
+    t1368 = qx_1_1_3_right_noflip_up - d5 * uc_1_1_3_right_noflip_up
+    x_1_1_3_right_noflip_up = _runtime.select(t1365, qx_1_1_3_right_noflip_up, t1368)
+    del t1368
+    dqx_1_1_3_right_noflip_up = w_y * c_1_1_3_right_noflip_up - w_x * s_1_1_3_right_noflip_up
+    t1369 = T13 * s_1_1_3_right_noflip_up - T23 * c_1_1_3_right_noflip_up
+    t1370 = h_1_1_3_right_noflip_up * h_1_1_3_right_noflip_up
+    del h_1_1_3_right_noflip_up
+    spin_1_1_3_right_noflip_up = _runtime.select(t1365, 0.0, T33 * t1369 / t1370)
+    del t1369, t1370
+    rate_1_1_3_right_noflip_up = d5 * spin_1_1_3_right_noflip_up
+    t1371 = _runtime.select(t1366, 1.0, axisx_1_1_3_right_noflip_up * t1367)
+    del axisx_1_1_3_right_noflip_up, t1366, t1367
+    t1372 = dqx_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1371
+    dx_1_1_3_right_noflip_up = _runtime.select(t1365, dqx_1_1_3_right_noflip_up, t1372)
+    del t1372
+    t1373 = x_1_1_3_right_noflip_up * dx_1_1_3_right_noflip_up
+    del dx_1_1_3_right_noflip_up
+    t1374 = _runtime.select(t1365, t23, t23 - d5 * t1371)
+    t1375 = rate_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
+    slope_1_1_3_right_noflip_up = t1373 + t1374 * _runtime.select(t1365, 0.0, t1375)
+    del t1373, t1375
+    t1376 = slope_1_1_3_right_noflip_up * slope_1_1_3_right_noflip_up
+    straight_1_1_3_right_noflip_up = dqx_1_1_3_right_noflip_up * dqx_1_1_3_right_noflip_up
+    t1377 = qx_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
+    del qx_1_1_3_right_noflip_up, uc_1_1_3_right_noflip_up
+    t1378 = spin_1_1_3_right_noflip_up * (t1377 + t23 * t1371)
+    del spin_1_1_3_right_noflip_up, t1377
+    t1379 = 2.0 * dqx_1_1_3_right_noflip_up * t1371 - t1378
+    del dqx_1_1_3_right_noflip_up, t1371, t1378
+    t1380 = straight_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1379
+    del rate_1_1_3_right_noflip_up, t1379
+    bends_1_1_3_right_noflip_up = _runtime.select(t1365, straight_1_1_3_right_noflip_up, t1380)
+    del straight_1_1_3_right_noflip_up, t1380
+    t1381 = x_1_1_3_right_noflip_up * x_1_1_3_right_noflip_up
+    del x_1_1_3_right_noflip_up
+    square_1_1_3_right_noflip_up = t1381 + t1374 * t1374
+    del t1374, t1381
+    t1382 = _runtime.select(t1365, t98, fold_1_1) - whole_1_1
+    t1383 = np.maximum(0.0, t1382)
+    del t1382
+    t1384 = whole_1_1 + _runtime.select(t1365, t3, full_1_1)
+    del t1365
+    t1385 = np.minimum(t1384 * t1384, square_1_1_3_right_noflip_up)
+    del t1384
+    miss_1_1_3_right_noflip_up = square_1_1_3_right_noflip_up - np.maximum(t1383 * t1383, t1385)
+    del square_1_1_3_right_noflip_up, t1383, t1385
+    t1386 = bends_1_1_3_right_noflip_up * miss_1_1_3_right_noflip_up
+    inner_1_1_3_right_noflip_up = t1376 - t1386
+    del t1376, t1386
+    t1387 = inner_1_1_3_right_noflip_up < 0.0
+    t1388 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_noflip_up))
+    del inner_1_1_3_right_noflip_up
+    t1389 = _runtime.sign(slope_1_1_3_right_noflip_up) * t1388
+    del t1388
+    below_1_1_3_right_noflip_up = _runtime.select(t1387, 2.0 * bends_1_1_3_right_noflip_up, 2.0 * (slope_1_1_3_right_noflip_up + t1389))
+    del bends_1_1_3_right_noflip_up, t1389
+    above_1_1_3_right_noflip_up = _runtime.select(t1387, slope_1_1_3_right_noflip_up, miss_1_1_3_right_noflip_up)
+    del miss_1_1_3_right_noflip_up, slope_1_1_3_right_noflip_up, t1387
+    t1390 = np.abs(below_1_1_3_right_noflip_up) <= np.abs(above_1_1_3_right_noflip_up)
+    t1391 = above_1_1_3_right_noflip_up / below_1_1_3_right_noflip_up
+    del above_1_1_3_right_noflip_up, below_1_1_3_right_noflip_up
+    t1392 = _runtime.select(t1390, 0.0, t1391)
+    del t1390, t1391
+    t1393 = t1392 * t1392
+    t1394 = 1.0 / (1.0 + t1393)
+    by_c_1_1_3_right_noflip_up = (1.0 - t1393) * t1394
+    del t1393
+    t1395 = t1394 * (2.0 * t1392)
+    del t1392, t1394
+    t1396 = t1395 * t1395 / (1.0 + np.abs(by_c_1_1_3_right_noflip_up))
+    versine_1_1_3_right_noflip_up = _runtime.select(0.0 < by_c_1_1_3_right_noflip_up, t1396, 1.0 - by_c_1_1_3_right_noflip_up)
+    del t1396
+    cost_1_1_3_right_noflip_up = d4 * versine_1_1_3_right_noflip_up + root1 * np.abs(t1395)
+    del versine_1_1_3_right_noflip_up
+    t1397 = cost_1_1_3_right_noflip_up <= whole_1_1
+    del cost_1_1_3_right_noflip_up
+    cosine_1_1_3_right_noflip_up = _runtime.select(t1397, by_c_1_1_3_right_noflip_up, 1.0)
+    del by_c_1_1_3_right_noflip_up
+    t1398 = c_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
+    sine_1_1_3_right_noflip_up = _runtime.select(t1397, -t1395, 0.0)
+    del t1395, t1397
+    t1399 = s_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
+    c_1_1_4_right_noflip_up = t1398 - t1399
+    del t1398, t1399
+    t1400 = c_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
+    del c_1_1_3_right_noflip_up, sine_1_1_3_right_noflip_up
+    t1401 = s_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
+    del cosine_1_1_3_right_noflip_up, s_1_1_3_right_noflip_up
+    s_1_1_4_right_noflip_up = t1400 + t1401
+    del t1400, t1401
+    axisx_1_1_4_right_noflip_up = T13 * c_1_1_4_right_noflip_up + T23 * s_1_1_4_right_noflip_up
+    t1402 = axisx_1_1_4_right_noflip_up * axisx_1_1_4_right_noflip_up
+    t1403 = T13 * s_1_1_4_right_noflip_up - T23 * c_1_1_4_right_noflip_up
+    most_1_1_4_right_noflip_up = np.sqrt(t1402 + t1403 * t1403)
+    t1404 = most_1_1_4_right_noflip_up <= 8.881784197001252e-16
+    qx_1_1_4_right_noflip_up = w_x * c_1_1_4_right_noflip_up + w_y * s_1_1_4_right_noflip_up
+    t1405 = qx_1_1_4_right_noflip_up * qx_1_1_4_right_noflip_up
+    r_1_1_4_right_noflip_up = np.sqrt(t24 + t1405)
+    del t1405
+    t1406 = r_1_1_4_right_noflip_up <= t25
+    t1407 = d5 + r_1_1_4_right_noflip_up
+    h_1_1_4_right_noflip_up = np.sqrt(t5 + t1402)
+    del t1402
+    t1408 = h_1_1_4_right_noflip_up == 0.0
+    t1409 = 1.0 / h_1_1_4_right_noflip_up
+    uc_1_1_4_right_noflip_up = _runtime.select(t1408, 0.0, T33 * t1409)
+    t1410 = qx_1_1_4_right_noflip_up - d5 * uc_1_1_4_right_noflip_up
+    t1411 = _runtime.select(t1408, 1.0, axisx_1_1_4_right_noflip_up * t1409)
+    del t1408, t1409
+    t1412 = t23 - d5 * t1411
+    t1413 = np.maximum(np.sqrt(t1410 * t1410 + t1412 * t1412), fold_1_1)
+    goal_1_1_4_right_noflip_up = np.minimum(full_1_1, t1413)
+    del t1413
+    t1414 = (t1407 - goal_1_1_4_right_noflip_up) * (t1407 + goal_1_1_4_right_noflip_up)
+    k_v_1_1_4_right_noflip_up = np.maximum(0.0, t1414)
+    del t1414
+    t1415 = d5 - r_1_1_4_right_noflip_up
+    t1416 = (goal_1_1_4_right_noflip_up - t1415) * (goal_1_1_4_right_noflip_up + t1415)
+    del goal_1_1_4_right_noflip_up, t1415
+    d_v_1_1_4_right_noflip_up = np.maximum(0.0, t1416)
+    del t1416
+    n_v_1_1_4_right_noflip_up = k_v_1_1_4_right_noflip_up + d_v_1_1_4_right_noflip_up
+    t1417 = n_v_1_1_4_right_noflip_up <= size * t1407 * 8.881784197001252e-16
+    del t1407
+    t1418 = k_v_1_1_4_right_noflip_up - d_v_1_1_4_right_noflip_up
+    t1419 = 1.0 / n_v_1_1_4_right_noflip_up
+    del n_v_1_1_4_right_noflip_up
+    uc_v_1_1_4_right_noflip_up = _runtime.select(t1417, 1.0, t1418 * t1419)
+    del t1418
+    t1420 = qx_1_1_4_right_noflip_up * uc_v_1_1_4_right_noflip_up
+    t1421 = t23 * uc_1_1_4_right_noflip_up - qx_1_1_4_right_noflip_up * t1411
+    del t1411, uc_1_1_4_right_noflip_up
+    t1422 = k_v_1_1_4_right_noflip_up * d_v_1_1_4_right_noflip_up
+    del d_v_1_1_4_right_noflip_up, k_v_1_1_4_right_noflip_up
+    t1423 = t1419 * (2.0 * _runtime.sign(t1421) * np.sqrt(t1422))
+    del t1419, t1421, t1422
+    us_v_1_1_4_right_noflip_up = _runtime.select(t1417, 0.0, t1423)
+    del t1417, t1423
+    t1424 = t23 * us_v_1_1_4_right_noflip_up
+    t1425 = 1.0 / r_1_1_4_right_noflip_up
+    del r_1_1_4_right_noflip_up
+    c_v_1_1_4_right_noflip_up = _runtime.select(t1406, 1.0, (t1420 + t1424) * t1425)
+    t1426 = T33 * c_v_1_1_4_right_noflip_up < 0.0
+    t1427 = qx_1_1_4_right_noflip_up * us_v_1_1_4_right_noflip_up
+    del us_v_1_1_4_right_noflip_up
+    t1428 = t23 * uc_v_1_1_4_right_noflip_up
+    del uc_v_1_1_4_right_noflip_up
+    wc_1_1_4_right_noflip_up = _runtime.select(t1406, 0.0, t1425 * (t1427 + t1428))
+    s_v_1_1_4_right_noflip_up = _runtime.select(t1406, 0.0, t1425 * (t1427 - t1428))
+    del t1427, t1428
+    to_c_1_1_4_right_noflip_up = _runtime.select(t1426, wc_1_1_4_right_noflip_up, -s_v_1_1_4_right_noflip_up)
+    del s_v_1_1_4_right_noflip_up, wc_1_1_4_right_noflip_up
+    c_w_1_1_4_right_noflip_up = _runtime.select(t1406, 1.0, t1425 * (t1420 - t1424))
+    del t1406, t1420, t1424, t1425
+    to_s_1_1_4_right_noflip_up = _runtime.select(t1426, c_w_1_1_4_right_noflip_up, c_v_1_1_4_right_noflip_up)
+    del c_v_1_1_4_right_noflip_up, c_w_1_1_4_right_noflip_up, t1426
+    t1429 = T33 * to_c_1_1_4_right_noflip_up * _runtime.sign(to_s_1_1_4_right_noflip_up)
+    del to_c_1_1_4_right_noflip_up
+    across_1_1_4_right_noflip_up = _runtime.select(t22, 0.0, t1429)
+    del t1429
+    t1430 = np.abs(to_s_1_1_4_right_noflip_up)
+    del to_s_1_1_4_right_noflip_up
+    t1431 = most_1_1_4_right_noflip_up * t1430 <= np.abs(across_1_1_4_right_noflip_up)
+    t1432 = most_1_1_4_right_noflip_up * _runtime.sign(across_1_1_4_right_noflip_up)
+    t1433 = _runtime.select(t1431, t1432, across_1_1_4_right_noflip_up / t1430)
+    del t1430, t1431, t1432
+    wanted_1_1_4_right_noflip_up = _runtime.select(across_1_1_4_right_noflip_up == 0.0, 0.0, t1433)
+    del across_1_1_4_right_noflip_up, t1433
+    t1434 = axisx_1_1_4_right_noflip_up * wanted_1_1_4_right_noflip_up
+    t1435 = most_1_1_4_right_noflip_up - wanted_1_1_4_right_noflip_up
+    t1436 = most_1_1_4_right_noflip_up + wanted_1_1_4_right_noflip_up
+    rest_1_1_4_right_noflip_up = np.sqrt(np.maximum(0.0, t1435 * t1436)) * _runtime.sign(-t1403)
+    del t1435, t1436
+    t1437 = most_1_1_4_right_noflip_up * most_1_1_4_right_noflip_up
+    del most_1_1_4_right_noflip_up
+    t1438 = 1.0 / t1437
+    del t1437
+    t1439 = (t1434 - t1403 * rest_1_1_4_right_noflip_up) * t1438
+    del t1434
+    by_c_1_1_4_right_noflip_up = _runtime.select(t1404, 1.0, t1439)
+    del t1439
+    t1440 = axisx_1_1_4_right_noflip_up * rest_1_1_4_right_noflip_up
+    del axisx_1_1_4_right_noflip_up, rest_1_1_4_right_noflip_up
+    t1441 = t1438 * (t1440 + t1403 * wanted_1_1_4_right_noflip_up)
+    del t1403, t1438, t1440, wanted_1_1_4_right_noflip_up
+    t1442 = _runtime.select(t1404, 0.0, t1441)
+    del t1404, t1441
+    t1443 = t1442 * t1442 / (1.0 + np.abs(by_c_1_1_4_right_noflip_up))
+    versine_1_1_4_right_noflip_up = _runtime.select(0.0 < by_c_1_1_4_right_noflip_up, t1443, 1.0 - by_c_1_1_4_right_noflip_up)
+    del t1443
+    cost_1_1_4_right_noflip_up = d4 * versine_1_1_4_right_noflip_up + root1 * np.abs(t1442)
+    del versine_1_1_4_right_noflip_up
+    t1444 = cost_1_1_4_right_noflip_up <= whole_1_1
+    del cost_1_1_4_right_noflip_up
+    cosine_1_1_4_right_noflip_up = _runtime.select(t1444, by_c_1_1_4_right_noflip_up, 1.0)
+    del by_c_1_1_4_right_noflip_up
+    t1445 = c_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
+    sine_1_1_4_right_noflip_up = _runtime.select(t1444, -t1442, 0.0)
+    del t1442, t1444
+    t1446 = s_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
+    c_1_1_6_right_noflip_up = t1445 - t1446
+    del t1445, t1446
+    t1447 = c_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
+    del sine_1_1_4_right_noflip_up
+    t1448 = s_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
+    del cosine_1_1_4_right_noflip_up
+    s_1_1_6_right_noflip_up = t1447 + t1448
+    del t1447, t1448
+    axisx_1_1_6_right_noflip_up = T13 * c_1_1_6_right_noflip_up + T23 * s_1_1_6_right_noflip_up
+    t1449 = axisx_1_1_6_right_noflip_up * axisx_1_1_6_right_noflip_up
+    h_1_1_6_right_noflip_up = np.sqrt(t5 + t1449)
+    del t1449
+    t1450 = h_1_1_6_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_6_right_noflip_up = w_x * c_1_1_6_right_noflip_up + w_y * s_1_1_6_right_noflip_up
+    t1451 = h_1_1_6_right_noflip_up == 0.0
+    t1452 = 1.0 / h_1_1_6_right_noflip_up
+    uc_1_1_6_right_noflip_up = _runtime.select(t1451, 0.0, T33 * t1452)
+    t1453 = qx_1_1_6_right_noflip_up - d5 * uc_1_1_6_right_noflip_up
+    x_1_1_6_right_noflip_up = _runtime.select(t1450, qx_1_1_6_right_noflip_up, t1453)
+    del t1453
+    dqx_1_1_6_right_noflip_up = w_y * c_1_1_6_right_noflip_up - w_x * s_1_1_6_right_noflip_up
+    t1454 = T13 * s_1_1_6_right_noflip_up - T23 * c_1_1_6_right_noflip_up
+    t1455 = h_1_1_6_right_noflip_up * h_1_1_6_right_noflip_up
+    del h_1_1_6_right_noflip_up
+    spin_1_1_6_right_noflip_up = _runtime.select(t1450, 0.0, T33 * t1454 / t1455)
+    del t1454, t1455
+    rate_1_1_6_right_noflip_up = d5 * spin_1_1_6_right_noflip_up
+    t1456 = _runtime.select(t1451, 1.0, axisx_1_1_6_right_noflip_up * t1452)
+    del axisx_1_1_6_right_noflip_up, t1451, t1452
+    t1457 = dqx_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1456
+    dx_1_1_6_right_noflip_up = _runtime.select(t1450, dqx_1_1_6_right_noflip_up, t1457)
+    del t1457
+    t1458 = x_1_1_6_right_noflip_up * dx_1_1_6_right_noflip_up
+    del dx_1_1_6_right_noflip_up
+    t1459 = _runtime.select(t1450, t23, t23 - d5 * t1456)
+    t1460 = rate_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
+    slope_1_1_6_right_noflip_up = t1458 + t1459 * _runtime.select(t1450, 0.0, t1460)
+    del t1458, t1460
+    t1461 = slope_1_1_6_right_noflip_up * slope_1_1_6_right_noflip_up
+    straight_1_1_6_right_noflip_up = dqx_1_1_6_right_noflip_up * dqx_1_1_6_right_noflip_up
+    t1462 = qx_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
+    del qx_1_1_6_right_noflip_up, uc_1_1_6_right_noflip_up
+    t1463 = spin_1_1_6_right_noflip_up * (t1462 + t23 * t1456)
+    del spin_1_1_6_right_noflip_up, t1462
+    t1464 = 2.0 * dqx_1_1_6_right_noflip_up * t1456 - t1463
+    del dqx_1_1_6_right_noflip_up, t1456, t1463
+    t1465 = straight_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1464
+    del rate_1_1_6_right_noflip_up, t1464
+    bends_1_1_6_right_noflip_up = _runtime.select(t1450, straight_1_1_6_right_noflip_up, t1465)
+    del straight_1_1_6_right_noflip_up, t1465
+    t1466 = x_1_1_6_right_noflip_up * x_1_1_6_right_noflip_up
+    del x_1_1_6_right_noflip_up
+    square_1_1_6_right_noflip_up = t1466 + t1459 * t1459
+    del t1459, t1466
+    t1467 = _runtime.select(t1450, t98, fold_1_1) - whole_1_1
+    t1468 = np.maximum(0.0, t1467)
+    del t1467
+    t1469 = whole_1_1 + _runtime.select(t1450, t3, full_1_1)
+    del t1450
+    t1470 = np.minimum(t1469 * t1469, square_1_1_6_right_noflip_up)
+    del t1469
+    miss_1_1_6_right_noflip_up = square_1_1_6_right_noflip_up - np.maximum(t1468 * t1468, t1470)
+    del square_1_1_6_right_noflip_up, t1468, t1470
+    t1471 = bends_1_1_6_right_noflip_up * miss_1_1_6_right_noflip_up
+    inner_1_1_6_right_noflip_up = t1461 - t1471
+    del t1461, t1471
+    t1472 = inner_1_1_6_right_noflip_up < 0.0
+    t1473 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_noflip_up))
+    del inner_1_1_6_right_noflip_up
+    t1474 = _runtime.sign(slope_1_1_6_right_noflip_up) * t1473
+    del t1473
+    below_1_1_6_right_noflip_up = _runtime.select(t1472, 2.0 * bends_1_1_6_right_noflip_up, 2.0 * (slope_1_1_6_right_noflip_up + t1474))
+    del bends_1_1_6_right_noflip_up, t1474
+    above_1_1_6_right_noflip_up = _runtime.select(t1472, slope_1_1_6_right_noflip_up, miss_1_1_6_right_noflip_up)
+    del miss_1_1_6_right_noflip_up, slope_1_1_6_right_noflip_up, t1472
+    t1475 = np.abs(below_1_1_6_right_noflip_up) <= np.abs(above_1_1_6_right_noflip_up)
+    t1476 = above_1_1_6_right_noflip_up / below_1_1_6_right_noflip_up
+    del above_1_1_6_right_noflip_up, below_1_1_6_right_noflip_up
+    t1477 = _runtime.select(t1475, 0.0, t1476)
+    del t1475, t1476
+    t1478 = t1477 * t1477
+    t1479 = 1.0 / (1.0 + t1478)
+    by_c_1_1_6_right_noflip_up = (1.0 - t1478) * t1479
+    del t1478
+    t1480 = t1479 * (2.0 * t1477)
+    del t1477, t1479
+    t1481 = t1480 * t1480 / (1.0 + np.abs(by_c_1_1_6_right_noflip_up))
+    versine_1_1_6_right_noflip_up = _runtime.select(0.0 < by_c_1_1_6_right_noflip_up, t1481, 1.0 - by_c_1_1_6_right_noflip_up)
+    del t1481
+    cost_1_1_6_right_noflip_up = d4 * versine_1_1_6_right_noflip_up + root1 * np.abs(t1480)
+    del versine_1_1_6_right_noflip_up
+    t1482 = cost_1_1_6_right_noflip_up <= whole_1_1
+    del cost_1_1_6_right_noflip_up
+    cosine_1_1_6_right_noflip_up = _runtime.select(t1482, by_c_1_1_6_right_noflip_up, 1.0)
+    del by_c_1_1_6_right_noflip_up
+    t1483 = c_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
+    sine_1_1_6_right_noflip_up = _runtime.select(t1482, -t1480, 0.0)
+    del t1480, t1482
+    t1484 = s_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
+    c_1_1_7_right_noflip_up = t1483 - t1484
+    del t1483, t1484
+    t1485 = c_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
+    del c_1_1_6_right_noflip_up, sine_1_1_6_right_noflip_up
+    t1486 = s_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
+    del cosine_1_1_6_right_noflip_up, s_1_1_6_right_noflip_up
+    s_1_1_7_right_noflip_up = t1485 + t1486
+    del t1485, t1486
+    axisx_1_1_7_right_noflip_up = T13 * c_1_1_7_right_noflip_up + T23 * s_1_1_7_right_noflip_up
+    t1487 = axisx_1_1_7_right_noflip_up * axisx_1_1_7_right_noflip_up
+    h_1_1_7_right_noflip_up = np.sqrt(t5 + t1487)
+    del t1487
+    t1488 = h_1_1_7_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_7_right_noflip_up = w_x * c_1_1_7_right_noflip_up + w_y * s_1_1_7_right_noflip_up
+    t1489 = h_1_1_7_right_noflip_up == 0.0
+    t1490 = 1.0 / h_1_1_7_right_noflip_up
+    uc_1_1_7_right_noflip_up = _runtime.select(t1489, 0.0, T33 * t1490)
+    t1491 = qx_1_1_7_right_noflip_up - d5 * uc_1_1_7_right_noflip_up
+    x_1_1_7_right_noflip_up = _runtime.select(t1488, qx_1_1_7_right_noflip_up, t1491)
+    del t1491
+    dqx_1_1_7_right_noflip_up = w_y * c_1_1_7_right_noflip_up - w_x * s_1_1_7_right_noflip_up
+    t1492 = T13 * s_1_1_7_right_noflip_up - T23 * c_1_1_7_right_noflip_up
+    t1493 = h_1_1_7_right_noflip_up * h_1_1_7_right_noflip_up
+    del h_1_1_7_right_noflip_up
+    spin_1_1_7_right_noflip_up = _runtime.select(t1488, 0.0, T33 * t1492 / t1493)
+    del t1492, t1493
+    rate_1_1_7_right_noflip_up = d5 * spin_1_1_7_right_noflip_up
+    t1494 = _runtime.select(t1489, 1.0, axisx_1_1_7_right_noflip_up * t1490)
+    del axisx_1_1_7_right_noflip_up, t1489, t1490
+    t1495 = dqx_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1494
+    dx_1_1_7_right_noflip_up = _runtime.select(t1488, dqx_1_1_7_right_noflip_up, t1495)
+    del t1495
+    t1496 = x_1_1_7_right_noflip_up * dx_1_1_7_right_noflip_up
+    del dx_1_1_7_right_noflip_up
+    t1497 = _runtime.select(t1488, t23, t23 - d5 * t1494)
+    t1498 = rate_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
+    slope_1_1_7_right_noflip_up = t1496 + t1497 * _runtime.select(t1488, 0.0, t1498)
+    del t1496, t1498
+    t1499 = slope_1_1_7_right_noflip_up * slope_1_1_7_right_noflip_up
+    straight_1_1_7_right_noflip_up = dqx_1_1_7_right_noflip_up * dqx_1_1_7_right_noflip_up
+    t1500 = qx_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
+    del qx_1_1_7_right_noflip_up, uc_1_1_7_right_noflip_up
+    t1501 = spin_1_1_7_right_noflip_up * (t1500 + t23 * t1494)
+    del spin_1_1_7_right_noflip_up, t1500
+    t1502 = 2.0 * dqx_1_1_7_right_noflip_up * t1494 - t1501
+    del dqx_1_1_7_right_noflip_up, t1494, t1501
+    t1503 = straight_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1502
+    del rate_1_1_7_right_noflip_up, t1502
+    bends_1_1_7_right_noflip_up = _runtime.select(t1488, straight_1_1_7_right_noflip_up, t1503)
+    del straight_1_1_7_right_noflip_up, t1503
+    t1504 = x_1_1_7_right_noflip_up * x_1_1_7_right_noflip_up
+    del x_1_1_7_right_noflip_up
+    square_1_1_7_right_noflip_up = t1504 + t1497 * t1497
+    del t1497, t1504
+    t1505 = _runtime.select(t1488, t98, fold_1_1) - whole_1_1
+    t1506 = np.maximum(0.0, t1505)
+    del t1505
+    t1507 = whole_1_1 + _runtime.select(t1488, t3, full_1_1)
+    del t1488
+    t1508 = np.minimum(t1507 * t1507, square_1_1_7_right_noflip_up)
+    del t1507
+    miss_1_1_7_right_noflip_up = square_1_1_7_right_noflip_up - np.maximum(t1506 * t1506, t1508)
+    del square_1_1_7_right_noflip_up, t1506, t1508
+    t1509 = bends_1_1_7_right_noflip_up * miss_1_1_7_right_noflip_up
+    inner_1_1_7_right_noflip_up = t1499 - t1509
+    del t1499, t1509
+    t1510 = inner_1_1_7_right_noflip_up < 0.0
+    t1511 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_noflip_up))
+    del inner_1_1_7_right_noflip_up
+    t1512 = _runtime.sign(slope_1_1_7_right_noflip_up) * t1511
+    del t1511
+    below_1_1_7_right_noflip_up = _runtime.select(t1510, 2.0 * bends_1_1_7_right_noflip_up, 2.0 * (slope_1_1_7_right_noflip_up + t1512))
+    del bends_1_1_7_right_noflip_up, t1512
+    above_1_1_7_right_noflip_up = _runtime.select(t1510, slope_1_1_7_right_noflip_up, miss_1_1_7_right_noflip_up)
+    del miss_1_1_7_right_noflip_up, slope_1_1_7_right_noflip_up, t1510
+    t1513 = np.abs(below_1_1_7_right_noflip_up) <= np.abs(above_1_1_7_right_noflip_up)
+    t1514 = above_1_1_7_right_noflip_up / below_1_1_7_right_noflip_up
+    del above_1_1_7_right_noflip_up, below_1_1_7_right_noflip_up
+    t1515 = _runtime.select(t1513, 0.0, t1514)
+    del t1513, t1514
+    t1516 = t1515 * t1515
+    t1517 = 1.0 / (1.0 + t1516)
+    by_c_1_1_7_right_noflip_up = (1.0 - t1516) * t1517
+    del t1516
+    t1518 = t1517 * (2.0 * t1515)
+    del t1515, t1517
+    t1519 = t1518 * t1518 / (1.0 + np.abs(by_c_1_1_7_right_noflip_up))
+    versine_1_1_7_right_noflip_up = _runtime.select(0.0 < by_c_1_1_7_right_noflip_up, t1519, 1.0 - by_c_1_1_7_right_noflip_up)
+    del t1519
+    cost_1_1_7_right_noflip_up = d4 * versine_1_1_7_right_noflip_up + root1 * np.abs(t1518)
+    del versine_1_1_7_right_noflip_up
+    t1520 = cost_1_1_7_right_noflip_up <= whole_1_1
+    del cost_1_1_7_right_noflip_up
+    cosine_1_1_7_right_noflip_up = _runtime.select(t1520, by_c_1_1_7_right_noflip_up, 1.0)
+    del by_c_1_1_7_right_noflip_up
+    t1521 = c_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
+    sine_1_1_7_right_noflip_up = _runtime.select(t1520, -t1518, 0.0)
+    del t1518, t1520
+    t1522 = s_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
+    c_1_1_8_right_noflip_up = t1521 - t1522
+    del t1521, t1522
+    t1523 = c_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
+    del c_1_1_7_right_noflip_up, sine_1_1_7_right_noflip_up
+    t1524 = s_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
+    del cosine_1_1_7_right_noflip_up, s_1_1_7_right_noflip_up
+    s_1_1_8_right_noflip_up = t1523 + t1524
+    del t1523, t1524
+    axisx_1_1_8_right_noflip_up = T13 * c_1_1_8_right_noflip_up + T23 * s_1_1_8_right_noflip_up
+    t1525 = axisx_1_1_8_right_noflip_up * axisx_1_1_8_right_noflip_up
+    h_1_1_8_right_noflip_up = np.sqrt(t5 + t1525)
+    del t1525
+    t1526 = h_1_1_8_right_noflip_up <= 1.4210854715202004e-14
     qx_1_1_8_right_noflip_up = w_x * c_1_1_8_right_noflip_up + w_y * s_1_1_8_right_noflip_up
-    t1572 = h_1_1_8_right_noflip_up == 0.0
-    t1573 = 1.0 / h_1_1_8_right_noflip_up
+    t1527 = h_1_1_8_right_noflip_up == 0.0
+    t1528 = 1.0 / h_1_1_8_right_noflip_up
     del h_1_1_8_right_noflip_up
-    t1574 = d5 * _runtime.select(t1572, 0.0, T33 * t1573)
-    x_1_1_8_right_noflip_up = _runtime.select(t1571, qx_1_1_8_right_noflip_up, qx_1_1_8_right_noflip_up - t1574)
-    del qx_1_1_8_right_noflip_up, t1574
-    t1575 = x_1_1_8_right_noflip_up * x_1_1_8_right_noflip_up
+    t1529 = d5 * _runtime.select(t1527, 0.0, T33 * t1528)
+    x_1_1_8_right_noflip_up = _runtime.select(t1526, qx_1_1_8_right_noflip_up, qx_1_1_8_right_noflip_up - t1529)
+    del qx_1_1_8_right_noflip_up, t1529
+    t1530 = x_1_1_8_right_noflip_up * x_1_1_8_right_noflip_up
     del x_1_1_8_right_noflip_up
-    t1576 = _runtime.select(t1572, 1.0, axisx_1_1_8_right_noflip_up * t1573)
-    del axisx_1_1_8_right_noflip_up, t1572, t1573
-    t1577 = _runtime.select(t1571, t23, t23 - d5 * t1576)
-    del t1576
-    t1578 = np.sqrt(t1575 + t1577 * t1577)
-    del t1575, t1577
-    t1579 = np.maximum(0.0, t1578 - _runtime.select(t1571, t3, full_1_1))
-    t1580 = _runtime.select(t1571, t29, fold_1_1) - t1578
-    del t1571, t1578
-    t1581 = np.maximum(t1569, t1570) < np.maximum(t1579, t1580)
-    del t1569, t1570, t1579, t1580
-    s_1_1_17_right_noflip_up = _runtime.select(t1581, s_1_1_16_right_noflip_up, s_1_1_8_right_noflip_up)
-    del s_1_1_16_right_noflip_up, s_1_1_8_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, s_1_1_17_right_noflip_up, -t1008)
-    del s_1_1_17_right_noflip_up
-    c_1_1_17_right_noflip_up = _runtime.select(t1581, c_1_1_16_right_noflip_up, c_1_1_8_right_noflip_up)
-    del c_1_1_16_right_noflip_up, c_1_1_8_right_noflip_up, t1581
-    c1_right_noflip_up = _runtime.select(tangent1, c_1_1_17_right_noflip_up, c_1_1_right_noflip_up)
-    del c_1_1_17_right_noflip_up
-    t1582 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    t1531 = _runtime.select(t1527, 1.0, axisx_1_1_8_right_noflip_up * t1528)
+    del axisx_1_1_8_right_noflip_up, t1527, t1528
+    t1532 = _runtime.select(t1526, t23, t23 - d5 * t1531)
+    del t1531
+    t1533 = np.sqrt(t1530 + t1532 * t1532)
+    del t1530, t1532
+    t1534 = np.maximum(0.0, t1533 - _runtime.select(t1526, t3, full_1_1))
+    t1535 = _runtime.select(t1526, t98, fold_1_1) - t1533
+    del t1526, t1533
+    t1536 = h_1_1_4_right_noflip_up <= 1.4210854715202004e-14
+    del h_1_1_4_right_noflip_up
+    x_1_1_4_right_noflip_up = _runtime.select(t1536, qx_1_1_4_right_noflip_up, t1410)
+    del qx_1_1_4_right_noflip_up, t1410
+    t1537 = x_1_1_4_right_noflip_up * x_1_1_4_right_noflip_up
+    del x_1_1_4_right_noflip_up
+    t1538 = _runtime.select(t1536, t23, t1412)
+    del t1412
+    t1539 = np.sqrt(t1537 + t1538 * t1538)
+    del t1537, t1538
+    t1540 = np.maximum(0.0, t1539 - _runtime.select(t1536, t3, full_1_1))
+    t1541 = _runtime.select(t1536, t98, fold_1_1) - t1539
+    del t1536, t1539
+    t1542 = np.maximum(t1534, t1535) < np.maximum(t1540, t1541)
+    del t1534, t1535, t1540, t1541
+    c_1_1_9_right_noflip_up = _runtime.select(t1542, c_1_1_8_right_noflip_up, c_1_1_4_right_noflip_up)
+    del c_1_1_4_right_noflip_up, c_1_1_8_right_noflip_up
+    s_1_1_9_right_noflip_up = _runtime.select(t1542, s_1_1_8_right_noflip_up, s_1_1_4_right_noflip_up)
+    del s_1_1_4_right_noflip_up, s_1_1_8_right_noflip_up, t1542
+    axisx_1_1_9_right_noflip_up = T13 * c_1_1_9_right_noflip_up + T23 * s_1_1_9_right_noflip_up
+    t1543 = axisx_1_1_9_right_noflip_up * axisx_1_1_9_right_noflip_up
+    h_1_1_9_right_noflip_up = np.sqrt(t5 + t1543)
+    del t1543
+    t1544 = h_1_1_9_right_noflip_up <= 1.4210854715202004e-14
+    qx_1_1_9_right_noflip_up = w_x * c_1_1_9_right_noflip_up + w_y * s_1_1_9_right_noflip_up
+    t1545 = h_1_1_9_right_noflip_up == 0.0
+    t1546 = 1.0 / h_1_1_9_right_noflip_up
+    del h_1_1_9_right_noflip_up
+    t1547 = d5 * _runtime.select(t1545, 0.0, T33 * t1546)
+    x_1_1_9_right_noflip_up = _runtime.select(t1544, qx_1_1_9_right_noflip_up, qx_1_1_9_right_noflip_up - t1547)
+    del qx_1_1_9_right_noflip_up, t1547
+    t1548 = x_1_1_9_right_noflip_up * x_1_1_9_right_noflip_up
+    del x_1_1_9_right_noflip_up
+    t1549 = _runtime.select(t1545, 1.0, axisx_1_1_9_right_noflip_up * t1546)
+    del axisx_1_1_9_right_noflip_up, t1545, t1546
+    t1550 = _runtime.select(t1544, t23, t23 - d5 * t1549)
+    del t1549
+    t1551 = np.sqrt(t1548 + t1550 * t1550)
+    del t1548, t1550
+    t1552 = np.maximum(0.0, t1551 - _runtime.select(t1544, t3, full_1_1))
+    t1553 = _runtime.select(t1544, t98, fold_1_1) - t1551
+    del t1544, t1551
+    t1554 = np.maximum(t1289, t1290) < np.maximum(t1552, t1553)
+    del t1289, t1290, t1552, t1553
+    s_1_1_18_right_noflip_up = _runtime.select(t1554, s_1_1_17_right_noflip_up, s_1_1_9_right_noflip_up)
+    del s_1_1_17_right_noflip_up, s_1_1_9_right_noflip_up
+    s1_right_noflip_up = _runtime.select(tangent1, s_1_1_18_right_noflip_up, -t980)
+    del s_1_1_18_right_noflip_up
+    c_1_1_18_right_noflip_up = _runtime.select(t1554, c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up)
+    del c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up, t1554
+    c1_right_noflip_up = _runtime.select(tangent1, c_1_1_18_right_noflip_up, c_1_1_right_noflip_up)
+    del c_1_1_18_right_noflip_up
+    t1555 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t1583 = t5 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t1583)
-    del t1583
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t366
-    t1584 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t85 + t1584)
-    del t1584
+    t1556 = t5 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t1556)
+    del t1556
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t369
+    t1557 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t24 + t1557)
+    del t1557
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
-    t1585 = d5 + r_hub_right_noflip_up
-    t1586 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t1585) * 0.5 + np.maximum(fold_1_1, np.abs(t1586)) * 0.5
-    t1587 = (t1585 - mid_reach_right_noflip_up) * (t1585 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t1587)
-    del t1587
-    t1588 = (t1586 - mid_reach_right_noflip_up) * (t1586 + mid_reach_right_noflip_up)
+    t1558 = d5 + r_hub_right_noflip_up
+    t1559 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t1558) * 0.5 + np.maximum(fold_1_1, np.abs(t1559)) * 0.5
+    t1560 = (t1558 - mid_reach_right_noflip_up) * (t1558 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t1560)
+    del t1560
+    t1561 = (t1559 - mid_reach_right_noflip_up) * (t1559 + mid_reach_right_noflip_up)
     del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t1588)
-    del t1588
+    d_mid_right_noflip_up = np.maximum(0.0, -t1561)
+    del t1561
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    t1589 = _runtime.VANISHING * (size * t1585)
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t1589
-    t1590 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t1591 = 1.0 / n_mid_right_noflip_up
+    t1562 = _runtime.VANISHING * (size * t1558)
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t1562
+    t1563 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t1564 = 1.0 / n_mid_right_noflip_up
     del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t1590 * t1591)
-    del t1590
-    t1592 = across_right_noflip_up * uc_mid_right_noflip_up
-    t1593 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t1563 * t1564)
+    del t1563
+    t1565 = across_right_noflip_up * uc_mid_right_noflip_up
+    t1566 = k_mid_right_noflip_up * d_mid_right_noflip_up
     del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t1591 * (2.0 * np.sqrt(t1593)))
-    del any_mid_right_noflip_up, t1591, t1593
-    t1594 = 1.0 / r_hub_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t1564 * (2.0 * np.sqrt(t1566)))
+    del any_mid_right_noflip_up, t1564, t1566
+    t1567 = 1.0 / r_hub_right_noflip_up
     del r_hub_right_noflip_up
-    t1595 = (t1592 + t23 * us_mid_right_noflip_up) * t1594
-    del t1592
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1595)
-    del t1595
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t372 <= t4
-    t1596 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t1596)
-    t1597 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t1596)
-    del t1596
-    t1598 = t23 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t1597 * t1597 + t1598 * t1598)
-    del t1597, t1598
+    t1568 = (t1565 + t23 * us_mid_right_noflip_up) * t1567
+    del t1565
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1568)
+    del t1568
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t375 <= t4
+    t1569 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t1569)
+    t1570 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t1569)
+    del t1569
+    t1571 = t23 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t1570 * t1570 + t1571 * t1571)
+    del t1570, t1571
     in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t1599 = (t1585 - in_reach_right_noflip_up) * (t1585 + in_reach_right_noflip_up)
-    del t1585
-    k_near_right_noflip_up = np.maximum(0.0, t1599)
-    del t1599
-    t1600 = (t1586 - in_reach_right_noflip_up) * (t1586 + in_reach_right_noflip_up)
-    del t1586
-    d_near_right_noflip_up = np.maximum(0.0, -t1600)
-    del t1600
+    t1572 = (t1558 - in_reach_right_noflip_up) * (t1558 + in_reach_right_noflip_up)
+    del t1558
+    k_near_right_noflip_up = np.maximum(0.0, t1572)
+    del t1572
+    t1573 = (t1559 - in_reach_right_noflip_up) * (t1559 + in_reach_right_noflip_up)
+    del t1559
+    d_near_right_noflip_up = np.maximum(0.0, -t1573)
+    del t1573
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t1589
-    del t1589
-    t1601 = k_near_right_noflip_up - d_near_right_noflip_up
-    t1602 = 1.0 / n_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t1562
+    del t1562
+    t1574 = k_near_right_noflip_up - d_near_right_noflip_up
+    t1575 = 1.0 / n_near_right_noflip_up
     del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t1601 * t1602)
-    del t1601
-    t1603 = across_right_noflip_up * uc_near_right_noflip_up
-    t1604 = across_right_noflip_up * c_phi_right_noflip_up
-    t1605 = t1604 - t23 * s_phi_right_noflip_up
-    del t1604
-    t1606 = np.abs(t1605)
-    side_right_noflip_up = _runtime.select(t1606 <= t4, 1.0, -(t1605 / t1606))
-    del t1605, t1606
-    t1607 = k_near_right_noflip_up * d_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t1574 * t1575)
+    del t1574
+    t1576 = across_right_noflip_up * uc_near_right_noflip_up
+    t1577 = across_right_noflip_up * c_phi_right_noflip_up
+    t1578 = t1577 - t23 * s_phi_right_noflip_up
+    del t1577
+    t1579 = np.abs(t1578)
+    side_right_noflip_up = _runtime.select(t1579 <= t4, 1.0, -(t1578 / t1579))
+    del t1578, t1579
+    t1580 = k_near_right_noflip_up * d_near_right_noflip_up
     del d_near_right_noflip_up, k_near_right_noflip_up
-    t1608 = t1602 * (2.0 * side_right_noflip_up * np.sqrt(t1607))
-    del side_right_noflip_up, t1602, t1607
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t1608)
-    del any_near_right_noflip_up, t1608
-    t1609 = t1594 * (t1603 + t23 * us_near_right_noflip_up)
-    del t1603
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1609)
-    del t1609
-    t1610 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t1611 = across_right_noflip_up * us_near_right_noflip_up
-    del us_near_right_noflip_up
-    t1612 = t1594 * (t1611 - t23 * uc_near_right_noflip_up)
-    del t1611, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1612)
-    del t1612
-    t1613 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t1614 = h_wrist_right_noflip_up * np.sqrt(t1610 * t1610 + t1613 * t1613)
-    del h_wrist_right_noflip_up, t1610, t1613
-    t1615 = here_right_noflip_up - in_reach_right_noflip_up
-    del here_right_noflip_up, in_reach_right_noflip_up
-    t1616 = (t1614 - 2.2737367544323206e-13 <= t383) & np.logical_not(np.abs(t1615) <= t4)
-    del t1614, t1615
-    s_kept_right_noflip_up = _runtime.select(t1616, c_near_right_noflip_up, s_phi_right_noflip_up)
-    del c_near_right_noflip_up
-    t1617 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
-    del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t1617)
-    del c_mid_right_noflip_up, t1617
-    t1618 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t1619 = across_right_noflip_up * us_mid_right_noflip_up
-    del across_right_noflip_up, us_mid_right_noflip_up
-    t1620 = t1594 * (t1619 - t23 * uc_mid_right_noflip_up)
-    del t1594, t1619, uc_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1620)
-    del hub_mid_right_noflip_up, t1620
-    c_kept_right_noflip_up = _runtime.select(t1616, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t1616
-    t1621 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
-    del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t1621)
-    del s_mid_right_noflip_up, t1621
-    ey_right_noflip_up = t23 - d5 * cphi_right_noflip_up
-    t1622 = t1618 * t1618 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t1622)
-    del t1622
-    t1623 = full_1_1 - r_elbow_right_noflip_up
-    t1624 = t28 + r_elbow_right_noflip_up
-    t1625 = r_elbow_right_noflip_up - t28
-    t1626 = t365 & (t364 <= t1623) & (t364 <= t1624) & (t364 <= t1625)
-    unreachable_3 = np.logical_not(t1626)
-    del t1626
-    t1627 = _runtime.poison(invalid | unreachable_3)
-    t1628 = _runtime.wrap_cut(t1582) + t1627
+    t1581 = t1575 * (2.0 * side_right_noflip_up * np.sqrt(t1580))
+    del side_right_noflip_up, t1575, t1580
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t1581)
+    del any_near_right_noflip_up, t1581
+    t1582 = t1567 * (t1576 + t23 * us_near_right_noflip_up)
+    del t1576
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1582)
     del t1582
+    t1583 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t1584 = across_right_noflip_up * us_near_right_noflip_up
+    del us_near_right_noflip_up
+    t1585 = t1567 * (t1584 - t23 * uc_near_right_noflip_up)
+    del t1584, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1585)
+    del t1585
+    t1586 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t1587 = h_wrist_right_noflip_up * np.sqrt(t1583 * t1583 + t1586 * t1586)
+    del h_wrist_right_noflip_up, t1583, t1586
+    t1588 = here_right_noflip_up - in_reach_right_noflip_up
+    del here_right_noflip_up, in_reach_right_noflip_up
+    t1589 = (t1587 - 2.2737367544323206e-13 <= t386) & np.logical_not(np.abs(t1588) <= t4)
+    del t1587, t1588
+    s_kept_right_noflip_up = _runtime.select(t1589, c_near_right_noflip_up, s_phi_right_noflip_up)
+    del c_near_right_noflip_up
+    t1590 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    del s_kept_right_noflip_up, s_phi_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t1590)
+    del c_mid_right_noflip_up, t1590
+    t1591 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t1592 = across_right_noflip_up * us_mid_right_noflip_up
+    del across_right_noflip_up, us_mid_right_noflip_up
+    t1593 = t1567 * (t1592 - t23 * uc_mid_right_noflip_up)
+    del t1567, t1592, uc_mid_right_noflip_up
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1593)
+    del hub_mid_right_noflip_up, t1593
+    c_kept_right_noflip_up = _runtime.select(t1589, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t1589
+    t1594 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t1594)
+    del s_mid_right_noflip_up, t1594
+    ey_right_noflip_up = t23 - d5 * cphi_right_noflip_up
+    t1595 = t1591 * t1591 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t1595)
+    del t1595
+    t1596 = full_1_1 - r_elbow_right_noflip_up
+    t1597 = t35 + r_elbow_right_noflip_up
+    t1598 = r_elbow_right_noflip_up - t35
+    t1599 = t368 & (t367 <= t1596) & (t367 <= t1597) & (t367 <= t1598)
+    unreachable_3 = np.logical_not(t1599)
+    del t1599
+    t1600 = _runtime.poison(invalid | unreachable_3)
+    t1601 = _runtime.wrap_cut(t1555) + t1600
+    del t1555
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
-    t1629 = folded_elbow_right_noflip_up | no_link_elbow
-    A_elbow_right_noflip_up = np.maximum(t1623, 0.0)
-    del t1623
-    C_elbow_right_noflip_up = np.maximum(t1625, 0.0)
-    del t1625
-    t1630 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    t1602 = folded_elbow_right_noflip_up | no_link_elbow
+    A_elbow_right_noflip_up = np.maximum(t1596, 0.0)
+    del t1596
+    C_elbow_right_noflip_up = np.maximum(t1598, 0.0)
+    del t1598
+    t1603 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t1624, 0.0)
-    del t1624
-    t1631 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t1632 = 1.0 / (t1630 + t1631)
-    c_base_elbow_right_noflip_up = _runtime.select(t1629, 1.0, -((t1630 - t1631) * t1632))
-    t1633 = 1.0 / r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t1597, 0.0)
+    del t1597
+    t1604 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t1605 = 1.0 / (t1603 + t1604)
+    c_base_elbow_right_noflip_up = _runtime.select(t1602, 1.0, -((t1603 - t1604) * t1605))
+    t1606 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t1634 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t1633)
+    t1607 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t1606)
     del ey_right_noflip_up
-    t1635 = c_base_elbow_right_noflip_up * t1634
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t1630 * t1631)
-    del t1630, t1631
-    s_base_elbow_right_noflip_up = _runtime.select(t1629, 0.0, t1632 * area_elbow_right_noflip_up)
-    del t1629, t1632
-    t1636 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t1618 * t1633))
-    del t1618, t1633
-    t1637 = s_base_elbow_right_noflip_up * t1636
-    s2_right_noflip_up = t1635 - t1637
-    t1638 = c_base_elbow_right_noflip_up * t1636
-    del c_base_elbow_right_noflip_up, t1636
-    t1639 = t1634 * s_base_elbow_right_noflip_up
-    del s_base_elbow_right_noflip_up, t1634
-    c2_right_noflip_up = t1638 + t1639
-    t1640 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t1641 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t1608 = c_base_elbow_right_noflip_up * t1607
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t1603 * t1604)
+    del t1603, t1604
+    s_base_elbow_right_noflip_up = _runtime.select(t1602, 0.0, t1605 * area_elbow_right_noflip_up)
+    del t1602, t1605
+    t1609 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t1591 * t1606))
+    del t1591, t1606
+    t1610 = s_base_elbow_right_noflip_up * t1609
+    s2_right_noflip_up = t1608 - t1610
+    t1611 = c_base_elbow_right_noflip_up * t1609
+    del c_base_elbow_right_noflip_up, t1609
+    t1612 = t1607 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t1607
+    c2_right_noflip_up = t1611 + t1612
+    t1613 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t1614 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t1642 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t1615 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t1643 = 1.0 / (t1641 + t1642)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t1643)
+    t1616 = 1.0 / (t1614 + t1615)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t1616)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t1643 * (t1641 - t1642)))
-    del t1641, t1642, t1643
-    t1644 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t1645 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t1646 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t1616 * (t1614 - t1615)))
+    del t1614, t1615, t1616
+    t1617 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t1618 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t1619 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t1647 = c3_right_noflip_up * t1645 - s3_right_noflip_up * t1646
-    t1648 = c3_right_noflip_up * t1646 + s3_right_noflip_up * t1645
-    del t1645, t1646
-    t1649 = _runtime.wrap_cut(np.arctan2(t1647, t1648)) + t1627
-    del t1647, t1648
-    t1650 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t1620 = c3_right_noflip_up * t1618 - s3_right_noflip_up * t1619
+    t1621 = c3_right_noflip_up * t1619 + s3_right_noflip_up * t1618
+    del t1618, t1619
+    t1622 = _runtime.wrap_cut(np.arctan2(t1620, t1621)) + t1600
+    del t1620, t1621
+    t1623 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t1651 = _runtime.wrap_cut(-np.arctan2(t1650, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t1650
-    t1652 = t1651 + t1627
-    del t1651
+    t1624 = _runtime.wrap_cut(-np.arctan2(t1623, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t1623
+    t1625 = t1624 + t1600
+    del t1624
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t1653 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t1626 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t1654 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t1627 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t1655 = _runtime.wrap_cut(-np.arctan2(t1653, t1654)) + t1627
-    del t1653, t1654
-    s2_right_noflip_down = t1635 + t1637
-    del t1635, t1637
-    c2_right_noflip_down = t1638 - t1639
-    del t1638, t1639
-    t1656 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t1657 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t1658 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t1628 = _runtime.wrap_cut(-np.arctan2(t1626, t1627)) + t1600
+    del t1626, t1627
+    s2_right_noflip_down = t1608 + t1610
+    del t1608, t1610
+    c2_right_noflip_down = t1611 - t1612
+    del t1611, t1612
+    t1629 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t1630 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t1631 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t1659 = c3_right_noflip_up * t1657 + s3_right_noflip_up * t1658
-    t1660 = c3_right_noflip_up * t1658 - s3_right_noflip_up * t1657
-    del c3_right_noflip_up, s3_right_noflip_up, t1657, t1658
-    t1661 = _runtime.wrap_cut(np.arctan2(t1659, t1660)) + t1627
-    del t1659, t1660
-    x_1_1_right_flip_up = _runtime.select(t1010, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t1013)
-    del qx_1_1_right_noflip_up, t1013
-    t1662 = _runtime.select(t1011, 1.0, -t1018)
-    del t1011, t1018
-    dx_1_1_right_flip_up = _runtime.select(t1010, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1017 * t1662)
-    del dqx_1_1_right_noflip_up
-    t1663 = _runtime.select(t1010, t23, t23 - d5 * t1662)
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t1022 * t1663
-    del dx_1_1_right_flip_up, t1022
-    t1664 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    t1665 = t1024 * t1662 - t1016 * (t1025 - t23 * t1662)
-    del t1016, t1024, t1025, t1662
-    bends_1_1_right_flip_up = _runtime.select(t1010, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1017 * t1665)
-    del straight_1_1_right_noflip_up, t1010, t1017, t1665
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t1663 * t1663
-    del t1663, x_1_1_right_flip_up
-    t1666 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
-    del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t1666)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t1666
-    t1667 = bends_1_1_right_flip_up * miss_1_1_right_flip_up
-    inner_1_1_right_flip_up = t1664 - t1667
-    del t1664, t1667
-    t1668 = inner_1_1_right_flip_up < 0.0
-    t1669 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
-    del inner_1_1_right_flip_up
-    t1670 = _runtime.sign(slope_1_1_right_flip_up) * t1669
+    t1632 = c3_right_noflip_up * t1630 + s3_right_noflip_up * t1631
+    t1633 = c3_right_noflip_up * t1631 - s3_right_noflip_up * t1630
+    del c3_right_noflip_up, s3_right_noflip_up, t1630, t1631
+    t1634 = _runtime.wrap_cut(np.arctan2(t1632, t1633)) + t1600
+    del t1632, t1633
+    t1635 = qx_1_1_10_right_noflip_up + t1000
+    del t1000
+    t1636 = _runtime.select(t998, 1.0, -t1002)
+    del t1002, t998
+    t1637 = t23 - d5 * t1636
+    t1638 = np.maximum(np.sqrt(t1635 * t1635 + t1637 * t1637), fold_1_1)
+    del t1635, t1637
+    goal_1_1_10_right_flip_up = np.minimum(full_1_1, t1638)
+    del t1638
+    t1639 = (t997 - goal_1_1_10_right_flip_up) * (t997 + goal_1_1_10_right_flip_up)
+    del t997
+    k_v_1_1_10_right_flip_up = np.maximum(0.0, t1639)
+    del t1639
+    t1640 = (t1007 - goal_1_1_10_right_flip_up) * (t1007 + goal_1_1_10_right_flip_up)
+    del goal_1_1_10_right_flip_up, t1007
+    d_v_1_1_10_right_flip_up = np.maximum(0.0, -t1640)
+    del t1640
+    n_v_1_1_10_right_flip_up = k_v_1_1_10_right_flip_up + d_v_1_1_10_right_flip_up
+    t1641 = n_v_1_1_10_right_flip_up <= t1009
+    del t1009
+    t1642 = k_v_1_1_10_right_flip_up - d_v_1_1_10_right_flip_up
+    t1643 = 1.0 / n_v_1_1_10_right_flip_up
+    del n_v_1_1_10_right_flip_up
+    uc_v_1_1_10_right_flip_up = _runtime.select(t1641, 1.0, t1642 * t1643)
+    del t1642
+    t1644 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_flip_up
+    side_1_1_10_right_flip_up = _runtime.sign(-(t1014 + qx_1_1_10_right_noflip_up * t1636))
+    del t1014, t1636
+    t1645 = k_v_1_1_10_right_flip_up * d_v_1_1_10_right_flip_up
+    del d_v_1_1_10_right_flip_up, k_v_1_1_10_right_flip_up
+    t1646 = 2.0 * side_1_1_10_right_flip_up * np.sqrt(t1645)
+    del side_1_1_10_right_flip_up, t1645
+    us_v_1_1_10_right_flip_up = _runtime.select(t1641, 0.0, t1643 * t1646)
+    del t1641, t1643, t1646
+    t1647 = t23 * us_v_1_1_10_right_flip_up
+    c_v_1_1_10_right_flip_up = _runtime.select(t996, 1.0, t1018 * (t1644 + t1647))
+    t1648 = -(T33 * c_v_1_1_10_right_flip_up) < 0.0
+    t1649 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_flip_up
+    del qx_1_1_10_right_noflip_up, us_v_1_1_10_right_flip_up
+    t1650 = t23 * uc_v_1_1_10_right_flip_up
+    del uc_v_1_1_10_right_flip_up
+    wc_1_1_10_right_flip_up = _runtime.select(t996, 0.0, t1018 * (t1649 + t1650))
+    s_v_1_1_10_right_flip_up = _runtime.select(t996, 0.0, t1018 * (t1649 - t1650))
+    del t1649, t1650
+    to_c_1_1_10_right_flip_up = _runtime.select(t1648, wc_1_1_10_right_flip_up, -s_v_1_1_10_right_flip_up)
+    del s_v_1_1_10_right_flip_up, wc_1_1_10_right_flip_up
+    c_w_1_1_10_right_flip_up = _runtime.select(t996, 1.0, t1018 * (t1644 - t1647))
+    del t1018, t1644, t1647, t996
+    to_s_1_1_10_right_flip_up = _runtime.select(t1648, c_w_1_1_10_right_flip_up, c_v_1_1_10_right_flip_up)
+    del c_v_1_1_10_right_flip_up, c_w_1_1_10_right_flip_up, t1648
+    t1651 = T33 * to_c_1_1_10_right_flip_up * _runtime.sign(to_s_1_1_10_right_flip_up)
+    del to_c_1_1_10_right_flip_up
+    across_1_1_10_right_flip_up = _runtime.select(t22, 0.0, t1651)
+    del t1651
+    t1652 = np.abs(to_s_1_1_10_right_flip_up)
+    del to_s_1_1_10_right_flip_up
+    t1653 = most_1_1_10_right_noflip_up * t1652 <= np.abs(across_1_1_10_right_flip_up)
+    t1654 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_flip_up)
+    t1655 = _runtime.select(t1653, t1654, across_1_1_10_right_flip_up / t1652)
+    del t1652, t1653, t1654
+    wanted_1_1_10_right_flip_up = _runtime.select(across_1_1_10_right_flip_up == 0.0, 0.0, t1655)
+    del across_1_1_10_right_flip_up, t1655
+    t1656 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_flip_up
+    t1657 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_flip_up
+    t1658 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_flip_up
+    del most_1_1_10_right_noflip_up
+    rest_1_1_10_right_flip_up = t1030 * np.sqrt(np.maximum(0.0, t1657 * t1658))
+    del t1030, t1657, t1658
+    t1659 = t1032 * (t1656 - t993 * rest_1_1_10_right_flip_up)
+    del t1656
+    by_c_1_1_10_right_flip_up = _runtime.select(t994, 1.0, t1659)
+    del t1659
+    t1660 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_flip_up
+    del axisx_1_1_10_right_noflip_up, rest_1_1_10_right_flip_up
+    t1661 = t1032 * (t1660 + t993 * wanted_1_1_10_right_flip_up)
+    del t1032, t1660, t993, wanted_1_1_10_right_flip_up
+    t1662 = _runtime.select(t994, 0.0, t1661)
+    del t1661, t994
+    t1663 = t1662 * t1662 / (1.0 + np.abs(by_c_1_1_10_right_flip_up))
+    versine_1_1_10_right_flip_up = _runtime.select(0.0 < by_c_1_1_10_right_flip_up, t1663, 1.0 - by_c_1_1_10_right_flip_up)
+    del t1663
+    cost_1_1_10_right_flip_up = d4 * versine_1_1_10_right_flip_up + root1 * np.abs(t1662)
+    del versine_1_1_10_right_flip_up
+    t1664 = cost_1_1_10_right_flip_up <= whole_1_1
+    del cost_1_1_10_right_flip_up
+    cosine_1_1_10_right_flip_up = _runtime.select(t1664, by_c_1_1_10_right_flip_up, 1.0)
+    del by_c_1_1_10_right_flip_up
+    t1665 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
+    sine_1_1_10_right_flip_up = _runtime.select(t1664, -t1662, 0.0)
+    del t1662, t1664
+    t1666 = s_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
+    c_1_1_11_right_flip_up = t1665 - t1666
+    del t1665, t1666
+    t1667 = c_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
+    del c_1_1_10_right_noflip_up, sine_1_1_10_right_flip_up
+    t1668 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
+    del cosine_1_1_10_right_flip_up, s_1_1_10_right_noflip_up
+    s_1_1_11_right_flip_up = t1667 + t1668
+    del t1667, t1668
+    axisx_1_1_11_right_flip_up = T13 * c_1_1_11_right_flip_up + T23 * s_1_1_11_right_flip_up
+    t1669 = axisx_1_1_11_right_flip_up * axisx_1_1_11_right_flip_up
+    t1670 = T13 * s_1_1_11_right_flip_up - T23 * c_1_1_11_right_flip_up
+    most_1_1_11_right_flip_up = np.sqrt(t1669 + t1670 * t1670)
+    t1671 = most_1_1_11_right_flip_up <= 8.881784197001252e-16
+    qx_1_1_11_right_flip_up = w_x * c_1_1_11_right_flip_up + w_y * s_1_1_11_right_flip_up
+    t1672 = qx_1_1_11_right_flip_up * qx_1_1_11_right_flip_up
+    r_1_1_11_right_flip_up = np.sqrt(t24 + t1672)
+    del t1672
+    t1673 = r_1_1_11_right_flip_up <= t25
+    t1674 = d5 + r_1_1_11_right_flip_up
+    h_1_1_11_right_flip_up = np.sqrt(t5 + t1669)
     del t1669
-    below_1_1_right_flip_up = _runtime.select(t1668, 2.0 * bends_1_1_right_flip_up, 2.0 * (slope_1_1_right_flip_up + t1670))
-    del bends_1_1_right_flip_up, t1670
-    above_1_1_right_flip_up = _runtime.select(t1668, slope_1_1_right_flip_up, miss_1_1_right_flip_up)
-    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t1668
-    t1671 = np.abs(below_1_1_right_flip_up) <= np.abs(above_1_1_right_flip_up)
-    t1672 = above_1_1_right_flip_up / below_1_1_right_flip_up
-    del above_1_1_right_flip_up, below_1_1_right_flip_up
-    t1673 = _runtime.select(t1671, 0.0, t1672)
-    del t1671, t1672
-    t1674 = t1673 * t1673
-    t1675 = 1.0 / (1.0 + t1674)
-    by_c_1_1_right_flip_up = (1.0 - t1674) * t1675
-    del t1674
-    t1676 = t1675 * (2.0 * t1673)
-    del t1673, t1675
-    t1677 = t1676 * t1676 / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    versine_1_1_right_flip_up = _runtime.select(0.0 < by_c_1_1_right_flip_up, t1677, 1.0 - by_c_1_1_right_flip_up)
-    del t1677
-    cost_1_1_right_flip_up = d4 * versine_1_1_right_flip_up + root1 * np.abs(t1676)
-    del versine_1_1_right_flip_up
-    t1678 = cost_1_1_right_flip_up <= whole_1_1
-    del cost_1_1_right_flip_up
-    cosine_1_1_right_flip_up = _runtime.select(t1678, by_c_1_1_right_flip_up, 1.0)
-    del by_c_1_1_right_flip_up
-    t1679 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t1678, -t1676, 0.0)
-    del t1676, t1678
-    c_1_1_2_right_flip_up = t1679 + t1008 * sine_1_1_right_flip_up
-    del t1679
-    t1680 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
-    del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t1680 - t1008 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t1680
-    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t1681 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    h_1_1_2_right_flip_up = np.sqrt(t5 + t1681)
+    t1675 = h_1_1_11_right_flip_up == 0.0
+    t1676 = 1.0 / h_1_1_11_right_flip_up
+    del h_1_1_11_right_flip_up
+    t1677 = _runtime.select(t1675, 0.0, T33 * t1676)
+    t1678 = qx_1_1_11_right_flip_up + d5 * t1677
+    t1679 = _runtime.select(t1675, 1.0, -(axisx_1_1_11_right_flip_up * t1676))
+    del t1675, t1676
+    t1680 = t23 - d5 * t1679
+    t1681 = np.maximum(np.sqrt(t1678 * t1678 + t1680 * t1680), fold_1_1)
+    del t1678, t1680
+    goal_1_1_11_right_flip_up = np.minimum(full_1_1, t1681)
     del t1681
-    t1682 = h_1_1_2_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t1683 = h_1_1_2_right_flip_up == 0.0
-    t1684 = 1.0 / h_1_1_2_right_flip_up
-    t1685 = _runtime.select(t1683, 0.0, T33 * t1684)
-    x_1_1_2_right_flip_up = _runtime.select(t1682, qx_1_1_2_right_flip_up, qx_1_1_2_right_flip_up + d5 * t1685)
-    dqx_1_1_2_right_flip_up = w_y * c_1_1_2_right_flip_up - w_x * s_1_1_2_right_flip_up
-    t1686 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    t1687 = h_1_1_2_right_flip_up * h_1_1_2_right_flip_up
-    del h_1_1_2_right_flip_up
-    spin_1_1_2_right_flip_up = _runtime.select(t1682, 0.0, T33 * t1686 / t1687)
-    del t1686, t1687
-    rate_1_1_2_right_flip_up = d5 * spin_1_1_2_right_flip_up
-    t1688 = _runtime.select(t1683, 1.0, -(axisx_1_1_2_right_flip_up * t1684))
-    del axisx_1_1_2_right_flip_up, t1683, t1684
-    t1689 = dqx_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1688
-    dx_1_1_2_right_flip_up = _runtime.select(t1682, dqx_1_1_2_right_flip_up, t1689)
-    del t1689
-    t1690 = x_1_1_2_right_flip_up * dx_1_1_2_right_flip_up
-    del dx_1_1_2_right_flip_up
-    t1691 = _runtime.select(t1682, t23, t23 - d5 * t1688)
-    dy_1_1_2_right_flip_up = _runtime.select(t1682, 0.0, rate_1_1_2_right_flip_up * t1685)
-    slope_1_1_2_right_flip_up = t1690 - t1691 * dy_1_1_2_right_flip_up
-    del dy_1_1_2_right_flip_up, t1690
-    t1692 = slope_1_1_2_right_flip_up * slope_1_1_2_right_flip_up
-    straight_1_1_2_right_flip_up = dqx_1_1_2_right_flip_up * dqx_1_1_2_right_flip_up
-    t1693 = spin_1_1_2_right_flip_up * (qx_1_1_2_right_flip_up * t1685 - t23 * t1688)
-    del qx_1_1_2_right_flip_up, spin_1_1_2_right_flip_up, t1685
-    t1694 = 2.0 * dqx_1_1_2_right_flip_up * t1688 + t1693
-    del dqx_1_1_2_right_flip_up, t1688, t1693
-    t1695 = straight_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1694
-    del rate_1_1_2_right_flip_up, t1694
-    bends_1_1_2_right_flip_up = _runtime.select(t1682, straight_1_1_2_right_flip_up, t1695)
-    del straight_1_1_2_right_flip_up, t1695
-    t1696 = x_1_1_2_right_flip_up * x_1_1_2_right_flip_up
-    del x_1_1_2_right_flip_up
-    square_1_1_2_right_flip_up = t1696 + t1691 * t1691
-    del t1691, t1696
-    t1697 = _runtime.select(t1682, t29, fold_1_1) - whole_1_1
-    t1698 = np.maximum(0.0, t1697)
-    del t1697
-    t1699 = whole_1_1 + _runtime.select(t1682, t3, full_1_1)
+    t1682 = (t1674 - goal_1_1_11_right_flip_up) * (t1674 + goal_1_1_11_right_flip_up)
+    k_v_1_1_11_right_flip_up = np.maximum(0.0, t1682)
     del t1682
-    t1700 = np.minimum(t1699 * t1699, square_1_1_2_right_flip_up)
-    del t1699
-    miss_1_1_2_right_flip_up = square_1_1_2_right_flip_up - np.maximum(t1698 * t1698, t1700)
-    del square_1_1_2_right_flip_up, t1698, t1700
-    t1701 = bends_1_1_2_right_flip_up * miss_1_1_2_right_flip_up
-    inner_1_1_2_right_flip_up = t1692 - t1701
-    del t1692, t1701
-    t1702 = inner_1_1_2_right_flip_up < 0.0
-    t1703 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_flip_up))
-    del inner_1_1_2_right_flip_up
-    t1704 = _runtime.sign(slope_1_1_2_right_flip_up) * t1703
-    del t1703
-    below_1_1_2_right_flip_up = _runtime.select(t1702, 2.0 * bends_1_1_2_right_flip_up, 2.0 * (slope_1_1_2_right_flip_up + t1704))
-    del bends_1_1_2_right_flip_up, t1704
-    above_1_1_2_right_flip_up = _runtime.select(t1702, slope_1_1_2_right_flip_up, miss_1_1_2_right_flip_up)
-    del miss_1_1_2_right_flip_up, slope_1_1_2_right_flip_up, t1702
-    t1705 = np.abs(below_1_1_2_right_flip_up) <= np.abs(above_1_1_2_right_flip_up)
-    t1706 = above_1_1_2_right_flip_up / below_1_1_2_right_flip_up
-    del above_1_1_2_right_flip_up, below_1_1_2_right_flip_up
-    t1707 = _runtime.select(t1705, 0.0, t1706)
-    del t1705, t1706
-    t1708 = t1707 * t1707
-    t1709 = 1.0 / (1.0 + t1708)
-    by_c_1_1_2_right_flip_up = (1.0 - t1708) * t1709
-    del t1708
-    t1710 = t1709 * (2.0 * t1707)
-    del t1707, t1709
-    t1711 = t1710 * t1710 / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    versine_1_1_2_right_flip_up = _runtime.select(0.0 < by_c_1_1_2_right_flip_up, t1711, 1.0 - by_c_1_1_2_right_flip_up)
+    t1683 = d5 - r_1_1_11_right_flip_up
+    t1684 = (goal_1_1_11_right_flip_up - t1683) * (goal_1_1_11_right_flip_up + t1683)
+    del goal_1_1_11_right_flip_up, t1683
+    d_v_1_1_11_right_flip_up = np.maximum(0.0, t1684)
+    del t1684
+    n_v_1_1_11_right_flip_up = k_v_1_1_11_right_flip_up + d_v_1_1_11_right_flip_up
+    t1685 = n_v_1_1_11_right_flip_up <= size * t1674 * 8.881784197001252e-16
+    del t1674
+    t1686 = k_v_1_1_11_right_flip_up - d_v_1_1_11_right_flip_up
+    t1687 = 1.0 / n_v_1_1_11_right_flip_up
+    del n_v_1_1_11_right_flip_up
+    uc_v_1_1_11_right_flip_up = _runtime.select(t1685, 1.0, t1686 * t1687)
+    del t1686
+    t1688 = qx_1_1_11_right_flip_up * uc_v_1_1_11_right_flip_up
+    t1689 = qx_1_1_11_right_flip_up * t1679 + t23 * t1677
+    del t1677, t1679
+    t1690 = k_v_1_1_11_right_flip_up * d_v_1_1_11_right_flip_up
+    del d_v_1_1_11_right_flip_up, k_v_1_1_11_right_flip_up
+    t1691 = t1687 * (2.0 * _runtime.sign(-t1689) * np.sqrt(t1690))
+    del t1687, t1689, t1690
+    us_v_1_1_11_right_flip_up = _runtime.select(t1685, 0.0, t1691)
+    del t1685, t1691
+    t1692 = t23 * us_v_1_1_11_right_flip_up
+    t1693 = 1.0 / r_1_1_11_right_flip_up
+    del r_1_1_11_right_flip_up
+    c_v_1_1_11_right_flip_up = _runtime.select(t1673, 1.0, (t1688 + t1692) * t1693)
+    t1694 = -(T33 * c_v_1_1_11_right_flip_up) < 0.0
+    t1695 = qx_1_1_11_right_flip_up * us_v_1_1_11_right_flip_up
+    del qx_1_1_11_right_flip_up, us_v_1_1_11_right_flip_up
+    t1696 = t23 * uc_v_1_1_11_right_flip_up
+    del uc_v_1_1_11_right_flip_up
+    wc_1_1_11_right_flip_up = _runtime.select(t1673, 0.0, t1693 * (t1695 + t1696))
+    s_v_1_1_11_right_flip_up = _runtime.select(t1673, 0.0, t1693 * (t1695 - t1696))
+    del t1695, t1696
+    to_c_1_1_11_right_flip_up = _runtime.select(t1694, wc_1_1_11_right_flip_up, -s_v_1_1_11_right_flip_up)
+    del s_v_1_1_11_right_flip_up, wc_1_1_11_right_flip_up
+    c_w_1_1_11_right_flip_up = _runtime.select(t1673, 1.0, t1693 * (t1688 - t1692))
+    del t1673, t1688, t1692, t1693
+    to_s_1_1_11_right_flip_up = _runtime.select(t1694, c_w_1_1_11_right_flip_up, c_v_1_1_11_right_flip_up)
+    del c_v_1_1_11_right_flip_up, c_w_1_1_11_right_flip_up, t1694
+    t1697 = T33 * to_c_1_1_11_right_flip_up * _runtime.sign(to_s_1_1_11_right_flip_up)
+    del to_c_1_1_11_right_flip_up
+    across_1_1_11_right_flip_up = _runtime.select(t22, 0.0, t1697)
+    del t1697
+    t1698 = np.abs(to_s_1_1_11_right_flip_up)
+    del to_s_1_1_11_right_flip_up
+    t1699 = most_1_1_11_right_flip_up * t1698 <= np.abs(across_1_1_11_right_flip_up)
+    t1700 = most_1_1_11_right_flip_up * _runtime.sign(across_1_1_11_right_flip_up)
+    t1701 = _runtime.select(t1699, t1700, across_1_1_11_right_flip_up / t1698)
+    del t1698, t1699, t1700
+    wanted_1_1_11_right_flip_up = _runtime.select(across_1_1_11_right_flip_up == 0.0, 0.0, t1701)
+    del across_1_1_11_right_flip_up, t1701
+    t1702 = axisx_1_1_11_right_flip_up * wanted_1_1_11_right_flip_up
+    t1703 = most_1_1_11_right_flip_up - wanted_1_1_11_right_flip_up
+    t1704 = most_1_1_11_right_flip_up + wanted_1_1_11_right_flip_up
+    rest_1_1_11_right_flip_up = np.sqrt(np.maximum(0.0, t1703 * t1704)) * _runtime.sign(-t1670)
+    del t1703, t1704
+    t1705 = most_1_1_11_right_flip_up * most_1_1_11_right_flip_up
+    del most_1_1_11_right_flip_up
+    t1706 = 1.0 / t1705
+    del t1705
+    t1707 = (t1702 - t1670 * rest_1_1_11_right_flip_up) * t1706
+    del t1702
+    by_c_1_1_11_right_flip_up = _runtime.select(t1671, 1.0, t1707)
+    del t1707
+    t1708 = axisx_1_1_11_right_flip_up * rest_1_1_11_right_flip_up
+    del axisx_1_1_11_right_flip_up, rest_1_1_11_right_flip_up
+    t1709 = t1706 * (t1708 + t1670 * wanted_1_1_11_right_flip_up)
+    del t1670, t1706, t1708, wanted_1_1_11_right_flip_up
+    t1710 = _runtime.select(t1671, 0.0, t1709)
+    del t1671, t1709
+    t1711 = t1710 * t1710 / (1.0 + np.abs(by_c_1_1_11_right_flip_up))
+    versine_1_1_11_right_flip_up = _runtime.select(0.0 < by_c_1_1_11_right_flip_up, t1711, 1.0 - by_c_1_1_11_right_flip_up)
     del t1711
-    cost_1_1_2_right_flip_up = d4 * versine_1_1_2_right_flip_up + root1 * np.abs(t1710)
-    del versine_1_1_2_right_flip_up
-    t1712 = cost_1_1_2_right_flip_up <= whole_1_1
-    del cost_1_1_2_right_flip_up
-    cosine_1_1_2_right_flip_up = _runtime.select(t1712, by_c_1_1_2_right_flip_up, 1.0)
-    del by_c_1_1_2_right_flip_up
-    t1713 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t1712, -t1710, 0.0)
+    cost_1_1_11_right_flip_up = d4 * versine_1_1_11_right_flip_up + root1 * np.abs(t1710)
+    del versine_1_1_11_right_flip_up
+    t1712 = cost_1_1_11_right_flip_up <= whole_1_1
+    del cost_1_1_11_right_flip_up
+    cosine_1_1_11_right_flip_up = _runtime.select(t1712, by_c_1_1_11_right_flip_up, 1.0)
+    del by_c_1_1_11_right_flip_up
+    t1713 = c_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
+    sine_1_1_11_right_flip_up = _runtime.select(t1712, -t1710, 0.0)
     del t1710, t1712
-    t1714 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_3_right_flip_up = t1713 - t1714
+    t1714 = s_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
+    c_1_1_12_right_flip_up = t1713 - t1714
     del t1713, t1714
-    t1715 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t1716 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_3_right_flip_up = t1715 + t1716
+    t1715 = c_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
+    del c_1_1_11_right_flip_up, sine_1_1_11_right_flip_up
+    t1716 = s_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
+    del cosine_1_1_11_right_flip_up, s_1_1_11_right_flip_up
+    s_1_1_12_right_flip_up = t1715 + t1716
     del t1715, t1716
-    axisx_1_1_3_right_flip_up = T13 * c_1_1_3_right_flip_up + T23 * s_1_1_3_right_flip_up
-    t1717 = axisx_1_1_3_right_flip_up * axisx_1_1_3_right_flip_up
-    h_1_1_3_right_flip_up = np.sqrt(t5 + t1717)
+    axisx_1_1_12_right_flip_up = T13 * c_1_1_12_right_flip_up + T23 * s_1_1_12_right_flip_up
+    t1717 = axisx_1_1_12_right_flip_up * axisx_1_1_12_right_flip_up
+    h_1_1_12_right_flip_up = np.sqrt(t5 + t1717)
     del t1717
-    t1718 = h_1_1_3_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_3_right_flip_up = w_x * c_1_1_3_right_flip_up + w_y * s_1_1_3_right_flip_up
-    t1719 = h_1_1_3_right_flip_up == 0.0
-    t1720 = 1.0 / h_1_1_3_right_flip_up
+    t1718 = h_1_1_12_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_12_right_flip_up = w_x * c_1_1_12_right_flip_up + w_y * s_1_1_12_right_flip_up
+    t1719 = h_1_1_12_right_flip_up == 0.0
+    t1720 = 1.0 / h_1_1_12_right_flip_up
     t1721 = _runtime.select(t1719, 0.0, T33 * t1720)
-    x_1_1_3_right_flip_up = _runtime.select(t1718, qx_1_1_3_right_flip_up, qx_1_1_3_right_flip_up + d5 * t1721)
-    dqx_1_1_3_right_flip_up = w_y * c_1_1_3_right_flip_up - w_x * s_1_1_3_right_flip_up
-    t1722 = T13 * s_1_1_3_right_flip_up - T23 * c_1_1_3_right_flip_up
-    t1723 = h_1_1_3_right_flip_up * h_1_1_3_right_flip_up
-    del h_1_1_3_right_flip_up
-    spin_1_1_3_right_flip_up = _runtime.select(t1718, 0.0, T33 * t1722 / t1723)
+    x_1_1_12_right_flip_up = _runtime.select(t1718, qx_1_1_12_right_flip_up, qx_1_1_12_right_flip_up + d5 * t1721)
+    dqx_1_1_12_right_flip_up = w_y * c_1_1_12_right_flip_up - w_x * s_1_1_12_right_flip_up
+    t1722 = T13 * s_1_1_12_right_flip_up - T23 * c_1_1_12_right_flip_up
+    t1723 = h_1_1_12_right_flip_up * h_1_1_12_right_flip_up
+    del h_1_1_12_right_flip_up
+    spin_1_1_12_right_flip_up = _runtime.select(t1718, 0.0, T33 * t1722 / t1723)
     del t1722, t1723
-    rate_1_1_3_right_flip_up = d5 * spin_1_1_3_right_flip_up
-    t1724 = _runtime.select(t1719, 1.0, -(axisx_1_1_3_right_flip_up * t1720))
-    del axisx_1_1_3_right_flip_up, t1719, t1720
-    t1725 = dqx_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1724
-    dx_1_1_3_right_flip_up = _runtime.select(t1718, dqx_1_1_3_right_flip_up, t1725)
+    rate_1_1_12_right_flip_up = d5 * spin_1_1_12_right_flip_up
+    t1724 = _runtime.select(t1719, 1.0, -(axisx_1_1_12_right_flip_up * t1720))
+    del axisx_1_1_12_right_flip_up, t1719, t1720
+    t1725 = dqx_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1724
+    dx_1_1_12_right_flip_up = _runtime.select(t1718, dqx_1_1_12_right_flip_up, t1725)
     del t1725
-    t1726 = x_1_1_3_right_flip_up * dx_1_1_3_right_flip_up
-    del dx_1_1_3_right_flip_up
+    t1726 = x_1_1_12_right_flip_up * dx_1_1_12_right_flip_up
+    del dx_1_1_12_right_flip_up
     t1727 = _runtime.select(t1718, t23, t23 - d5 * t1724)
-    dy_1_1_3_right_flip_up = _runtime.select(t1718, 0.0, rate_1_1_3_right_flip_up * t1721)
-    slope_1_1_3_right_flip_up = t1726 - t1727 * dy_1_1_3_right_flip_up
-    del dy_1_1_3_right_flip_up, t1726
-    t1728 = slope_1_1_3_right_flip_up * slope_1_1_3_right_flip_up
-    straight_1_1_3_right_flip_up = dqx_1_1_3_right_flip_up * dqx_1_1_3_right_flip_up
-    t1729 = spin_1_1_3_right_flip_up * (qx_1_1_3_right_flip_up * t1721 - t23 * t1724)
-    del qx_1_1_3_right_flip_up, spin_1_1_3_right_flip_up, t1721
-    t1730 = 2.0 * dqx_1_1_3_right_flip_up * t1724 + t1729
-    del dqx_1_1_3_right_flip_up, t1724, t1729
-    t1731 = straight_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1730
-    del rate_1_1_3_right_flip_up, t1730
-    bends_1_1_3_right_flip_up = _runtime.select(t1718, straight_1_1_3_right_flip_up, t1731)
-    del straight_1_1_3_right_flip_up, t1731
-    t1732 = x_1_1_3_right_flip_up * x_1_1_3_right_flip_up
-    del x_1_1_3_right_flip_up
-    square_1_1_3_right_flip_up = t1732 + t1727 * t1727
+    dy_1_1_12_right_flip_up = _runtime.select(t1718, 0.0, rate_1_1_12_right_flip_up * t1721)
+    slope_1_1_12_right_flip_up = t1726 - t1727 * dy_1_1_12_right_flip_up
+    del dy_1_1_12_right_flip_up, t1726
+    t1728 = slope_1_1_12_right_flip_up * slope_1_1_12_right_flip_up
+    straight_1_1_12_right_flip_up = dqx_1_1_12_right_flip_up * dqx_1_1_12_right_flip_up
+    t1729 = qx_1_1_12_right_flip_up * t1721 - t23 * t1724
+    del qx_1_1_12_right_flip_up, t1721
+    t1730 = 2.0 * dqx_1_1_12_right_flip_up * t1724 + spin_1_1_12_right_flip_up * t1729
+    del dqx_1_1_12_right_flip_up, spin_1_1_12_right_flip_up, t1724, t1729
+    t1731 = straight_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1730
+    del rate_1_1_12_right_flip_up, t1730
+    bends_1_1_12_right_flip_up = _runtime.select(t1718, straight_1_1_12_right_flip_up, t1731)
+    del straight_1_1_12_right_flip_up, t1731
+    t1732 = x_1_1_12_right_flip_up * x_1_1_12_right_flip_up
+    del x_1_1_12_right_flip_up
+    square_1_1_12_right_flip_up = t1732 + t1727 * t1727
     del t1727, t1732
-    t1733 = _runtime.select(t1718, t29, fold_1_1) - whole_1_1
+    t1733 = _runtime.select(t1718, t98, fold_1_1) - whole_1_1
     t1734 = np.maximum(0.0, t1733)
     del t1733
     t1735 = whole_1_1 + _runtime.select(t1718, t3, full_1_1)
     del t1718
-    t1736 = np.minimum(t1735 * t1735, square_1_1_3_right_flip_up)
+    t1736 = np.minimum(t1735 * t1735, square_1_1_12_right_flip_up)
     del t1735
-    miss_1_1_3_right_flip_up = square_1_1_3_right_flip_up - np.maximum(t1734 * t1734, t1736)
-    del square_1_1_3_right_flip_up, t1734, t1736
-    t1737 = bends_1_1_3_right_flip_up * miss_1_1_3_right_flip_up
-    inner_1_1_3_right_flip_up = t1728 - t1737
+    miss_1_1_12_right_flip_up = square_1_1_12_right_flip_up - np.maximum(t1734 * t1734, t1736)
+    del square_1_1_12_right_flip_up, t1734, t1736
+    t1737 = bends_1_1_12_right_flip_up * miss_1_1_12_right_flip_up
+    inner_1_1_12_right_flip_up = t1728 - t1737
     del t1728, t1737
-    t1738 = inner_1_1_3_right_flip_up < 0.0
-    t1739 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_flip_up))
-    del inner_1_1_3_right_flip_up
-    t1740 = _runtime.sign(slope_1_1_3_right_flip_up) * t1739
+    t1738 = inner_1_1_12_right_flip_up < 0.0
+    t1739 = np.sqrt(np.maximum(0.0, inner_1_1_12_right_flip_up))
+    del inner_1_1_12_right_flip_up
+    t1740 = _runtime.sign(slope_1_1_12_right_flip_up) * t1739
     del t1739
-    below_1_1_3_right_flip_up = _runtime.select(t1738, 2.0 * bends_1_1_3_right_flip_up, 2.0 * (slope_1_1_3_right_flip_up + t1740))
-    del bends_1_1_3_right_flip_up, t1740
-    above_1_1_3_right_flip_up = _runtime.select(t1738, slope_1_1_3_right_flip_up, miss_1_1_3_right_flip_up)
-    del miss_1_1_3_right_flip_up, slope_1_1_3_right_flip_up, t1738
-    t1741 = np.abs(below_1_1_3_right_flip_up) <= np.abs(above_1_1_3_right_flip_up)
-    t1742 = above_1_1_3_right_flip_up / below_1_1_3_right_flip_up
-    del above_1_1_3_right_flip_up, below_1_1_3_right_flip_up
+    below_1_1_12_right_flip_up = _runtime.select(t1738, 2.0 * bends_1_1_12_right_flip_up, 2.0 * (slope_1_1_12_right_flip_up + t1740))
+    del bends_1_1_12_right_flip_up, t1740
+    above_1_1_12_right_flip_up = _runtime.select(t1738, slope_1_1_12_right_flip_up, miss_1_1_12_right_flip_up)
+    del miss_1_1_12_right_flip_up, slope_1_1_12_right_flip_up, t1738
+    t1741 = np.abs(below_1_1_12_right_flip_up) <= np.abs(above_1_1_12_right_flip_up)
+    t1742 = above_1_1_12_right_flip_up / below_1_1_12_right_flip_up
+    del above_1_1_12_right_flip_up, below_1_1_12_right_flip_up
     t1743 = _runtime.select(t1741, 0.0, t1742)
     del t1741, t1742
     t1744 = t1743 * t1743
     t1745 = 1.0 / (1.0 + t1744)
-    by_c_1_1_3_right_flip_up = (1.0 - t1744) * t1745
+    by_c_1_1_12_right_flip_up = (1.0 - t1744) * t1745
     del t1744
     t1746 = t1745 * (2.0 * t1743)
     del t1743, t1745
-    t1747 = t1746 * t1746 / (1.0 + np.abs(by_c_1_1_3_right_flip_up))
-    versine_1_1_3_right_flip_up = _runtime.select(0.0 < by_c_1_1_3_right_flip_up, t1747, 1.0 - by_c_1_1_3_right_flip_up)
+    t1747 = t1746 * t1746 / (1.0 + np.abs(by_c_1_1_12_right_flip_up))
+    versine_1_1_12_right_flip_up = _runtime.select(0.0 < by_c_1_1_12_right_flip_up, t1747, 1.0 - by_c_1_1_12_right_flip_up)
     del t1747
-    cost_1_1_3_right_flip_up = d4 * versine_1_1_3_right_flip_up + root1 * np.abs(t1746)
-    del versine_1_1_3_right_flip_up
-    t1748 = cost_1_1_3_right_flip_up <= whole_1_1
-    del cost_1_1_3_right_flip_up
-    cosine_1_1_3_right_flip_up = _runtime.select(t1748, by_c_1_1_3_right_flip_up, 1.0)
-    del by_c_1_1_3_right_flip_up
-    t1749 = c_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
-    sine_1_1_3_right_flip_up = _runtime.select(t1748, -t1746, 0.0)
-    del t1746, t1748
-    t1750 = s_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
-    c_1_1_4_right_flip_up = t1749 - t1750
-    del t1749, t1750
-    t1751 = c_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
-    del c_1_1_3_right_flip_up, sine_1_1_3_right_flip_up
-    t1752 = s_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
-    del cosine_1_1_3_right_flip_up, s_1_1_3_right_flip_up
-    s_1_1_4_right_flip_up = t1751 + t1752
-    del t1751, t1752
-    axisx_1_1_4_right_flip_up = T13 * c_1_1_4_right_flip_up + T23 * s_1_1_4_right_flip_up
-    t1753 = axisx_1_1_4_right_flip_up * axisx_1_1_4_right_flip_up
-    t1754 = T13 * s_1_1_4_right_flip_up - T23 * c_1_1_4_right_flip_up
-    most_1_1_4_right_flip_up = np.sqrt(t1753 + t1754 * t1754)
-    t1755 = most_1_1_4_right_flip_up <= 8.881784197001252e-16
-    qx_1_1_4_right_flip_up = w_x * c_1_1_4_right_flip_up + w_y * s_1_1_4_right_flip_up
-    t1756 = qx_1_1_4_right_flip_up * qx_1_1_4_right_flip_up
-    r_1_1_4_right_flip_up = np.sqrt(t85 + t1756)
-    del t1756
-    t1757 = r_1_1_4_right_flip_up <= t86
-    t1758 = d5 + r_1_1_4_right_flip_up
-    h_1_1_4_right_flip_up = np.sqrt(t5 + t1753)
-    del t1753
-    t1759 = h_1_1_4_right_flip_up == 0.0
-    t1760 = 1.0 / h_1_1_4_right_flip_up
-    t1761 = _runtime.select(t1759, 0.0, T33 * t1760)
-    t1762 = qx_1_1_4_right_flip_up + d5 * t1761
-    t1763 = _runtime.select(t1759, 1.0, -(axisx_1_1_4_right_flip_up * t1760))
-    del t1759, t1760
-    t1764 = t23 - d5 * t1763
-    t1765 = np.maximum(np.sqrt(t1762 * t1762 + t1764 * t1764), fold_1_1)
-    goal_1_1_4_right_flip_up = np.minimum(full_1_1, t1765)
-    del t1765
-    t1766 = (t1758 - goal_1_1_4_right_flip_up) * (t1758 + goal_1_1_4_right_flip_up)
-    k_v_1_1_4_right_flip_up = np.maximum(0.0, t1766)
-    del t1766
-    t1767 = d5 - r_1_1_4_right_flip_up
-    t1768 = (goal_1_1_4_right_flip_up - t1767) * (goal_1_1_4_right_flip_up + t1767)
-    del goal_1_1_4_right_flip_up, t1767
-    d_v_1_1_4_right_flip_up = np.maximum(0.0, t1768)
-    del t1768
-    n_v_1_1_4_right_flip_up = k_v_1_1_4_right_flip_up + d_v_1_1_4_right_flip_up
-    t1769 = n_v_1_1_4_right_flip_up <= size * t1758 * 8.881784197001252e-16
-    del t1758
-    t1770 = k_v_1_1_4_right_flip_up - d_v_1_1_4_right_flip_up
-    t1771 = 1.0 / n_v_1_1_4_right_flip_up
-    del n_v_1_1_4_right_flip_up
-    uc_v_1_1_4_right_flip_up = _runtime.select(t1769, 1.0, t1770 * t1771)
-    del t1770
-    t1772 = qx_1_1_4_right_flip_up * uc_v_1_1_4_right_flip_up
-    t1773 = -(qx_1_1_4_right_flip_up * t1763 + t23 * t1761)
-    del t1761, t1763
-    t1774 = k_v_1_1_4_right_flip_up * d_v_1_1_4_right_flip_up
-    del d_v_1_1_4_right_flip_up, k_v_1_1_4_right_flip_up
-    t1775 = t1771 * (2.0 * _runtime.sign(t1773) * np.sqrt(t1774))
-    del t1771, t1773, t1774
-    us_v_1_1_4_right_flip_up = _runtime.select(t1769, 0.0, t1775)
-    del t1769, t1775
-    t1776 = t23 * us_v_1_1_4_right_flip_up
-    t1777 = 1.0 / r_1_1_4_right_flip_up
-    del r_1_1_4_right_flip_up
-    c_v_1_1_4_right_flip_up = _runtime.select(t1757, 1.0, (t1772 + t1776) * t1777)
-    t1778 = -(T33 * c_v_1_1_4_right_flip_up) < 0.0
-    t1779 = qx_1_1_4_right_flip_up * us_v_1_1_4_right_flip_up
-    del us_v_1_1_4_right_flip_up
-    t1780 = t23 * uc_v_1_1_4_right_flip_up
-    del uc_v_1_1_4_right_flip_up
-    wc_1_1_4_right_flip_up = _runtime.select(t1757, 0.0, t1777 * (t1779 + t1780))
-    s_v_1_1_4_right_flip_up = _runtime.select(t1757, 0.0, t1777 * (t1779 - t1780))
-    del t1779, t1780
-    to_c_1_1_4_right_flip_up = _runtime.select(t1778, wc_1_1_4_right_flip_up, -s_v_1_1_4_right_flip_up)
-    del s_v_1_1_4_right_flip_up, wc_1_1_4_right_flip_up
-    c_w_1_1_4_right_flip_up = _runtime.select(t1757, 1.0, t1777 * (t1772 - t1776))
-    del t1757, t1772, t1776, t1777
-    to_s_1_1_4_right_flip_up = _runtime.select(t1778, c_w_1_1_4_right_flip_up, c_v_1_1_4_right_flip_up)
-    del c_v_1_1_4_right_flip_up, c_w_1_1_4_right_flip_up, t1778
-    t1781 = T33 * to_c_1_1_4_right_flip_up * _runtime.sign(to_s_1_1_4_right_flip_up)
-    del to_c_1_1_4_right_flip_up
-    across_1_1_4_right_flip_up = _runtime.select(t84, 0.0, t1781)
-    del t1781
-    t1782 = np.abs(to_s_1_1_4_right_flip_up)
-    del to_s_1_1_4_right_flip_up
-    t1783 = most_1_1_4_right_flip_up * t1782 <= np.abs(across_1_1_4_right_flip_up)
-    t1784 = most_1_1_4_right_flip_up * _runtime.sign(across_1_1_4_right_flip_up)
-    t1785 = _runtime.select(t1783, t1784, across_1_1_4_right_flip_up / t1782)
-    del t1782, t1783, t1784
-    wanted_1_1_4_right_flip_up = _runtime.select(across_1_1_4_right_flip_up == 0.0, 0.0, t1785)
-    del across_1_1_4_right_flip_up, t1785
-    t1786 = axisx_1_1_4_right_flip_up * wanted_1_1_4_right_flip_up
-    t1787 = most_1_1_4_right_flip_up - wanted_1_1_4_right_flip_up
-    t1788 = most_1_1_4_right_flip_up + wanted_1_1_4_right_flip_up
-    rest_1_1_4_right_flip_up = np.sqrt(np.maximum(0.0, t1787 * t1788)) * _runtime.sign(-t1754)
-    del t1787, t1788
-    t1789 = most_1_1_4_right_flip_up * most_1_1_4_right_flip_up
-    del most_1_1_4_right_flip_up
-    t1790 = 1.0 / t1789
-    del t1789
-    t1791 = (t1786 - t1754 * rest_1_1_4_right_flip_up) * t1790
-    del t1786
-    by_c_1_1_4_right_flip_up = _runtime.select(t1755, 1.0, t1791)
-    del t1791
-    t1792 = axisx_1_1_4_right_flip_up * rest_1_1_4_right_flip_up
-    del axisx_1_1_4_right_flip_up, rest_1_1_4_right_flip_up
-    t1793 = t1790 * (t1792 + t1754 * wanted_1_1_4_right_flip_up)
-    del t1754, t1790, t1792, wanted_1_1_4_right_flip_up
-    t1794 = _runtime.select(t1755, 0.0, t1793)
-    del t1755, t1793
-    t1795 = t1794 * t1794 / (1.0 + np.abs(by_c_1_1_4_right_flip_up))
-    versine_1_1_4_right_flip_up = _runtime.select(0.0 < by_c_1_1_4_right_flip_up, t1795, 1.0 - by_c_1_1_4_right_flip_up)
-    del t1795
-    cost_1_1_4_right_flip_up = d4 * versine_1_1_4_right_flip_up + root1 * np.abs(t1794)
-    del versine_1_1_4_right_flip_up
-    t1796 = cost_1_1_4_right_flip_up <= whole_1_1
-    del cost_1_1_4_right_flip_up
-    cosine_1_1_4_right_flip_up = _runtime.select(t1796, by_c_1_1_4_right_flip_up, 1.0)
-    del by_c_1_1_4_right_flip_up
-    t1797 = c_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
-    sine_1_1_4_right_flip_up = _runtime.select(t1796, -t1794, 0.0)
-    del t1794, t1796
-    t1798 = s_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
-    c_1_1_5_right_flip_up = t1797 - t1798
-    del t1797, t1798
-    t1799 = c_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
-    del sine_1_1_4_right_flip_up
-    t1800 = s_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
-    del cosine_1_1_4_right_flip_up
-    s_1_1_5_right_flip_up = t1799 + t1800
-    del t1799, t1800
-    axisx_1_1_5_right_flip_up = T13 * c_1_1_5_right_flip_up + T23 * s_1_1_5_right_flip_up
-    t1801 = axisx_1_1_5_right_flip_up * axisx_1_1_5_right_flip_up
-    h_1_1_5_right_flip_up = np.sqrt(t5 + t1801)
-    del t1801
-    t1802 = h_1_1_5_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_5_right_flip_up = w_x * c_1_1_5_right_flip_up + w_y * s_1_1_5_right_flip_up
-    t1803 = h_1_1_5_right_flip_up == 0.0
-    t1804 = 1.0 / h_1_1_5_right_flip_up
-    t1805 = _runtime.select(t1803, 0.0, T33 * t1804)
-    x_1_1_5_right_flip_up = _runtime.select(t1802, qx_1_1_5_right_flip_up, qx_1_1_5_right_flip_up + d5 * t1805)
-    dqx_1_1_5_right_flip_up = w_y * c_1_1_5_right_flip_up - w_x * s_1_1_5_right_flip_up
-    t1806 = T13 * s_1_1_5_right_flip_up - T23 * c_1_1_5_right_flip_up
-    t1807 = h_1_1_5_right_flip_up * h_1_1_5_right_flip_up
-    del h_1_1_5_right_flip_up
-    spin_1_1_5_right_flip_up = _runtime.select(t1802, 0.0, T33 * t1806 / t1807)
-    del t1806, t1807
-    rate_1_1_5_right_flip_up = d5 * spin_1_1_5_right_flip_up
-    t1808 = _runtime.select(t1803, 1.0, -(axisx_1_1_5_right_flip_up * t1804))
-    del axisx_1_1_5_right_flip_up, t1803, t1804
-    t1809 = dqx_1_1_5_right_flip_up - rate_1_1_5_right_flip_up * t1808
-    dx_1_1_5_right_flip_up = _runtime.select(t1802, dqx_1_1_5_right_flip_up, t1809)
-    del t1809
-    t1810 = x_1_1_5_right_flip_up * dx_1_1_5_right_flip_up
-    del dx_1_1_5_right_flip_up
-    t1811 = _runtime.select(t1802, t23, t23 - d5 * t1808)
-    dy_1_1_5_right_flip_up = _runtime.select(t1802, 0.0, rate_1_1_5_right_flip_up * t1805)
-    slope_1_1_5_right_flip_up = t1810 - t1811 * dy_1_1_5_right_flip_up
-    del dy_1_1_5_right_flip_up, t1810
-    t1812 = slope_1_1_5_right_flip_up * slope_1_1_5_right_flip_up
-    straight_1_1_5_right_flip_up = dqx_1_1_5_right_flip_up * dqx_1_1_5_right_flip_up
-    t1813 = spin_1_1_5_right_flip_up * (qx_1_1_5_right_flip_up * t1805 - t23 * t1808)
-    del qx_1_1_5_right_flip_up, spin_1_1_5_right_flip_up, t1805
-    t1814 = 2.0 * dqx_1_1_5_right_flip_up * t1808 + t1813
-    del dqx_1_1_5_right_flip_up, t1808, t1813
-    t1815 = straight_1_1_5_right_flip_up - rate_1_1_5_right_flip_up * t1814
-    del rate_1_1_5_right_flip_up, t1814
-    bends_1_1_5_right_flip_up = _runtime.select(t1802, straight_1_1_5_right_flip_up, t1815)
-    del straight_1_1_5_right_flip_up, t1815
-    t1816 = x_1_1_5_right_flip_up * x_1_1_5_right_flip_up
-    del x_1_1_5_right_flip_up
-    square_1_1_5_right_flip_up = t1816 + t1811 * t1811
-    del t1811, t1816
-    t1817 = _runtime.select(t1802, t29, fold_1_1) - whole_1_1
-    t1818 = np.maximum(0.0, t1817)
-    del t1817
-    t1819 = whole_1_1 + _runtime.select(t1802, t3, full_1_1)
-    del t1802
-    t1820 = np.minimum(t1819 * t1819, square_1_1_5_right_flip_up)
-    del t1819
-    miss_1_1_5_right_flip_up = square_1_1_5_right_flip_up - np.maximum(t1818 * t1818, t1820)
-    del square_1_1_5_right_flip_up, t1818, t1820
-    t1821 = bends_1_1_5_right_flip_up * miss_1_1_5_right_flip_up
-    inner_1_1_5_right_flip_up = t1812 - t1821
-    del t1812, t1821
-    t1822 = inner_1_1_5_right_flip_up < 0.0
-    t1823 = np.sqrt(np.maximum(0.0, inner_1_1_5_right_flip_up))
-    del inner_1_1_5_right_flip_up
-    t1824 = _runtime.sign(slope_1_1_5_right_flip_up) * t1823
-    del t1823
-    below_1_1_5_right_flip_up = _runtime.select(t1822, 2.0 * bends_1_1_5_right_flip_up, 2.0 * (slope_1_1_5_right_flip_up + t1824))
-    del bends_1_1_5_right_flip_up, t1824
-    above_1_1_5_right_flip_up = _runtime.select(t1822, slope_1_1_5_right_flip_up, miss_1_1_5_right_flip_up)
-    del miss_1_1_5_right_flip_up, slope_1_1_5_right_flip_up, t1822
-    t1825 = np.abs(below_1_1_5_right_flip_up) <= np.abs(above_1_1_5_right_flip_up)
-    t1826 = above_1_1_5_right_flip_up / below_1_1_5_right_flip_up
-    del above_1_1_5_right_flip_up, below_1_1_5_right_flip_up
-    t1827 = _runtime.select(t1825, 0.0, t1826)
-    del t1825, t1826
-    t1828 = t1827 * t1827
-    t1829 = 1.0 / (1.0 + t1828)
-    by_c_1_1_5_right_flip_up = (1.0 - t1828) * t1829
-    del t1828
-    t1830 = t1829 * (2.0 * t1827)
-    del t1827, t1829
-    t1831 = t1830 * t1830 / (1.0 + np.abs(by_c_1_1_5_right_flip_up))
-    versine_1_1_5_right_flip_up = _runtime.select(0.0 < by_c_1_1_5_right_flip_up, t1831, 1.0 - by_c_1_1_5_right_flip_up)
-    del t1831
-    cost_1_1_5_right_flip_up = d4 * versine_1_1_5_right_flip_up + root1 * np.abs(t1830)
-    del versine_1_1_5_right_flip_up
-    t1832 = cost_1_1_5_right_flip_up <= whole_1_1
-    del cost_1_1_5_right_flip_up
-    cosine_1_1_5_right_flip_up = _runtime.select(t1832, by_c_1_1_5_right_flip_up, 1.0)
-    del by_c_1_1_5_right_flip_up
-    t1833 = c_1_1_5_right_flip_up * cosine_1_1_5_right_flip_up
-    sine_1_1_5_right_flip_up = _runtime.select(t1832, -t1830, 0.0)
-    del t1830, t1832
-    t1834 = s_1_1_5_right_flip_up * sine_1_1_5_right_flip_up
-    c_1_1_6_right_flip_up = t1833 - t1834
-    del t1833, t1834
-    t1835 = c_1_1_5_right_flip_up * sine_1_1_5_right_flip_up
-    del c_1_1_5_right_flip_up, sine_1_1_5_right_flip_up
-    t1836 = s_1_1_5_right_flip_up * cosine_1_1_5_right_flip_up
-    del cosine_1_1_5_right_flip_up, s_1_1_5_right_flip_up
-    s_1_1_6_right_flip_up = t1835 + t1836
-    del t1835, t1836
-    axisx_1_1_6_right_flip_up = T13 * c_1_1_6_right_flip_up + T23 * s_1_1_6_right_flip_up
-    t1837 = axisx_1_1_6_right_flip_up * axisx_1_1_6_right_flip_up
-    h_1_1_6_right_flip_up = np.sqrt(t5 + t1837)
-    del t1837
-    t1838 = h_1_1_6_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_6_right_flip_up = w_x * c_1_1_6_right_flip_up + w_y * s_1_1_6_right_flip_up
-    t1839 = h_1_1_6_right_flip_up == 0.0
-    t1840 = 1.0 / h_1_1_6_right_flip_up
-    t1841 = _runtime.select(t1839, 0.0, T33 * t1840)
-    x_1_1_6_right_flip_up = _runtime.select(t1838, qx_1_1_6_right_flip_up, qx_1_1_6_right_flip_up + d5 * t1841)
-    dqx_1_1_6_right_flip_up = w_y * c_1_1_6_right_flip_up - w_x * s_1_1_6_right_flip_up
-    t1842 = T13 * s_1_1_6_right_flip_up - T23 * c_1_1_6_right_flip_up
-    t1843 = h_1_1_6_right_flip_up * h_1_1_6_right_flip_up
-    del h_1_1_6_right_flip_up
-    spin_1_1_6_right_flip_up = _runtime.select(t1838, 0.0, T33 * t1842 / t1843)
-    del t1842, t1843
-    rate_1_1_6_right_flip_up = d5 * spin_1_1_6_right_flip_up
-    t1844 = _runtime.select(t1839, 1.0, -(axisx_1_1_6_right_flip_up * t1840))
-    del axisx_1_1_6_right_flip_up, t1839, t1840
-    t1845 = dqx_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t1844
-    dx_1_1_6_right_flip_up = _runtime.select(t1838, dqx_1_1_6_right_flip_up, t1845)
-    del t1845
-    t1846 = x_1_1_6_right_flip_up * dx_1_1_6_right_flip_up
-    del dx_1_1_6_right_flip_up
-    t1847 = _runtime.select(t1838, t23, t23 - d5 * t1844)
-    dy_1_1_6_right_flip_up = _runtime.select(t1838, 0.0, rate_1_1_6_right_flip_up * t1841)
-    slope_1_1_6_right_flip_up = t1846 - t1847 * dy_1_1_6_right_flip_up
-    del dy_1_1_6_right_flip_up, t1846
-    t1848 = slope_1_1_6_right_flip_up * slope_1_1_6_right_flip_up
-    straight_1_1_6_right_flip_up = dqx_1_1_6_right_flip_up * dqx_1_1_6_right_flip_up
-    t1849 = spin_1_1_6_right_flip_up * (qx_1_1_6_right_flip_up * t1841 - t23 * t1844)
-    del qx_1_1_6_right_flip_up, spin_1_1_6_right_flip_up, t1841
-    t1850 = 2.0 * dqx_1_1_6_right_flip_up * t1844 + t1849
-    del dqx_1_1_6_right_flip_up, t1844, t1849
-    t1851 = straight_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t1850
-    del rate_1_1_6_right_flip_up, t1850
-    bends_1_1_6_right_flip_up = _runtime.select(t1838, straight_1_1_6_right_flip_up, t1851)
-    del straight_1_1_6_right_flip_up, t1851
-    t1852 = x_1_1_6_right_flip_up * x_1_1_6_right_flip_up
-    del x_1_1_6_right_flip_up
-    square_1_1_6_right_flip_up = t1852 + t1847 * t1847
-    del t1847, t1852
-    t1853 = _runtime.select(t1838, t29, fold_1_1) - whole_1_1
-    t1854 = np.maximum(0.0, t1853)
-    del t1853
-    t1855 = whole_1_1 + _runtime.select(t1838, t3, full_1_1)
-    del t1838
-    t1856 = np.minimum(t1855 * t1855, square_1_1_6_right_flip_up)
-    del t1855
-    miss_1_1_6_right_flip_up = square_1_1_6_right_flip_up - np.maximum(t1854 * t1854, t1856)
-    del square_1_1_6_right_flip_up, t1854, t1856
-    t1857 = bends_1_1_6_right_flip_up * miss_1_1_6_right_flip_up
-    inner_1_1_6_right_flip_up = t1848 - t1857
-    del t1848, t1857
-    t1858 = inner_1_1_6_right_flip_up < 0.0
-    t1859 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_flip_up))
-    del inner_1_1_6_right_flip_up
-    t1860 = _runtime.sign(slope_1_1_6_right_flip_up) * t1859
-    del t1859
-    below_1_1_6_right_flip_up = _runtime.select(t1858, 2.0 * bends_1_1_6_right_flip_up, 2.0 * (slope_1_1_6_right_flip_up + t1860))
-    del bends_1_1_6_right_flip_up, t1860
-    above_1_1_6_right_flip_up = _runtime.select(t1858, slope_1_1_6_right_flip_up, miss_1_1_6_right_flip_up)
-    del miss_1_1_6_right_flip_up, slope_1_1_6_right_flip_up, t1858
-    t1861 = np.abs(below_1_1_6_right_flip_up) <= np.abs(above_1_1_6_right_flip_up)
-    t1862 = above_1_1_6_right_flip_up / below_1_1_6_right_flip_up
-    del above_1_1_6_right_flip_up, below_1_1_6_right_flip_up
-    t1863 = _runtime.select(t1861, 0.0, t1862)
-    del t1861, t1862
-    t1864 = t1863 * t1863
-    t1865 = 1.0 / (1.0 + t1864)
-    by_c_1_1_6_right_flip_up = (1.0 - t1864) * t1865
-    del t1864
-    t1866 = t1865 * (2.0 * t1863)
-    del t1863, t1865
-    t1867 = t1866 * t1866 / (1.0 + np.abs(by_c_1_1_6_right_flip_up))
-    versine_1_1_6_right_flip_up = _runtime.select(0.0 < by_c_1_1_6_right_flip_up, t1867, 1.0 - by_c_1_1_6_right_flip_up)
-    del t1867
-    cost_1_1_6_right_flip_up = d4 * versine_1_1_6_right_flip_up + root1 * np.abs(t1866)
-    del versine_1_1_6_right_flip_up
-    t1868 = cost_1_1_6_right_flip_up <= whole_1_1
-    del cost_1_1_6_right_flip_up
-    cosine_1_1_6_right_flip_up = _runtime.select(t1868, by_c_1_1_6_right_flip_up, 1.0)
-    del by_c_1_1_6_right_flip_up
-    t1869 = c_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
-    sine_1_1_6_right_flip_up = _runtime.select(t1868, -t1866, 0.0)
-    del t1866, t1868
-    t1870 = s_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
-    c_1_1_7_right_flip_up = t1869 - t1870
-    del t1869, t1870
-    t1871 = c_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
-    del c_1_1_6_right_flip_up, sine_1_1_6_right_flip_up
-    t1872 = s_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
-    del cosine_1_1_6_right_flip_up, s_1_1_6_right_flip_up
-    s_1_1_7_right_flip_up = t1871 + t1872
-    del t1871, t1872
-    axisx_1_1_7_right_flip_up = T13 * c_1_1_7_right_flip_up + T23 * s_1_1_7_right_flip_up
-    t1873 = axisx_1_1_7_right_flip_up * axisx_1_1_7_right_flip_up
-    h_1_1_7_right_flip_up = np.sqrt(t5 + t1873)
-    del t1873
-    t1874 = h_1_1_7_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_7_right_flip_up = w_x * c_1_1_7_right_flip_up + w_y * s_1_1_7_right_flip_up
-    t1875 = h_1_1_7_right_flip_up == 0.0
-    t1876 = 1.0 / h_1_1_7_right_flip_up
-    del h_1_1_7_right_flip_up
-    t1877 = d5 * _runtime.select(t1875, 0.0, T33 * t1876)
-    x_1_1_7_right_flip_up = _runtime.select(t1874, qx_1_1_7_right_flip_up, qx_1_1_7_right_flip_up + t1877)
-    del qx_1_1_7_right_flip_up, t1877
-    t1878 = x_1_1_7_right_flip_up * x_1_1_7_right_flip_up
-    del x_1_1_7_right_flip_up
-    t1879 = _runtime.select(t1875, 1.0, -(axisx_1_1_7_right_flip_up * t1876))
-    del axisx_1_1_7_right_flip_up, t1875, t1876
-    t1880 = _runtime.select(t1874, t23, t23 - d5 * t1879)
-    del t1879
-    t1881 = np.sqrt(t1878 + t1880 * t1880)
-    del t1878, t1880
-    t1882 = np.maximum(0.0, t1881 - _runtime.select(t1874, t3, full_1_1))
-    t1883 = _runtime.select(t1874, t29, fold_1_1) - t1881
-    del t1874, t1881
-    t1884 = h_1_1_4_right_flip_up <= 1.4210854715202004e-14
-    del h_1_1_4_right_flip_up
-    x_1_1_4_right_flip_up = _runtime.select(t1884, qx_1_1_4_right_flip_up, t1762)
-    del qx_1_1_4_right_flip_up, t1762
-    t1885 = x_1_1_4_right_flip_up * x_1_1_4_right_flip_up
-    del x_1_1_4_right_flip_up
-    t1886 = _runtime.select(t1884, t23, t1764)
-    del t1764
-    t1887 = np.sqrt(t1885 + t1886 * t1886)
-    del t1885, t1886
-    t1888 = np.maximum(0.0, t1887 - _runtime.select(t1884, t3, full_1_1))
-    t1889 = _runtime.select(t1884, t29, fold_1_1) - t1887
-    del t1884, t1887
-    t1890 = np.maximum(t1882, t1883) < np.maximum(t1888, t1889)
-    del t1882, t1883, t1888, t1889
-    c_1_1_8_right_flip_up = _runtime.select(t1890, c_1_1_7_right_flip_up, c_1_1_4_right_flip_up)
-    del c_1_1_4_right_flip_up, c_1_1_7_right_flip_up
-    s_1_1_8_right_flip_up = _runtime.select(t1890, s_1_1_7_right_flip_up, s_1_1_4_right_flip_up)
-    del s_1_1_4_right_flip_up, s_1_1_7_right_flip_up, t1890
-    axisx_1_1_8_right_flip_up = T13 * c_1_1_8_right_flip_up + T23 * s_1_1_8_right_flip_up
-    t1891 = axisx_1_1_8_right_flip_up * axisx_1_1_8_right_flip_up
-    t1892 = T13 * s_1_1_8_right_flip_up - T23 * c_1_1_8_right_flip_up
-    most_1_1_8_right_flip_up = np.sqrt(t1891 + t1892 * t1892)
-    t1893 = most_1_1_8_right_flip_up <= 8.881784197001252e-16
-    margin_1_1_8_right_flip_up = most_1_1_8_right_flip_up * most_1_1_8_right_flip_up
-    del most_1_1_8_right_flip_up
-    rest_1_1_8_right_flip_up = np.sqrt(margin_1_1_8_right_flip_up) * _runtime.sign(-t1892)
-    t1894 = 1.0 / margin_1_1_8_right_flip_up
-    del margin_1_1_8_right_flip_up
-    by_c_1_1_8_right_flip_up = _runtime.select(t1893, 1.0, -(t1892 * rest_1_1_8_right_flip_up * t1894))
-    del t1892
-    t1895 = axisx_1_1_8_right_flip_up * rest_1_1_8_right_flip_up
-    del rest_1_1_8_right_flip_up
-    t1896 = _runtime.select(t1893, 0.0, t1894 * t1895)
-    del t1893, t1894, t1895
-    t1897 = t1896 * t1896 / (1.0 + np.abs(by_c_1_1_8_right_flip_up))
-    versine_1_1_8_right_flip_up = _runtime.select(0.0 < by_c_1_1_8_right_flip_up, t1897, 1.0 - by_c_1_1_8_right_flip_up)
-    del t1897
-    cost_1_1_8_right_flip_up = d4 * versine_1_1_8_right_flip_up + root1 * np.abs(t1896)
-    del versine_1_1_8_right_flip_up
-    t1898 = cost_1_1_8_right_flip_up <= whole_1_1
-    del cost_1_1_8_right_flip_up
-    cosine_1_1_8_right_flip_up = _runtime.select(t1898, by_c_1_1_8_right_flip_up, 1.0)
-    del by_c_1_1_8_right_flip_up
-    t1899 = c_1_1_8_right_flip_up * cosine_1_1_8_right_flip_up
-    sine_1_1_8_right_flip_up = _runtime.select(t1898, -t1896, 0.0)
-    del t1896, t1898
-    t1900 = s_1_1_8_right_flip_up * sine_1_1_8_right_flip_up
-    c_1_1_9_right_flip_up = t1899 - t1900
-    del t1899, t1900
-    t1901 = c_1_1_8_right_flip_up * sine_1_1_8_right_flip_up
-    del sine_1_1_8_right_flip_up
-    t1902 = s_1_1_8_right_flip_up * cosine_1_1_8_right_flip_up
-    del cosine_1_1_8_right_flip_up
-    s_1_1_9_right_flip_up = t1901 + t1902
-    del t1901, t1902
-    axisx_1_1_9_right_flip_up = T13 * c_1_1_9_right_flip_up + T23 * s_1_1_9_right_flip_up
-    t1903 = axisx_1_1_9_right_flip_up * axisx_1_1_9_right_flip_up
-    t1904 = T13 * s_1_1_9_right_flip_up - T23 * c_1_1_9_right_flip_up
-    most_1_1_9_right_flip_up = np.sqrt(t1903 + t1904 * t1904)
-    t1905 = most_1_1_9_right_flip_up <= 8.881784197001252e-16
-    qx_1_1_9_right_flip_up = w_x * c_1_1_9_right_flip_up + w_y * s_1_1_9_right_flip_up
-    t1906 = qx_1_1_9_right_flip_up * qx_1_1_9_right_flip_up
-    r_1_1_9_right_flip_up = np.sqrt(t85 + t1906)
-    del t1906
-    t1907 = r_1_1_9_right_flip_up <= t86
-    t1908 = d5 + r_1_1_9_right_flip_up
-    h_1_1_9_right_flip_up = np.sqrt(t5 + t1903)
-    del t1903
-    t1909 = h_1_1_9_right_flip_up == 0.0
-    t1910 = 1.0 / h_1_1_9_right_flip_up
-    del h_1_1_9_right_flip_up
-    t1911 = _runtime.select(t1909, 0.0, T33 * t1910)
-    t1912 = qx_1_1_9_right_flip_up + d5 * t1911
-    t1913 = _runtime.select(t1909, 1.0, -(axisx_1_1_9_right_flip_up * t1910))
-    del t1909, t1910
-    t1914 = t23 - d5 * t1913
-    t1915 = np.maximum(np.sqrt(t1912 * t1912 + t1914 * t1914), fold_1_1)
-    del t1912, t1914
-    goal_1_1_9_right_flip_up = np.minimum(full_1_1, t1915)
-    del t1915
-    t1916 = (t1908 - goal_1_1_9_right_flip_up) * (t1908 + goal_1_1_9_right_flip_up)
-    k_v_1_1_9_right_flip_up = np.maximum(0.0, t1916)
-    del t1916
-    t1917 = d5 - r_1_1_9_right_flip_up
-    t1918 = (goal_1_1_9_right_flip_up - t1917) * (goal_1_1_9_right_flip_up + t1917)
-    del goal_1_1_9_right_flip_up, t1917
-    d_v_1_1_9_right_flip_up = np.maximum(0.0, t1918)
-    del t1918
-    n_v_1_1_9_right_flip_up = k_v_1_1_9_right_flip_up + d_v_1_1_9_right_flip_up
-    t1919 = n_v_1_1_9_right_flip_up <= size * t1908 * 8.881784197001252e-16
-    del t1908
-    t1920 = k_v_1_1_9_right_flip_up - d_v_1_1_9_right_flip_up
-    t1921 = 1.0 / n_v_1_1_9_right_flip_up
-    del n_v_1_1_9_right_flip_up
-    uc_v_1_1_9_right_flip_up = _runtime.select(t1919, 1.0, t1920 * t1921)
-    del t1920
-    t1922 = qx_1_1_9_right_flip_up * uc_v_1_1_9_right_flip_up
-    t1923 = -(qx_1_1_9_right_flip_up * t1913 + t23 * t1911)
-    del t1911, t1913
-    t1924 = k_v_1_1_9_right_flip_up * d_v_1_1_9_right_flip_up
-    del d_v_1_1_9_right_flip_up, k_v_1_1_9_right_flip_up
-    t1925 = t1921 * (2.0 * _runtime.sign(t1923) * np.sqrt(t1924))
-    del t1921, t1923, t1924
-    us_v_1_1_9_right_flip_up = _runtime.select(t1919, 0.0, t1925)
-    del t1919, t1925
-    t1926 = t23 * us_v_1_1_9_right_flip_up
-    t1927 = 1.0 / r_1_1_9_right_flip_up
-    del r_1_1_9_right_flip_up
-    c_v_1_1_9_right_flip_up = _runtime.select(t1907, 1.0, (t1922 + t1926) * t1927)
-    t1928 = -(T33 * c_v_1_1_9_right_flip_up) < 0.0
-    t1929 = qx_1_1_9_right_flip_up * us_v_1_1_9_right_flip_up
-    del qx_1_1_9_right_flip_up, us_v_1_1_9_right_flip_up
-    t1930 = t23 * uc_v_1_1_9_right_flip_up
-    del uc_v_1_1_9_right_flip_up
-    wc_1_1_9_right_flip_up = _runtime.select(t1907, 0.0, t1927 * (t1929 + t1930))
-    s_v_1_1_9_right_flip_up = _runtime.select(t1907, 0.0, t1927 * (t1929 - t1930))
-    del t1929, t1930
-    to_c_1_1_9_right_flip_up = _runtime.select(t1928, wc_1_1_9_right_flip_up, -s_v_1_1_9_right_flip_up)
-    del s_v_1_1_9_right_flip_up, wc_1_1_9_right_flip_up
-    c_w_1_1_9_right_flip_up = _runtime.select(t1907, 1.0, t1927 * (t1922 - t1926))
-    del t1907, t1922, t1926, t1927
-    to_s_1_1_9_right_flip_up = _runtime.select(t1928, c_w_1_1_9_right_flip_up, c_v_1_1_9_right_flip_up)
-    del c_v_1_1_9_right_flip_up, c_w_1_1_9_right_flip_up, t1928
-    t1931 = T33 * to_c_1_1_9_right_flip_up * _runtime.sign(to_s_1_1_9_right_flip_up)
-    del to_c_1_1_9_right_flip_up
-    across_1_1_9_right_flip_up = _runtime.select(t84, 0.0, t1931)
-    del t1931
-    t1932 = np.abs(to_s_1_1_9_right_flip_up)
-    del to_s_1_1_9_right_flip_up
-    t1933 = most_1_1_9_right_flip_up * t1932 <= np.abs(across_1_1_9_right_flip_up)
-    t1934 = most_1_1_9_right_flip_up * _runtime.sign(across_1_1_9_right_flip_up)
-    t1935 = _runtime.select(t1933, t1934, across_1_1_9_right_flip_up / t1932)
-    del t1932, t1933, t1934
-    wanted_1_1_9_right_flip_up = _runtime.select(across_1_1_9_right_flip_up == 0.0, 0.0, t1935)
-    del across_1_1_9_right_flip_up, t1935
-    t1936 = axisx_1_1_9_right_flip_up * wanted_1_1_9_right_flip_up
-    t1937 = most_1_1_9_right_flip_up - wanted_1_1_9_right_flip_up
-    t1938 = most_1_1_9_right_flip_up + wanted_1_1_9_right_flip_up
-    rest_1_1_9_right_flip_up = np.sqrt(np.maximum(0.0, t1937 * t1938)) * _runtime.sign(-t1904)
-    del t1937, t1938
-    t1939 = most_1_1_9_right_flip_up * most_1_1_9_right_flip_up
-    del most_1_1_9_right_flip_up
-    t1940 = 1.0 / t1939
-    del t1939
-    t1941 = (t1936 - t1904 * rest_1_1_9_right_flip_up) * t1940
-    del t1936
-    by_c_1_1_9_right_flip_up = _runtime.select(t1905, 1.0, t1941)
-    del t1941
-    t1942 = axisx_1_1_9_right_flip_up * rest_1_1_9_right_flip_up
-    del axisx_1_1_9_right_flip_up, rest_1_1_9_right_flip_up
-    t1943 = t1940 * (t1942 + t1904 * wanted_1_1_9_right_flip_up)
-    del t1904, t1940, t1942, wanted_1_1_9_right_flip_up
-    t1944 = _runtime.select(t1905, 0.0, t1943)
-    del t1905, t1943
-    t1945 = t1944 * t1944 / (1.0 + np.abs(by_c_1_1_9_right_flip_up))
-    versine_1_1_9_right_flip_up = _runtime.select(0.0 < by_c_1_1_9_right_flip_up, t1945, 1.0 - by_c_1_1_9_right_flip_up)
-    del t1945
-    cost_1_1_9_right_flip_up = d4 * versine_1_1_9_right_flip_up + root1 * np.abs(t1944)
-    del versine_1_1_9_right_flip_up
-    t1946 = cost_1_1_9_right_flip_up <= whole_1_1
-    del cost_1_1_9_right_flip_up
-    cosine_1_1_9_right_flip_up = _runtime.select(t1946, by_c_1_1_9_right_flip_up, 1.0)
-    del by_c_1_1_9_right_flip_up
-    t1947 = c_1_1_9_right_flip_up * cosine_1_1_9_right_flip_up
-    sine_1_1_9_right_flip_up = _runtime.select(t1946, -t1944, 0.0)
-    del t1944, t1946
-    t1948 = s_1_1_9_right_flip_up * sine_1_1_9_right_flip_up
-    c_1_1_10_right_flip_up = t1947 - t1948
-    del t1947, t1948
-    t1949 = c_1_1_9_right_flip_up * sine_1_1_9_right_flip_up
-    del c_1_1_9_right_flip_up, sine_1_1_9_right_flip_up
-    t1950 = s_1_1_9_right_flip_up * cosine_1_1_9_right_flip_up
-    del cosine_1_1_9_right_flip_up, s_1_1_9_right_flip_up
-    s_1_1_10_right_flip_up = t1949 + t1950
-    del t1949, t1950
-    axisx_1_1_10_right_flip_up = T13 * c_1_1_10_right_flip_up + T23 * s_1_1_10_right_flip_up
-    t1951 = axisx_1_1_10_right_flip_up * axisx_1_1_10_right_flip_up
-    t1952 = T13 * s_1_1_10_right_flip_up - T23 * c_1_1_10_right_flip_up
-    most_1_1_10_right_flip_up = np.sqrt(t1951 + t1952 * t1952)
-    t1953 = most_1_1_10_right_flip_up <= 8.881784197001252e-16
-    qx_1_1_10_right_flip_up = w_x * c_1_1_10_right_flip_up + w_y * s_1_1_10_right_flip_up
-    t1954 = qx_1_1_10_right_flip_up * qx_1_1_10_right_flip_up
-    r_1_1_10_right_flip_up = np.sqrt(t85 + t1954)
-    del t1954
-    t1955 = r_1_1_10_right_flip_up <= t86
-    del t86
-    t1956 = d5 + r_1_1_10_right_flip_up
-    h_1_1_10_right_flip_up = np.sqrt(t5 + t1951)
-    del t1951
-    t1957 = h_1_1_10_right_flip_up == 0.0
-    t1958 = 1.0 / h_1_1_10_right_flip_up
-    del h_1_1_10_right_flip_up
-    t1959 = _runtime.select(t1957, 0.0, T33 * t1958)
-    t1960 = qx_1_1_10_right_flip_up + d5 * t1959
-    t1961 = _runtime.select(t1957, 1.0, -(axisx_1_1_10_right_flip_up * t1958))
-    del t1957, t1958
-    t1962 = t23 - d5 * t1961
-    t1963 = np.maximum(np.sqrt(t1960 * t1960 + t1962 * t1962), fold_1_1)
-    del t1960, t1962
-    goal_1_1_10_right_flip_up = np.minimum(full_1_1, t1963)
-    del t1963
-    t1964 = (t1956 - goal_1_1_10_right_flip_up) * (t1956 + goal_1_1_10_right_flip_up)
-    k_v_1_1_10_right_flip_up = np.maximum(0.0, t1964)
-    del t1964
-    t1965 = d5 - r_1_1_10_right_flip_up
-    t1966 = (goal_1_1_10_right_flip_up - t1965) * (goal_1_1_10_right_flip_up + t1965)
-    del goal_1_1_10_right_flip_up, t1965
-    d_v_1_1_10_right_flip_up = np.maximum(0.0, t1966)
-    del t1966
-    n_v_1_1_10_right_flip_up = k_v_1_1_10_right_flip_up + d_v_1_1_10_right_flip_up
-    t1967 = n_v_1_1_10_right_flip_up <= size * t1956 * 8.881784197001252e-16
-    del t1956
-    t1968 = k_v_1_1_10_right_flip_up - d_v_1_1_10_right_flip_up
-    t1969 = 1.0 / n_v_1_1_10_right_flip_up
-    del n_v_1_1_10_right_flip_up
-    uc_v_1_1_10_right_flip_up = _runtime.select(t1967, 1.0, t1968 * t1969)
-    del t1968
-    t1970 = qx_1_1_10_right_flip_up * uc_v_1_1_10_right_flip_up
-    t1971 = qx_1_1_10_right_flip_up * t1961 + t23 * t1959
-    del t1959, t1961
-    t1972 = k_v_1_1_10_right_flip_up * d_v_1_1_10_right_flip_up
-    del d_v_1_1_10_right_flip_up, k_v_1_1_10_right_flip_up
-    t1973 = t1969 * (2.0 * _runtime.sign(-t1971) * np.sqrt(t1972))
-    del t1969, t1971, t1972
-    us_v_1_1_10_right_flip_up = _runtime.select(t1967, 0.0, t1973)
-    del t1967, t1973
-    t1974 = t23 * us_v_1_1_10_right_flip_up
-    t1975 = 1.0 / r_1_1_10_right_flip_up
-    del r_1_1_10_right_flip_up
-    c_v_1_1_10_right_flip_up = _runtime.select(t1955, 1.0, (t1970 + t1974) * t1975)
-    t1976 = -(T33 * c_v_1_1_10_right_flip_up) < 0.0
-    t1977 = qx_1_1_10_right_flip_up * us_v_1_1_10_right_flip_up
-    del qx_1_1_10_right_flip_up, us_v_1_1_10_right_flip_up
-    t1978 = t23 * uc_v_1_1_10_right_flip_up
-    del uc_v_1_1_10_right_flip_up
-    wc_1_1_10_right_flip_up = _runtime.select(t1955, 0.0, t1975 * (t1977 + t1978))
-    s_v_1_1_10_right_flip_up = _runtime.select(t1955, 0.0, t1975 * (t1977 - t1978))
-    del t1977, t1978
-    to_c_1_1_10_right_flip_up = _runtime.select(t1976, wc_1_1_10_right_flip_up, -s_v_1_1_10_right_flip_up)
-    del s_v_1_1_10_right_flip_up, wc_1_1_10_right_flip_up
-    c_w_1_1_10_right_flip_up = _runtime.select(t1955, 1.0, t1975 * (t1970 - t1974))
-    del t1955, t1970, t1974, t1975
-    to_s_1_1_10_right_flip_up = _runtime.select(t1976, c_w_1_1_10_right_flip_up, c_v_1_1_10_right_flip_up)
-    del c_v_1_1_10_right_flip_up, c_w_1_1_10_right_flip_up, t1976
-    t1979 = T33 * to_c_1_1_10_right_flip_up * _runtime.sign(to_s_1_1_10_right_flip_up)
-    del to_c_1_1_10_right_flip_up
-    across_1_1_10_right_flip_up = _runtime.select(t84, 0.0, t1979)
-    del t1979, t84
-    t1980 = np.abs(to_s_1_1_10_right_flip_up)
-    del to_s_1_1_10_right_flip_up
-    t1981 = most_1_1_10_right_flip_up * t1980 <= np.abs(across_1_1_10_right_flip_up)
-    t1982 = most_1_1_10_right_flip_up * _runtime.sign(across_1_1_10_right_flip_up)
-    t1983 = _runtime.select(t1981, t1982, across_1_1_10_right_flip_up / t1980)
-    del t1980, t1981, t1982
-    wanted_1_1_10_right_flip_up = _runtime.select(across_1_1_10_right_flip_up == 0.0, 0.0, t1983)
-    del across_1_1_10_right_flip_up, t1983
-    t1984 = axisx_1_1_10_right_flip_up * wanted_1_1_10_right_flip_up
-    t1985 = most_1_1_10_right_flip_up - wanted_1_1_10_right_flip_up
-    t1986 = most_1_1_10_right_flip_up + wanted_1_1_10_right_flip_up
-    rest_1_1_10_right_flip_up = np.sqrt(np.maximum(0.0, t1985 * t1986)) * _runtime.sign(-t1952)
-    del t1985, t1986
-    t1987 = most_1_1_10_right_flip_up * most_1_1_10_right_flip_up
-    del most_1_1_10_right_flip_up
-    t1988 = 1.0 / t1987
-    del t1987
-    t1989 = (t1984 - t1952 * rest_1_1_10_right_flip_up) * t1988
-    del t1984
-    by_c_1_1_10_right_flip_up = _runtime.select(t1953, 1.0, t1989)
-    del t1989
-    t1990 = axisx_1_1_10_right_flip_up * rest_1_1_10_right_flip_up
-    del axisx_1_1_10_right_flip_up, rest_1_1_10_right_flip_up
-    t1991 = t1988 * (t1990 + t1952 * wanted_1_1_10_right_flip_up)
-    del t1952, t1988, t1990, wanted_1_1_10_right_flip_up
-    t1992 = _runtime.select(t1953, 0.0, t1991)
-    del t1953, t1991
-    t1993 = t1992 * t1992 / (1.0 + np.abs(by_c_1_1_10_right_flip_up))
-    versine_1_1_10_right_flip_up = _runtime.select(0.0 < by_c_1_1_10_right_flip_up, t1993, 1.0 - by_c_1_1_10_right_flip_up)
-    del t1993
-    cost_1_1_10_right_flip_up = d4 * versine_1_1_10_right_flip_up + root1 * np.abs(t1992)
-    del versine_1_1_10_right_flip_up
-    t1994 = cost_1_1_10_right_flip_up <= whole_1_1
-    del cost_1_1_10_right_flip_up
-    cosine_1_1_10_right_flip_up = _runtime.select(t1994, by_c_1_1_10_right_flip_up, 1.0)
-    del by_c_1_1_10_right_flip_up
-    t1995 = c_1_1_10_right_flip_up * cosine_1_1_10_right_flip_up
-    sine_1_1_10_right_flip_up = _runtime.select(t1994, -t1992, 0.0)
-    del t1992, t1994
-    t1996 = s_1_1_10_right_flip_up * sine_1_1_10_right_flip_up
-    c_1_1_11_right_flip_up = t1995 - t1996
-    del t1995, t1996
-    t1997 = c_1_1_10_right_flip_up * sine_1_1_10_right_flip_up
-    del c_1_1_10_right_flip_up, sine_1_1_10_right_flip_up
-    t1998 = s_1_1_10_right_flip_up * cosine_1_1_10_right_flip_up
-    del cosine_1_1_10_right_flip_up, s_1_1_10_right_flip_up
-    s_1_1_11_right_flip_up = t1997 + t1998
-    del t1997, t1998
-    axisx_1_1_11_right_flip_up = T13 * c_1_1_11_right_flip_up + T23 * s_1_1_11_right_flip_up
-    t1999 = axisx_1_1_11_right_flip_up * axisx_1_1_11_right_flip_up
-    h_1_1_11_right_flip_up = np.sqrt(t5 + t1999)
-    del t1999
-    t2000 = h_1_1_11_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_11_right_flip_up = w_x * c_1_1_11_right_flip_up + w_y * s_1_1_11_right_flip_up
-    t2001 = h_1_1_11_right_flip_up == 0.0
-    t2002 = 1.0 / h_1_1_11_right_flip_up
-    t2003 = _runtime.select(t2001, 0.0, T33 * t2002)
-    x_1_1_11_right_flip_up = _runtime.select(t2000, qx_1_1_11_right_flip_up, qx_1_1_11_right_flip_up + d5 * t2003)
-    dqx_1_1_11_right_flip_up = w_y * c_1_1_11_right_flip_up - w_x * s_1_1_11_right_flip_up
-    t2004 = T13 * s_1_1_11_right_flip_up - T23 * c_1_1_11_right_flip_up
-    t2005 = h_1_1_11_right_flip_up * h_1_1_11_right_flip_up
-    del h_1_1_11_right_flip_up
-    spin_1_1_11_right_flip_up = _runtime.select(t2000, 0.0, T33 * t2004 / t2005)
-    del t2004, t2005
-    rate_1_1_11_right_flip_up = d5 * spin_1_1_11_right_flip_up
-    t2006 = _runtime.select(t2001, 1.0, -(axisx_1_1_11_right_flip_up * t2002))
-    del axisx_1_1_11_right_flip_up, t2001, t2002
-    t2007 = dqx_1_1_11_right_flip_up - rate_1_1_11_right_flip_up * t2006
-    dx_1_1_11_right_flip_up = _runtime.select(t2000, dqx_1_1_11_right_flip_up, t2007)
-    del t2007
-    t2008 = x_1_1_11_right_flip_up * dx_1_1_11_right_flip_up
-    del dx_1_1_11_right_flip_up
-    t2009 = _runtime.select(t2000, t23, t23 - d5 * t2006)
-    dy_1_1_11_right_flip_up = _runtime.select(t2000, 0.0, rate_1_1_11_right_flip_up * t2003)
-    slope_1_1_11_right_flip_up = t2008 - t2009 * dy_1_1_11_right_flip_up
-    del dy_1_1_11_right_flip_up, t2008
-    t2010 = slope_1_1_11_right_flip_up * slope_1_1_11_right_flip_up
-    straight_1_1_11_right_flip_up = dqx_1_1_11_right_flip_up * dqx_1_1_11_right_flip_up
-    t2011 = qx_1_1_11_right_flip_up * t2003 - t23 * t2006
-    del qx_1_1_11_right_flip_up, t2003
-    t2012 = 2.0 * dqx_1_1_11_right_flip_up * t2006 + spin_1_1_11_right_flip_up * t2011
-    del dqx_1_1_11_right_flip_up, spin_1_1_11_right_flip_up, t2006, t2011
-    t2013 = straight_1_1_11_right_flip_up - rate_1_1_11_right_flip_up * t2012
-    del rate_1_1_11_right_flip_up, t2012
-    bends_1_1_11_right_flip_up = _runtime.select(t2000, straight_1_1_11_right_flip_up, t2013)
-    del straight_1_1_11_right_flip_up, t2013
-    t2014 = x_1_1_11_right_flip_up * x_1_1_11_right_flip_up
-    del x_1_1_11_right_flip_up
-    square_1_1_11_right_flip_up = t2014 + t2009 * t2009
-    del t2009, t2014
-    t2015 = _runtime.select(t2000, t29, fold_1_1) - whole_1_1
-    t2016 = np.maximum(0.0, t2015)
-    del t2015
-    t2017 = whole_1_1 + _runtime.select(t2000, t3, full_1_1)
-    del t2000
-    t2018 = np.minimum(t2017 * t2017, square_1_1_11_right_flip_up)
-    del t2017
-    miss_1_1_11_right_flip_up = square_1_1_11_right_flip_up - np.maximum(t2016 * t2016, t2018)
-    del square_1_1_11_right_flip_up, t2016, t2018
-    t2019 = bends_1_1_11_right_flip_up * miss_1_1_11_right_flip_up
-    inner_1_1_11_right_flip_up = t2010 - t2019
-    del t2010, t2019
-    t2020 = inner_1_1_11_right_flip_up < 0.0
-    t2021 = np.sqrt(np.maximum(0.0, inner_1_1_11_right_flip_up))
-    del inner_1_1_11_right_flip_up
-    t2022 = _runtime.sign(slope_1_1_11_right_flip_up) * t2021
-    del t2021
-    below_1_1_11_right_flip_up = _runtime.select(t2020, 2.0 * bends_1_1_11_right_flip_up, 2.0 * (slope_1_1_11_right_flip_up + t2022))
-    del bends_1_1_11_right_flip_up, t2022
-    above_1_1_11_right_flip_up = _runtime.select(t2020, slope_1_1_11_right_flip_up, miss_1_1_11_right_flip_up)
-    del miss_1_1_11_right_flip_up, slope_1_1_11_right_flip_up, t2020
-    t2023 = np.abs(below_1_1_11_right_flip_up) <= np.abs(above_1_1_11_right_flip_up)
-    t2024 = above_1_1_11_right_flip_up / below_1_1_11_right_flip_up
-    del above_1_1_11_right_flip_up, below_1_1_11_right_flip_up
-    t2025 = _runtime.select(t2023, 0.0, t2024)
-    del t2023, t2024
-    t2026 = t2025 * t2025
-    t2027 = 1.0 / (1.0 + t2026)
-    by_c_1_1_11_right_flip_up = (1.0 - t2026) * t2027
-    del t2026
-    t2028 = t2027 * (2.0 * t2025)
-    del t2025, t2027
-    t2029 = t2028 * t2028 / (1.0 + np.abs(by_c_1_1_11_right_flip_up))
-    versine_1_1_11_right_flip_up = _runtime.select(0.0 < by_c_1_1_11_right_flip_up, t2029, 1.0 - by_c_1_1_11_right_flip_up)
-    del t2029
-    cost_1_1_11_right_flip_up = d4 * versine_1_1_11_right_flip_up + root1 * np.abs(t2028)
-    del versine_1_1_11_right_flip_up
-    t2030 = cost_1_1_11_right_flip_up <= whole_1_1
-    del cost_1_1_11_right_flip_up
-    cosine_1_1_11_right_flip_up = _runtime.select(t2030, by_c_1_1_11_right_flip_up, 1.0)
-    del by_c_1_1_11_right_flip_up
-    t2031 = c_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
-    sine_1_1_11_right_flip_up = _runtime.select(t2030, -t2028, 0.0)
-    del t2028, t2030
-    t2032 = s_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
-    c_1_1_12_right_flip_up = t2031 - t2032
-    del t2031, t2032
-    t2033 = c_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
-    del c_1_1_11_right_flip_up, sine_1_1_11_right_flip_up
-    t2034 = s_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
-    del cosine_1_1_11_right_flip_up, s_1_1_11_right_flip_up
-    s_1_1_12_right_flip_up = t2033 + t2034
-    del t2033, t2034
-    axisx_1_1_12_right_flip_up = T13 * c_1_1_12_right_flip_up + T23 * s_1_1_12_right_flip_up
-    t2035 = axisx_1_1_12_right_flip_up * axisx_1_1_12_right_flip_up
-    h_1_1_12_right_flip_up = np.sqrt(t5 + t2035)
-    del t2035
-    t2036 = h_1_1_12_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_12_right_flip_up = w_x * c_1_1_12_right_flip_up + w_y * s_1_1_12_right_flip_up
-    t2037 = h_1_1_12_right_flip_up == 0.0
-    t2038 = 1.0 / h_1_1_12_right_flip_up
-    t2039 = _runtime.select(t2037, 0.0, T33 * t2038)
-    x_1_1_12_right_flip_up = _runtime.select(t2036, qx_1_1_12_right_flip_up, qx_1_1_12_right_flip_up + d5 * t2039)
-    dqx_1_1_12_right_flip_up = w_y * c_1_1_12_right_flip_up - w_x * s_1_1_12_right_flip_up
-    t2040 = T13 * s_1_1_12_right_flip_up - T23 * c_1_1_12_right_flip_up
-    t2041 = h_1_1_12_right_flip_up * h_1_1_12_right_flip_up
-    del h_1_1_12_right_flip_up
-    spin_1_1_12_right_flip_up = _runtime.select(t2036, 0.0, T33 * t2040 / t2041)
-    del t2040, t2041
-    rate_1_1_12_right_flip_up = d5 * spin_1_1_12_right_flip_up
-    t2042 = _runtime.select(t2037, 1.0, -(axisx_1_1_12_right_flip_up * t2038))
-    del axisx_1_1_12_right_flip_up, t2037, t2038
-    t2043 = dqx_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t2042
-    dx_1_1_12_right_flip_up = _runtime.select(t2036, dqx_1_1_12_right_flip_up, t2043)
-    del t2043
-    t2044 = x_1_1_12_right_flip_up * dx_1_1_12_right_flip_up
-    del dx_1_1_12_right_flip_up
-    t2045 = _runtime.select(t2036, t23, t23 - d5 * t2042)
-    dy_1_1_12_right_flip_up = _runtime.select(t2036, 0.0, rate_1_1_12_right_flip_up * t2039)
-    slope_1_1_12_right_flip_up = t2044 - t2045 * dy_1_1_12_right_flip_up
-    del dy_1_1_12_right_flip_up, t2044
-    t2046 = slope_1_1_12_right_flip_up * slope_1_1_12_right_flip_up
-    straight_1_1_12_right_flip_up = dqx_1_1_12_right_flip_up * dqx_1_1_12_right_flip_up
-    t2047 = qx_1_1_12_right_flip_up * t2039 - t23 * t2042
-    del qx_1_1_12_right_flip_up, t2039
-    t2048 = 2.0 * dqx_1_1_12_right_flip_up * t2042 + spin_1_1_12_right_flip_up * t2047
-    del dqx_1_1_12_right_flip_up, spin_1_1_12_right_flip_up, t2042, t2047
-    t2049 = straight_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t2048
-    del rate_1_1_12_right_flip_up, t2048
-    bends_1_1_12_right_flip_up = _runtime.select(t2036, straight_1_1_12_right_flip_up, t2049)
-    del straight_1_1_12_right_flip_up, t2049
-    t2050 = x_1_1_12_right_flip_up * x_1_1_12_right_flip_up
-    del x_1_1_12_right_flip_up
-    square_1_1_12_right_flip_up = t2050 + t2045 * t2045
-    del t2045, t2050
-    t2051 = _runtime.select(t2036, t29, fold_1_1) - whole_1_1
-    t2052 = np.maximum(0.0, t2051)
-    del t2051
-    t2053 = whole_1_1 + _runtime.select(t2036, t3, full_1_1)
-    del t2036
-    t2054 = np.minimum(t2053 * t2053, square_1_1_12_right_flip_up)
-    del t2053
-    miss_1_1_12_right_flip_up = square_1_1_12_right_flip_up - np.maximum(t2052 * t2052, t2054)
-    del square_1_1_12_right_flip_up, t2052, t2054
-    t2055 = bends_1_1_12_right_flip_up * miss_1_1_12_right_flip_up
-    inner_1_1_12_right_flip_up = t2046 - t2055
-    del t2046, t2055
-    t2056 = inner_1_1_12_right_flip_up < 0.0
-    t2057 = np.sqrt(np.maximum(0.0, inner_1_1_12_right_flip_up))
-    del inner_1_1_12_right_flip_up
-    t2058 = _runtime.sign(slope_1_1_12_right_flip_up) * t2057
-    del t2057
-    below_1_1_12_right_flip_up = _runtime.select(t2056, 2.0 * bends_1_1_12_right_flip_up, 2.0 * (slope_1_1_12_right_flip_up + t2058))
-    del bends_1_1_12_right_flip_up, t2058
-    above_1_1_12_right_flip_up = _runtime.select(t2056, slope_1_1_12_right_flip_up, miss_1_1_12_right_flip_up)
-    del miss_1_1_12_right_flip_up, slope_1_1_12_right_flip_up, t2056
-    t2059 = np.abs(below_1_1_12_right_flip_up) <= np.abs(above_1_1_12_right_flip_up)
-    t2060 = above_1_1_12_right_flip_up / below_1_1_12_right_flip_up
-    del above_1_1_12_right_flip_up, below_1_1_12_right_flip_up
-    t2061 = _runtime.select(t2059, 0.0, t2060)
-    del t2059, t2060
-    t2062 = t2061 * t2061
-    t2063 = 1.0 / (1.0 + t2062)
-    by_c_1_1_12_right_flip_up = (1.0 - t2062) * t2063
-    del t2062
-    t2064 = t2063 * (2.0 * t2061)
-    del t2061, t2063
-    t2065 = t2064 * t2064 / (1.0 + np.abs(by_c_1_1_12_right_flip_up))
-    versine_1_1_12_right_flip_up = _runtime.select(0.0 < by_c_1_1_12_right_flip_up, t2065, 1.0 - by_c_1_1_12_right_flip_up)
-    del t2065
-    cost_1_1_12_right_flip_up = d4 * versine_1_1_12_right_flip_up + root1 * np.abs(t2064)
+    cost_1_1_12_right_flip_up = d4 * versine_1_1_12_right_flip_up + root1 * np.abs(t1746)
     del versine_1_1_12_right_flip_up
-    t2066 = cost_1_1_12_right_flip_up <= whole_1_1
+    t1748 = cost_1_1_12_right_flip_up <= whole_1_1
     del cost_1_1_12_right_flip_up
-    cosine_1_1_12_right_flip_up = _runtime.select(t2066, by_c_1_1_12_right_flip_up, 1.0)
+    cosine_1_1_12_right_flip_up = _runtime.select(t1748, by_c_1_1_12_right_flip_up, 1.0)
     del by_c_1_1_12_right_flip_up
-    t2067 = c_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
-    sine_1_1_12_right_flip_up = _runtime.select(t2066, -t2064, 0.0)
-    del t2064, t2066
-    t2068 = s_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
-    c_1_1_13_right_flip_up = t2067 - t2068
-    del t2067, t2068
-    t2069 = c_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
+    t1749 = c_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
+    sine_1_1_12_right_flip_up = _runtime.select(t1748, -t1746, 0.0)
+    del t1746, t1748
+    t1750 = s_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
+    c_1_1_13_right_flip_up = t1749 - t1750
+    del t1749, t1750
+    t1751 = c_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
     del c_1_1_12_right_flip_up, sine_1_1_12_right_flip_up
-    t2070 = s_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
+    t1752 = s_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
     del cosine_1_1_12_right_flip_up, s_1_1_12_right_flip_up
-    s_1_1_13_right_flip_up = t2069 + t2070
-    del t2069, t2070
+    s_1_1_13_right_flip_up = t1751 + t1752
+    del t1751, t1752
     axisx_1_1_13_right_flip_up = T13 * c_1_1_13_right_flip_up + T23 * s_1_1_13_right_flip_up
-    t2071 = axisx_1_1_13_right_flip_up * axisx_1_1_13_right_flip_up
-    h_1_1_13_right_flip_up = np.sqrt(t5 + t2071)
-    del t2071
-    t2072 = h_1_1_13_right_flip_up <= 1.4210854715202004e-14
+    t1753 = axisx_1_1_13_right_flip_up * axisx_1_1_13_right_flip_up
+    h_1_1_13_right_flip_up = np.sqrt(t5 + t1753)
+    del t1753
+    t1754 = h_1_1_13_right_flip_up <= 1.4210854715202004e-14
     qx_1_1_13_right_flip_up = w_x * c_1_1_13_right_flip_up + w_y * s_1_1_13_right_flip_up
-    t2073 = h_1_1_13_right_flip_up == 0.0
-    t2074 = 1.0 / h_1_1_13_right_flip_up
-    t2075 = _runtime.select(t2073, 0.0, T33 * t2074)
-    x_1_1_13_right_flip_up = _runtime.select(t2072, qx_1_1_13_right_flip_up, qx_1_1_13_right_flip_up + d5 * t2075)
+    t1755 = h_1_1_13_right_flip_up == 0.0
+    t1756 = 1.0 / h_1_1_13_right_flip_up
+    t1757 = _runtime.select(t1755, 0.0, T33 * t1756)
+    x_1_1_13_right_flip_up = _runtime.select(t1754, qx_1_1_13_right_flip_up, qx_1_1_13_right_flip_up + d5 * t1757)
     dqx_1_1_13_right_flip_up = w_y * c_1_1_13_right_flip_up - w_x * s_1_1_13_right_flip_up
-    t2076 = T13 * s_1_1_13_right_flip_up - T23 * c_1_1_13_right_flip_up
-    t2077 = h_1_1_13_right_flip_up * h_1_1_13_right_flip_up
+    t1758 = T13 * s_1_1_13_right_flip_up - T23 * c_1_1_13_right_flip_up
+    t1759 = h_1_1_13_right_flip_up * h_1_1_13_right_flip_up
     del h_1_1_13_right_flip_up
-    spin_1_1_13_right_flip_up = _runtime.select(t2072, 0.0, T33 * t2076 / t2077)
-    del t2076, t2077
+    spin_1_1_13_right_flip_up = _runtime.select(t1754, 0.0, T33 * t1758 / t1759)
+    del t1758, t1759
     rate_1_1_13_right_flip_up = d5 * spin_1_1_13_right_flip_up
-    t2078 = _runtime.select(t2073, 1.0, -(axisx_1_1_13_right_flip_up * t2074))
-    del axisx_1_1_13_right_flip_up, t2073, t2074
-    t2079 = dqx_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t2078
-    dx_1_1_13_right_flip_up = _runtime.select(t2072, dqx_1_1_13_right_flip_up, t2079)
-    del t2079
-    t2080 = x_1_1_13_right_flip_up * dx_1_1_13_right_flip_up
+    t1760 = _runtime.select(t1755, 1.0, -(axisx_1_1_13_right_flip_up * t1756))
+    del axisx_1_1_13_right_flip_up, t1755, t1756
+    t1761 = dqx_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1760
+    dx_1_1_13_right_flip_up = _runtime.select(t1754, dqx_1_1_13_right_flip_up, t1761)
+    del t1761
+    t1762 = x_1_1_13_right_flip_up * dx_1_1_13_right_flip_up
     del dx_1_1_13_right_flip_up
-    t2081 = _runtime.select(t2072, t23, t23 - d5 * t2078)
-    dy_1_1_13_right_flip_up = _runtime.select(t2072, 0.0, rate_1_1_13_right_flip_up * t2075)
-    slope_1_1_13_right_flip_up = t2080 - t2081 * dy_1_1_13_right_flip_up
-    del dy_1_1_13_right_flip_up, t2080
-    t2082 = slope_1_1_13_right_flip_up * slope_1_1_13_right_flip_up
+    t1763 = _runtime.select(t1754, t23, t23 - d5 * t1760)
+    dy_1_1_13_right_flip_up = _runtime.select(t1754, 0.0, rate_1_1_13_right_flip_up * t1757)
+    slope_1_1_13_right_flip_up = t1762 - t1763 * dy_1_1_13_right_flip_up
+    del dy_1_1_13_right_flip_up, t1762
+    t1764 = slope_1_1_13_right_flip_up * slope_1_1_13_right_flip_up
     straight_1_1_13_right_flip_up = dqx_1_1_13_right_flip_up * dqx_1_1_13_right_flip_up
-    t2083 = qx_1_1_13_right_flip_up * t2075 - t23 * t2078
-    del qx_1_1_13_right_flip_up, t2075
-    t2084 = 2.0 * dqx_1_1_13_right_flip_up * t2078 + spin_1_1_13_right_flip_up * t2083
-    del dqx_1_1_13_right_flip_up, spin_1_1_13_right_flip_up, t2078, t2083
-    t2085 = straight_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t2084
-    del rate_1_1_13_right_flip_up, t2084
-    bends_1_1_13_right_flip_up = _runtime.select(t2072, straight_1_1_13_right_flip_up, t2085)
-    del straight_1_1_13_right_flip_up, t2085
-    t2086 = x_1_1_13_right_flip_up * x_1_1_13_right_flip_up
+    t1765 = qx_1_1_13_right_flip_up * t1757 - t23 * t1760
+    del qx_1_1_13_right_flip_up, t1757
+    t1766 = 2.0 * dqx_1_1_13_right_flip_up * t1760 + spin_1_1_13_right_flip_up * t1765
+    del dqx_1_1_13_right_flip_up, spin_1_1_13_right_flip_up, t1760, t1765
+    t1767 = straight_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1766
+    del rate_1_1_13_right_flip_up, t1766
+    bends_1_1_13_right_flip_up = _runtime.select(t1754, straight_1_1_13_right_flip_up, t1767)
+    del straight_1_1_13_right_flip_up, t1767
+    t1768 = x_1_1_13_right_flip_up * x_1_1_13_right_flip_up
     del x_1_1_13_right_flip_up
-    square_1_1_13_right_flip_up = t2086 + t2081 * t2081
-    del t2081, t2086
-    t2087 = _runtime.select(t2072, t29, fold_1_1) - whole_1_1
-    t2088 = np.maximum(0.0, t2087)
-    del t2087
-    t2089 = whole_1_1 + _runtime.select(t2072, t3, full_1_1)
-    del t2072
-    t2090 = np.minimum(t2089 * t2089, square_1_1_13_right_flip_up)
-    del t2089
-    miss_1_1_13_right_flip_up = square_1_1_13_right_flip_up - np.maximum(t2088 * t2088, t2090)
-    del square_1_1_13_right_flip_up, t2088, t2090
-    t2091 = bends_1_1_13_right_flip_up * miss_1_1_13_right_flip_up
-    inner_1_1_13_right_flip_up = t2082 - t2091
-    del t2082, t2091
-    t2092 = inner_1_1_13_right_flip_up < 0.0
-    t2093 = np.sqrt(np.maximum(0.0, inner_1_1_13_right_flip_up))
+    square_1_1_13_right_flip_up = t1768 + t1763 * t1763
+    del t1763, t1768
+    t1769 = _runtime.select(t1754, t98, fold_1_1) - whole_1_1
+    t1770 = np.maximum(0.0, t1769)
+    del t1769
+    t1771 = whole_1_1 + _runtime.select(t1754, t3, full_1_1)
+    del t1754
+    t1772 = np.minimum(t1771 * t1771, square_1_1_13_right_flip_up)
+    del t1771
+    miss_1_1_13_right_flip_up = square_1_1_13_right_flip_up - np.maximum(t1770 * t1770, t1772)
+    del square_1_1_13_right_flip_up, t1770, t1772
+    t1773 = bends_1_1_13_right_flip_up * miss_1_1_13_right_flip_up
+    inner_1_1_13_right_flip_up = t1764 - t1773
+    del t1764, t1773
+    t1774 = inner_1_1_13_right_flip_up < 0.0
+    t1775 = np.sqrt(np.maximum(0.0, inner_1_1_13_right_flip_up))
     del inner_1_1_13_right_flip_up
-    t2094 = _runtime.sign(slope_1_1_13_right_flip_up) * t2093
-    del t2093
-    below_1_1_13_right_flip_up = _runtime.select(t2092, 2.0 * bends_1_1_13_right_flip_up, 2.0 * (slope_1_1_13_right_flip_up + t2094))
-    del bends_1_1_13_right_flip_up, t2094
-    above_1_1_13_right_flip_up = _runtime.select(t2092, slope_1_1_13_right_flip_up, miss_1_1_13_right_flip_up)
-    del miss_1_1_13_right_flip_up, slope_1_1_13_right_flip_up, t2092
-    t2095 = np.abs(below_1_1_13_right_flip_up) <= np.abs(above_1_1_13_right_flip_up)
-    t2096 = above_1_1_13_right_flip_up / below_1_1_13_right_flip_up
+    t1776 = _runtime.sign(slope_1_1_13_right_flip_up) * t1775
+    del t1775
+    below_1_1_13_right_flip_up = _runtime.select(t1774, 2.0 * bends_1_1_13_right_flip_up, 2.0 * (slope_1_1_13_right_flip_up + t1776))
+    del bends_1_1_13_right_flip_up, t1776
+    above_1_1_13_right_flip_up = _runtime.select(t1774, slope_1_1_13_right_flip_up, miss_1_1_13_right_flip_up)
+    del miss_1_1_13_right_flip_up, slope_1_1_13_right_flip_up, t1774
+    t1777 = np.abs(below_1_1_13_right_flip_up) <= np.abs(above_1_1_13_right_flip_up)
+    t1778 = above_1_1_13_right_flip_up / below_1_1_13_right_flip_up
     del above_1_1_13_right_flip_up, below_1_1_13_right_flip_up
-    t2097 = _runtime.select(t2095, 0.0, t2096)
-    del t2095, t2096
-    t2098 = t2097 * t2097
-    t2099 = 1.0 / (1.0 + t2098)
-    by_c_1_1_13_right_flip_up = (1.0 - t2098) * t2099
-    del t2098
-    t2100 = t2099 * (2.0 * t2097)
-    del t2097, t2099
-    t2101 = t2100 * t2100 / (1.0 + np.abs(by_c_1_1_13_right_flip_up))
-    versine_1_1_13_right_flip_up = _runtime.select(0.0 < by_c_1_1_13_right_flip_up, t2101, 1.0 - by_c_1_1_13_right_flip_up)
-    del t2101
-    cost_1_1_13_right_flip_up = d4 * versine_1_1_13_right_flip_up + root1 * np.abs(t2100)
+    t1779 = _runtime.select(t1777, 0.0, t1778)
+    del t1777, t1778
+    t1780 = t1779 * t1779
+    t1781 = 1.0 / (1.0 + t1780)
+    by_c_1_1_13_right_flip_up = (1.0 - t1780) * t1781
+    del t1780
+    t1782 = t1781 * (2.0 * t1779)
+    del t1779, t1781
+    t1783 = t1782 * t1782 / (1.0 + np.abs(by_c_1_1_13_right_flip_up))
+    versine_1_1_13_right_flip_up = _runtime.select(0.0 < by_c_1_1_13_right_flip_up, t1783, 1.0 - by_c_1_1_13_right_flip_up)
+    del t1783
+    cost_1_1_13_right_flip_up = d4 * versine_1_1_13_right_flip_up + root1 * np.abs(t1782)
     del versine_1_1_13_right_flip_up
-    t2102 = cost_1_1_13_right_flip_up <= whole_1_1
+    t1784 = cost_1_1_13_right_flip_up <= whole_1_1
     del cost_1_1_13_right_flip_up
-    cosine_1_1_13_right_flip_up = _runtime.select(t2102, by_c_1_1_13_right_flip_up, 1.0)
+    cosine_1_1_13_right_flip_up = _runtime.select(t1784, by_c_1_1_13_right_flip_up, 1.0)
     del by_c_1_1_13_right_flip_up
-    t2103 = c_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
-    sine_1_1_13_right_flip_up = _runtime.select(t2102, -t2100, 0.0)
-    del t2100, t2102
-    t2104 = s_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
-    c_1_1_14_right_flip_up = t2103 - t2104
-    del t2103, t2104
-    t2105 = c_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
+    t1785 = c_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
+    sine_1_1_13_right_flip_up = _runtime.select(t1784, -t1782, 0.0)
+    del t1782, t1784
+    t1786 = s_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
+    c_1_1_14_right_flip_up = t1785 - t1786
+    del t1785, t1786
+    t1787 = c_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
     del c_1_1_13_right_flip_up, sine_1_1_13_right_flip_up
-    t2106 = s_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
+    t1788 = s_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
     del cosine_1_1_13_right_flip_up, s_1_1_13_right_flip_up
-    s_1_1_14_right_flip_up = t2105 + t2106
-    del t2105, t2106
+    s_1_1_14_right_flip_up = t1787 + t1788
+    del t1787, t1788
     axisx_1_1_14_right_flip_up = T13 * c_1_1_14_right_flip_up + T23 * s_1_1_14_right_flip_up
-    t2107 = axisx_1_1_14_right_flip_up * axisx_1_1_14_right_flip_up
-    h_1_1_14_right_flip_up = np.sqrt(t5 + t2107)
-    del t2107
-    t2108 = h_1_1_14_right_flip_up <= 1.4210854715202004e-14
+    t1789 = axisx_1_1_14_right_flip_up * axisx_1_1_14_right_flip_up
+    h_1_1_14_right_flip_up = np.sqrt(t5 + t1789)
+    del t1789
+    t1790 = h_1_1_14_right_flip_up <= 1.4210854715202004e-14
     qx_1_1_14_right_flip_up = w_x * c_1_1_14_right_flip_up + w_y * s_1_1_14_right_flip_up
-    t2109 = h_1_1_14_right_flip_up == 0.0
-    t2110 = 1.0 / h_1_1_14_right_flip_up
-    t2111 = _runtime.select(t2109, 0.0, T33 * t2110)
-    x_1_1_14_right_flip_up = _runtime.select(t2108, qx_1_1_14_right_flip_up, qx_1_1_14_right_flip_up + d5 * t2111)
+    t1791 = h_1_1_14_right_flip_up == 0.0
+    t1792 = 1.0 / h_1_1_14_right_flip_up
+    t1793 = _runtime.select(t1791, 0.0, T33 * t1792)
+    x_1_1_14_right_flip_up = _runtime.select(t1790, qx_1_1_14_right_flip_up, qx_1_1_14_right_flip_up + d5 * t1793)
     dqx_1_1_14_right_flip_up = w_y * c_1_1_14_right_flip_up - w_x * s_1_1_14_right_flip_up
-    t2112 = T13 * s_1_1_14_right_flip_up - T23 * c_1_1_14_right_flip_up
-    t2113 = h_1_1_14_right_flip_up * h_1_1_14_right_flip_up
+    t1794 = T13 * s_1_1_14_right_flip_up - T23 * c_1_1_14_right_flip_up
+    t1795 = h_1_1_14_right_flip_up * h_1_1_14_right_flip_up
     del h_1_1_14_right_flip_up
-    spin_1_1_14_right_flip_up = _runtime.select(t2108, 0.0, T33 * t2112 / t2113)
-    del t2112, t2113
+    spin_1_1_14_right_flip_up = _runtime.select(t1790, 0.0, T33 * t1794 / t1795)
+    del t1794, t1795
     rate_1_1_14_right_flip_up = d5 * spin_1_1_14_right_flip_up
-    t2114 = _runtime.select(t2109, 1.0, -(axisx_1_1_14_right_flip_up * t2110))
-    del axisx_1_1_14_right_flip_up, t2109, t2110
-    t2115 = dqx_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t2114
-    dx_1_1_14_right_flip_up = _runtime.select(t2108, dqx_1_1_14_right_flip_up, t2115)
-    del t2115
-    t2116 = x_1_1_14_right_flip_up * dx_1_1_14_right_flip_up
+    t1796 = _runtime.select(t1791, 1.0, -(axisx_1_1_14_right_flip_up * t1792))
+    del axisx_1_1_14_right_flip_up, t1791, t1792
+    t1797 = dqx_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1796
+    dx_1_1_14_right_flip_up = _runtime.select(t1790, dqx_1_1_14_right_flip_up, t1797)
+    del t1797
+    t1798 = x_1_1_14_right_flip_up * dx_1_1_14_right_flip_up
     del dx_1_1_14_right_flip_up
-    t2117 = _runtime.select(t2108, t23, t23 - d5 * t2114)
-    dy_1_1_14_right_flip_up = _runtime.select(t2108, 0.0, rate_1_1_14_right_flip_up * t2111)
-    slope_1_1_14_right_flip_up = t2116 - t2117 * dy_1_1_14_right_flip_up
-    del dy_1_1_14_right_flip_up, t2116
-    t2118 = slope_1_1_14_right_flip_up * slope_1_1_14_right_flip_up
+    t1799 = _runtime.select(t1790, t23, t23 - d5 * t1796)
+    dy_1_1_14_right_flip_up = _runtime.select(t1790, 0.0, rate_1_1_14_right_flip_up * t1793)
+    slope_1_1_14_right_flip_up = t1798 - t1799 * dy_1_1_14_right_flip_up
+    del dy_1_1_14_right_flip_up, t1798
+    t1800 = slope_1_1_14_right_flip_up * slope_1_1_14_right_flip_up
     straight_1_1_14_right_flip_up = dqx_1_1_14_right_flip_up * dqx_1_1_14_right_flip_up
-    t2119 = qx_1_1_14_right_flip_up * t2111 - t23 * t2114
-    del qx_1_1_14_right_flip_up, t2111
-    t2120 = 2.0 * dqx_1_1_14_right_flip_up * t2114 + spin_1_1_14_right_flip_up * t2119
-    del dqx_1_1_14_right_flip_up, spin_1_1_14_right_flip_up, t2114, t2119
-    t2121 = straight_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t2120
-    del rate_1_1_14_right_flip_up, t2120
-    bends_1_1_14_right_flip_up = _runtime.select(t2108, straight_1_1_14_right_flip_up, t2121)
-    del straight_1_1_14_right_flip_up, t2121
-    t2122 = x_1_1_14_right_flip_up * x_1_1_14_right_flip_up
+    t1801 = qx_1_1_14_right_flip_up * t1793 - t23 * t1796
+    del qx_1_1_14_right_flip_up, t1793
+    t1802 = 2.0 * dqx_1_1_14_right_flip_up * t1796 + spin_1_1_14_right_flip_up * t1801
+    del dqx_1_1_14_right_flip_up, spin_1_1_14_right_flip_up, t1796, t1801
+    t1803 = straight_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1802
+    del rate_1_1_14_right_flip_up, t1802
+    bends_1_1_14_right_flip_up = _runtime.select(t1790, straight_1_1_14_right_flip_up, t1803)
+    del straight_1_1_14_right_flip_up, t1803
+    t1804 = x_1_1_14_right_flip_up * x_1_1_14_right_flip_up
     del x_1_1_14_right_flip_up
-    square_1_1_14_right_flip_up = t2122 + t2117 * t2117
-    del t2117, t2122
-    t2123 = _runtime.select(t2108, t29, fold_1_1) - whole_1_1
-    t2124 = np.maximum(0.0, t2123)
-    del t2123
-    t2125 = whole_1_1 + _runtime.select(t2108, t3, full_1_1)
-    del t2108
-    t2126 = np.minimum(t2125 * t2125, square_1_1_14_right_flip_up)
-    del t2125
-    miss_1_1_14_right_flip_up = square_1_1_14_right_flip_up - np.maximum(t2124 * t2124, t2126)
-    del square_1_1_14_right_flip_up, t2124, t2126
-    t2127 = bends_1_1_14_right_flip_up * miss_1_1_14_right_flip_up
-    inner_1_1_14_right_flip_up = t2118 - t2127
-    del t2118, t2127
-    t2128 = inner_1_1_14_right_flip_up < 0.0
-    t2129 = np.sqrt(np.maximum(0.0, inner_1_1_14_right_flip_up))
+    square_1_1_14_right_flip_up = t1804 + t1799 * t1799
+    del t1799, t1804
+    t1805 = _runtime.select(t1790, t98, fold_1_1) - whole_1_1
+    t1806 = np.maximum(0.0, t1805)
+    del t1805
+    t1807 = whole_1_1 + _runtime.select(t1790, t3, full_1_1)
+    del t1790
+    t1808 = np.minimum(t1807 * t1807, square_1_1_14_right_flip_up)
+    del t1807
+    miss_1_1_14_right_flip_up = square_1_1_14_right_flip_up - np.maximum(t1806 * t1806, t1808)
+    del square_1_1_14_right_flip_up, t1806, t1808
+    t1809 = bends_1_1_14_right_flip_up * miss_1_1_14_right_flip_up
+    inner_1_1_14_right_flip_up = t1800 - t1809
+    del t1800, t1809
+    t1810 = inner_1_1_14_right_flip_up < 0.0
+    t1811 = np.sqrt(np.maximum(0.0, inner_1_1_14_right_flip_up))
     del inner_1_1_14_right_flip_up
-    t2130 = _runtime.sign(slope_1_1_14_right_flip_up) * t2129
-    del t2129
-    below_1_1_14_right_flip_up = _runtime.select(t2128, 2.0 * bends_1_1_14_right_flip_up, 2.0 * (slope_1_1_14_right_flip_up + t2130))
-    del bends_1_1_14_right_flip_up, t2130
-    above_1_1_14_right_flip_up = _runtime.select(t2128, slope_1_1_14_right_flip_up, miss_1_1_14_right_flip_up)
-    del miss_1_1_14_right_flip_up, slope_1_1_14_right_flip_up, t2128
-    t2131 = np.abs(below_1_1_14_right_flip_up) <= np.abs(above_1_1_14_right_flip_up)
-    t2132 = above_1_1_14_right_flip_up / below_1_1_14_right_flip_up
+    t1812 = _runtime.sign(slope_1_1_14_right_flip_up) * t1811
+    del t1811
+    below_1_1_14_right_flip_up = _runtime.select(t1810, 2.0 * bends_1_1_14_right_flip_up, 2.0 * (slope_1_1_14_right_flip_up + t1812))
+    del bends_1_1_14_right_flip_up, t1812
+    above_1_1_14_right_flip_up = _runtime.select(t1810, slope_1_1_14_right_flip_up, miss_1_1_14_right_flip_up)
+    del miss_1_1_14_right_flip_up, slope_1_1_14_right_flip_up, t1810
+    t1813 = np.abs(below_1_1_14_right_flip_up) <= np.abs(above_1_1_14_right_flip_up)
+    t1814 = above_1_1_14_right_flip_up / below_1_1_14_right_flip_up
     del above_1_1_14_right_flip_up, below_1_1_14_right_flip_up
-    t2133 = _runtime.select(t2131, 0.0, t2132)
-    del t2131, t2132
-    t2134 = t2133 * t2133
-    t2135 = 1.0 / (1.0 + t2134)
-    by_c_1_1_14_right_flip_up = (1.0 - t2134) * t2135
-    del t2134
-    t2136 = t2135 * (2.0 * t2133)
-    del t2133, t2135
-    t2137 = t2136 * t2136 / (1.0 + np.abs(by_c_1_1_14_right_flip_up))
-    versine_1_1_14_right_flip_up = _runtime.select(0.0 < by_c_1_1_14_right_flip_up, t2137, 1.0 - by_c_1_1_14_right_flip_up)
-    del t2137
-    cost_1_1_14_right_flip_up = d4 * versine_1_1_14_right_flip_up + root1 * np.abs(t2136)
+    t1815 = _runtime.select(t1813, 0.0, t1814)
+    del t1813, t1814
+    t1816 = t1815 * t1815
+    t1817 = 1.0 / (1.0 + t1816)
+    by_c_1_1_14_right_flip_up = (1.0 - t1816) * t1817
+    del t1816
+    t1818 = t1817 * (2.0 * t1815)
+    del t1815, t1817
+    t1819 = t1818 * t1818 / (1.0 + np.abs(by_c_1_1_14_right_flip_up))
+    versine_1_1_14_right_flip_up = _runtime.select(0.0 < by_c_1_1_14_right_flip_up, t1819, 1.0 - by_c_1_1_14_right_flip_up)
+    del t1819
+    cost_1_1_14_right_flip_up = d4 * versine_1_1_14_right_flip_up + root1 * np.abs(t1818)
     del versine_1_1_14_right_flip_up
-    t2138 = cost_1_1_14_right_flip_up <= whole_1_1
+    t1820 = cost_1_1_14_right_flip_up <= whole_1_1
     del cost_1_1_14_right_flip_up
-    cosine_1_1_14_right_flip_up = _runtime.select(t2138, by_c_1_1_14_right_flip_up, 1.0)
+    cosine_1_1_14_right_flip_up = _runtime.select(t1820, by_c_1_1_14_right_flip_up, 1.0)
     del by_c_1_1_14_right_flip_up
-    t2139 = c_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
-    sine_1_1_14_right_flip_up = _runtime.select(t2138, -t2136, 0.0)
-    del t2136, t2138
-    t2140 = s_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
-    c_1_1_15_right_flip_up = t2139 - t2140
-    del t2139, t2140
-    t2141 = c_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
+    t1821 = c_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
+    sine_1_1_14_right_flip_up = _runtime.select(t1820, -t1818, 0.0)
+    del t1818, t1820
+    t1822 = s_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
+    c_1_1_15_right_flip_up = t1821 - t1822
+    del t1821, t1822
+    t1823 = c_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
     del c_1_1_14_right_flip_up, sine_1_1_14_right_flip_up
-    t2142 = s_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
+    t1824 = s_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
     del cosine_1_1_14_right_flip_up, s_1_1_14_right_flip_up
-    s_1_1_15_right_flip_up = t2141 + t2142
-    del t2141, t2142
+    s_1_1_15_right_flip_up = t1823 + t1824
+    del t1823, t1824
     axisx_1_1_15_right_flip_up = T13 * c_1_1_15_right_flip_up + T23 * s_1_1_15_right_flip_up
-    t2143 = axisx_1_1_15_right_flip_up * axisx_1_1_15_right_flip_up
-    h_1_1_15_right_flip_up = np.sqrt(t5 + t2143)
-    del t2143
-    t2144 = h_1_1_15_right_flip_up <= 1.4210854715202004e-14
+    t1825 = axisx_1_1_15_right_flip_up * axisx_1_1_15_right_flip_up
+    h_1_1_15_right_flip_up = np.sqrt(t5 + t1825)
+    del t1825
+    t1826 = h_1_1_15_right_flip_up <= 1.4210854715202004e-14
     qx_1_1_15_right_flip_up = w_x * c_1_1_15_right_flip_up + w_y * s_1_1_15_right_flip_up
-    t2145 = h_1_1_15_right_flip_up == 0.0
-    t2146 = 1.0 / h_1_1_15_right_flip_up
-    t2147 = _runtime.select(t2145, 0.0, T33 * t2146)
-    x_1_1_15_right_flip_up = _runtime.select(t2144, qx_1_1_15_right_flip_up, qx_1_1_15_right_flip_up + d5 * t2147)
+    t1827 = h_1_1_15_right_flip_up == 0.0
+    t1828 = 1.0 / h_1_1_15_right_flip_up
+    t1829 = _runtime.select(t1827, 0.0, T33 * t1828)
+    x_1_1_15_right_flip_up = _runtime.select(t1826, qx_1_1_15_right_flip_up, qx_1_1_15_right_flip_up + d5 * t1829)
     dqx_1_1_15_right_flip_up = w_y * c_1_1_15_right_flip_up - w_x * s_1_1_15_right_flip_up
-    t2148 = T13 * s_1_1_15_right_flip_up - T23 * c_1_1_15_right_flip_up
-    t2149 = h_1_1_15_right_flip_up * h_1_1_15_right_flip_up
+    t1830 = T13 * s_1_1_15_right_flip_up - T23 * c_1_1_15_right_flip_up
+    t1831 = h_1_1_15_right_flip_up * h_1_1_15_right_flip_up
     del h_1_1_15_right_flip_up
-    spin_1_1_15_right_flip_up = _runtime.select(t2144, 0.0, T33 * t2148 / t2149)
-    del t2148, t2149
+    spin_1_1_15_right_flip_up = _runtime.select(t1826, 0.0, T33 * t1830 / t1831)
+    del t1830, t1831
     rate_1_1_15_right_flip_up = d5 * spin_1_1_15_right_flip_up
-    t2150 = _runtime.select(t2145, 1.0, -(axisx_1_1_15_right_flip_up * t2146))
-    del axisx_1_1_15_right_flip_up, t2145, t2146
-    t2151 = dqx_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t2150
-    dx_1_1_15_right_flip_up = _runtime.select(t2144, dqx_1_1_15_right_flip_up, t2151)
-    del t2151
-    t2152 = x_1_1_15_right_flip_up * dx_1_1_15_right_flip_up
+    t1832 = _runtime.select(t1827, 1.0, -(axisx_1_1_15_right_flip_up * t1828))
+    del axisx_1_1_15_right_flip_up, t1827, t1828
+    t1833 = dqx_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1832
+    dx_1_1_15_right_flip_up = _runtime.select(t1826, dqx_1_1_15_right_flip_up, t1833)
+    del t1833
+    t1834 = x_1_1_15_right_flip_up * dx_1_1_15_right_flip_up
     del dx_1_1_15_right_flip_up
-    t2153 = _runtime.select(t2144, t23, t23 - d5 * t2150)
-    dy_1_1_15_right_flip_up = _runtime.select(t2144, 0.0, rate_1_1_15_right_flip_up * t2147)
-    slope_1_1_15_right_flip_up = t2152 - t2153 * dy_1_1_15_right_flip_up
-    del dy_1_1_15_right_flip_up, t2152
-    t2154 = slope_1_1_15_right_flip_up * slope_1_1_15_right_flip_up
+    t1835 = _runtime.select(t1826, t23, t23 - d5 * t1832)
+    dy_1_1_15_right_flip_up = _runtime.select(t1826, 0.0, rate_1_1_15_right_flip_up * t1829)
+    slope_1_1_15_right_flip_up = t1834 - t1835 * dy_1_1_15_right_flip_up
+    del dy_1_1_15_right_flip_up, t1834
+    t1836 = slope_1_1_15_right_flip_up * slope_1_1_15_right_flip_up
     straight_1_1_15_right_flip_up = dqx_1_1_15_right_flip_up * dqx_1_1_15_right_flip_up
-    t2155 = qx_1_1_15_right_flip_up * t2147 - t23 * t2150
-    del qx_1_1_15_right_flip_up, t2147
-    t2156 = 2.0 * dqx_1_1_15_right_flip_up * t2150 + spin_1_1_15_right_flip_up * t2155
-    del dqx_1_1_15_right_flip_up, spin_1_1_15_right_flip_up, t2150, t2155
-    t2157 = straight_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t2156
-    del rate_1_1_15_right_flip_up, t2156
-    bends_1_1_15_right_flip_up = _runtime.select(t2144, straight_1_1_15_right_flip_up, t2157)
-    del straight_1_1_15_right_flip_up, t2157
-    t2158 = x_1_1_15_right_flip_up * x_1_1_15_right_flip_up
+    t1837 = qx_1_1_15_right_flip_up * t1829 - t23 * t1832
+    del qx_1_1_15_right_flip_up, t1829
+    t1838 = 2.0 * dqx_1_1_15_right_flip_up * t1832 + spin_1_1_15_right_flip_up * t1837
+    del dqx_1_1_15_right_flip_up, spin_1_1_15_right_flip_up, t1832, t1837
+    t1839 = straight_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1838
+    del rate_1_1_15_right_flip_up, t1838
+    bends_1_1_15_right_flip_up = _runtime.select(t1826, straight_1_1_15_right_flip_up, t1839)
+    del straight_1_1_15_right_flip_up, t1839
+    t1840 = x_1_1_15_right_flip_up * x_1_1_15_right_flip_up
     del x_1_1_15_right_flip_up
-    square_1_1_15_right_flip_up = t2158 + t2153 * t2153
-    del t2153, t2158
-    t2159 = _runtime.select(t2144, t29, fold_1_1) - whole_1_1
-    t2160 = np.maximum(0.0, t2159)
-    del t2159
-    t2161 = whole_1_1 + _runtime.select(t2144, t3, full_1_1)
-    del t2144
-    t2162 = np.minimum(t2161 * t2161, square_1_1_15_right_flip_up)
-    del t2161
-    miss_1_1_15_right_flip_up = square_1_1_15_right_flip_up - np.maximum(t2160 * t2160, t2162)
-    del square_1_1_15_right_flip_up, t2160, t2162
-    t2163 = bends_1_1_15_right_flip_up * miss_1_1_15_right_flip_up
-    inner_1_1_15_right_flip_up = t2154 - t2163
-    del t2154, t2163
-    t2164 = inner_1_1_15_right_flip_up < 0.0
-    t2165 = np.sqrt(np.maximum(0.0, inner_1_1_15_right_flip_up))
+    square_1_1_15_right_flip_up = t1840 + t1835 * t1835
+    del t1835, t1840
+    t1841 = _runtime.select(t1826, t98, fold_1_1) - whole_1_1
+    t1842 = np.maximum(0.0, t1841)
+    del t1841
+    t1843 = whole_1_1 + _runtime.select(t1826, t3, full_1_1)
+    del t1826
+    t1844 = np.minimum(t1843 * t1843, square_1_1_15_right_flip_up)
+    del t1843
+    miss_1_1_15_right_flip_up = square_1_1_15_right_flip_up - np.maximum(t1842 * t1842, t1844)
+    del square_1_1_15_right_flip_up, t1842, t1844
+    t1845 = bends_1_1_15_right_flip_up * miss_1_1_15_right_flip_up
+    inner_1_1_15_right_flip_up = t1836 - t1845
+    del t1836, t1845
+    t1846 = inner_1_1_15_right_flip_up < 0.0
+    t1847 = np.sqrt(np.maximum(0.0, inner_1_1_15_right_flip_up))
     del inner_1_1_15_right_flip_up
-    t2166 = _runtime.sign(slope_1_1_15_right_flip_up) * t2165
-    del t2165
-    below_1_1_15_right_flip_up = _runtime.select(t2164, 2.0 * bends_1_1_15_right_flip_up, 2.0 * (slope_1_1_15_right_flip_up + t2166))
-    del bends_1_1_15_right_flip_up, t2166
-    above_1_1_15_right_flip_up = _runtime.select(t2164, slope_1_1_15_right_flip_up, miss_1_1_15_right_flip_up)
-    del miss_1_1_15_right_flip_up, slope_1_1_15_right_flip_up, t2164
-    t2167 = np.abs(below_1_1_15_right_flip_up) <= np.abs(above_1_1_15_right_flip_up)
-    t2168 = above_1_1_15_right_flip_up / below_1_1_15_right_flip_up
+    t1848 = _runtime.sign(slope_1_1_15_right_flip_up) * t1847
+    del t1847
+    below_1_1_15_right_flip_up = _runtime.select(t1846, 2.0 * bends_1_1_15_right_flip_up, 2.0 * (slope_1_1_15_right_flip_up + t1848))
+    del bends_1_1_15_right_flip_up, t1848
+    above_1_1_15_right_flip_up = _runtime.select(t1846, slope_1_1_15_right_flip_up, miss_1_1_15_right_flip_up)
+    del miss_1_1_15_right_flip_up, slope_1_1_15_right_flip_up, t1846
+    t1849 = np.abs(below_1_1_15_right_flip_up) <= np.abs(above_1_1_15_right_flip_up)
+    t1850 = above_1_1_15_right_flip_up / below_1_1_15_right_flip_up
     del above_1_1_15_right_flip_up, below_1_1_15_right_flip_up
-    t2169 = _runtime.select(t2167, 0.0, t2168)
-    del t2167, t2168
-    t2170 = t2169 * t2169
-    t2171 = 1.0 / (1.0 + t2170)
-    by_c_1_1_15_right_flip_up = (1.0 - t2170) * t2171
-    del t2170
-    t2172 = t2171 * (2.0 * t2169)
-    del t2169, t2171
-    t2173 = t2172 * t2172 / (1.0 + np.abs(by_c_1_1_15_right_flip_up))
-    versine_1_1_15_right_flip_up = _runtime.select(0.0 < by_c_1_1_15_right_flip_up, t2173, 1.0 - by_c_1_1_15_right_flip_up)
-    del t2173
-    cost_1_1_15_right_flip_up = d4 * versine_1_1_15_right_flip_up + root1 * np.abs(t2172)
+    t1851 = _runtime.select(t1849, 0.0, t1850)
+    del t1849, t1850
+    t1852 = t1851 * t1851
+    t1853 = 1.0 / (1.0 + t1852)
+    by_c_1_1_15_right_flip_up = (1.0 - t1852) * t1853
+    del t1852
+    t1854 = t1853 * (2.0 * t1851)
+    del t1851, t1853
+    t1855 = t1854 * t1854 / (1.0 + np.abs(by_c_1_1_15_right_flip_up))
+    versine_1_1_15_right_flip_up = _runtime.select(0.0 < by_c_1_1_15_right_flip_up, t1855, 1.0 - by_c_1_1_15_right_flip_up)
+    del t1855
+    cost_1_1_15_right_flip_up = d4 * versine_1_1_15_right_flip_up + root1 * np.abs(t1854)
     del versine_1_1_15_right_flip_up
-    t2174 = cost_1_1_15_right_flip_up <= whole_1_1
-    del cost_1_1_15_right_flip_up, whole_1_1
-    cosine_1_1_15_right_flip_up = _runtime.select(t2174, by_c_1_1_15_right_flip_up, 1.0)
+    t1856 = cost_1_1_15_right_flip_up <= whole_1_1
+    del cost_1_1_15_right_flip_up
+    cosine_1_1_15_right_flip_up = _runtime.select(t1856, by_c_1_1_15_right_flip_up, 1.0)
     del by_c_1_1_15_right_flip_up
-    t2175 = c_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
-    sine_1_1_15_right_flip_up = _runtime.select(t2174, -t2172, 0.0)
-    del t2172, t2174
-    t2176 = s_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
-    c_1_1_16_right_flip_up = t2175 - t2176
-    del t2175, t2176
-    t2177 = c_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
+    t1857 = c_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
+    sine_1_1_15_right_flip_up = _runtime.select(t1856, -t1854, 0.0)
+    del t1854, t1856
+    t1858 = s_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
+    c_1_1_16_right_flip_up = t1857 - t1858
+    del t1857, t1858
+    t1859 = c_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
     del c_1_1_15_right_flip_up, sine_1_1_15_right_flip_up
-    t2178 = s_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
+    t1860 = s_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
     del cosine_1_1_15_right_flip_up, s_1_1_15_right_flip_up
-    s_1_1_16_right_flip_up = t2177 + t2178
-    del t2177, t2178
+    s_1_1_16_right_flip_up = t1859 + t1860
+    del t1859, t1860
     axisx_1_1_16_right_flip_up = T13 * c_1_1_16_right_flip_up + T23 * s_1_1_16_right_flip_up
-    t2179 = axisx_1_1_16_right_flip_up * axisx_1_1_16_right_flip_up
-    h_1_1_16_right_flip_up = np.sqrt(t5 + t2179)
-    del t2179
-    t2180 = h_1_1_16_right_flip_up <= 1.4210854715202004e-14
+    t1861 = axisx_1_1_16_right_flip_up * axisx_1_1_16_right_flip_up
+    h_1_1_16_right_flip_up = np.sqrt(t5 + t1861)
+    del t1861
+    t1862 = h_1_1_16_right_flip_up <= 1.4210854715202004e-14
     qx_1_1_16_right_flip_up = w_x * c_1_1_16_right_flip_up + w_y * s_1_1_16_right_flip_up
-    t2181 = h_1_1_16_right_flip_up == 0.0
-    t2182 = 1.0 / h_1_1_16_right_flip_up
+    t1863 = h_1_1_16_right_flip_up == 0.0
+    t1864 = 1.0 / h_1_1_16_right_flip_up
+    t1865 = _runtime.select(t1863, 0.0, T33 * t1864)
+    x_1_1_16_right_flip_up = _runtime.select(t1862, qx_1_1_16_right_flip_up, qx_1_1_16_right_flip_up + d5 * t1865)
+    dqx_1_1_16_right_flip_up = w_y * c_1_1_16_right_flip_up - w_x * s_1_1_16_right_flip_up
+    t1866 = T13 * s_1_1_16_right_flip_up - T23 * c_1_1_16_right_flip_up
+    t1867 = h_1_1_16_right_flip_up * h_1_1_16_right_flip_up
     del h_1_1_16_right_flip_up
-    t2183 = d5 * _runtime.select(t2181, 0.0, T33 * t2182)
-    x_1_1_16_right_flip_up = _runtime.select(t2180, qx_1_1_16_right_flip_up, qx_1_1_16_right_flip_up + t2183)
-    del qx_1_1_16_right_flip_up, t2183
-    t2184 = x_1_1_16_right_flip_up * x_1_1_16_right_flip_up
+    spin_1_1_16_right_flip_up = _runtime.select(t1862, 0.0, T33 * t1866 / t1867)
+    del t1866, t1867
+    rate_1_1_16_right_flip_up = d5 * spin_1_1_16_right_flip_up
+    t1868 = _runtime.select(t1863, 1.0, -(axisx_1_1_16_right_flip_up * t1864))
+    del axisx_1_1_16_right_flip_up, t1863, t1864
+    t1869 = dqx_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1868
+    dx_1_1_16_right_flip_up = _runtime.select(t1862, dqx_1_1_16_right_flip_up, t1869)
+    del t1869
+    t1870 = x_1_1_16_right_flip_up * dx_1_1_16_right_flip_up
+    del dx_1_1_16_right_flip_up
+    t1871 = _runtime.select(t1862, t23, t23 - d5 * t1868)
+    dy_1_1_16_right_flip_up = _runtime.select(t1862, 0.0, rate_1_1_16_right_flip_up * t1865)
+    slope_1_1_16_right_flip_up = t1870 - t1871 * dy_1_1_16_right_flip_up
+    del dy_1_1_16_right_flip_up, t1870
+    t1872 = slope_1_1_16_right_flip_up * slope_1_1_16_right_flip_up
+    straight_1_1_16_right_flip_up = dqx_1_1_16_right_flip_up * dqx_1_1_16_right_flip_up
+    t1873 = qx_1_1_16_right_flip_up * t1865 - t23 * t1868
+    del qx_1_1_16_right_flip_up, t1865
+    t1874 = 2.0 * dqx_1_1_16_right_flip_up * t1868 + spin_1_1_16_right_flip_up * t1873
+    del dqx_1_1_16_right_flip_up, spin_1_1_16_right_flip_up, t1868, t1873
+    t1875 = straight_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1874
+    del rate_1_1_16_right_flip_up, t1874
+    bends_1_1_16_right_flip_up = _runtime.select(t1862, straight_1_1_16_right_flip_up, t1875)
+    del straight_1_1_16_right_flip_up, t1875
+    t1876 = x_1_1_16_right_flip_up * x_1_1_16_right_flip_up
     del x_1_1_16_right_flip_up
-    t2185 = _runtime.select(t2181, 1.0, -(axisx_1_1_16_right_flip_up * t2182))
-    del axisx_1_1_16_right_flip_up, t2181, t2182
-    t2186 = _runtime.select(t2180, t23, t23 - d5 * t2185)
-    del t2185
-    t2187 = np.sqrt(t2184 + t2186 * t2186)
-    del t2184, t2186
-    t2188 = np.maximum(0.0, t2187 - _runtime.select(t2180, t3, full_1_1))
-    t2189 = _runtime.select(t2180, t29, fold_1_1) - t2187
-    del t2180, t2187
-    h_1_1_8_right_flip_up = np.sqrt(t5 + t1891)
+    square_1_1_16_right_flip_up = t1876 + t1871 * t1871
+    del t1871, t1876
+    t1877 = _runtime.select(t1862, t98, fold_1_1) - whole_1_1
+    t1878 = np.maximum(0.0, t1877)
+    del t1877
+    t1879 = whole_1_1 + _runtime.select(t1862, t3, full_1_1)
+    del t1862
+    t1880 = np.minimum(t1879 * t1879, square_1_1_16_right_flip_up)
+    del t1879
+    miss_1_1_16_right_flip_up = square_1_1_16_right_flip_up - np.maximum(t1878 * t1878, t1880)
+    del square_1_1_16_right_flip_up, t1878, t1880
+    t1881 = bends_1_1_16_right_flip_up * miss_1_1_16_right_flip_up
+    inner_1_1_16_right_flip_up = t1872 - t1881
+    del t1872, t1881
+    t1882 = inner_1_1_16_right_flip_up < 0.0
+    t1883 = np.sqrt(np.maximum(0.0, inner_1_1_16_right_flip_up))
+    del inner_1_1_16_right_flip_up
+    t1884 = _runtime.sign(slope_1_1_16_right_flip_up) * t1883
+    del t1883
+    below_1_1_16_right_flip_up = _runtime.select(t1882, 2.0 * bends_1_1_16_right_flip_up, 2.0 * (slope_1_1_16_right_flip_up + t1884))
+    del bends_1_1_16_right_flip_up, t1884
+    above_1_1_16_right_flip_up = _runtime.select(t1882, slope_1_1_16_right_flip_up, miss_1_1_16_right_flip_up)
+    del miss_1_1_16_right_flip_up, slope_1_1_16_right_flip_up, t1882
+    t1885 = np.abs(below_1_1_16_right_flip_up) <= np.abs(above_1_1_16_right_flip_up)
+    t1886 = above_1_1_16_right_flip_up / below_1_1_16_right_flip_up
+    del above_1_1_16_right_flip_up, below_1_1_16_right_flip_up
+    t1887 = _runtime.select(t1885, 0.0, t1886)
+    del t1885, t1886
+    t1888 = t1887 * t1887
+    t1889 = 1.0 / (1.0 + t1888)
+    by_c_1_1_16_right_flip_up = (1.0 - t1888) * t1889
+    del t1888
+    t1890 = t1889 * (2.0 * t1887)
+    del t1887, t1889
+    t1891 = t1890 * t1890 / (1.0 + np.abs(by_c_1_1_16_right_flip_up))
+    versine_1_1_16_right_flip_up = _runtime.select(0.0 < by_c_1_1_16_right_flip_up, t1891, 1.0 - by_c_1_1_16_right_flip_up)
     del t1891
-    t2190 = h_1_1_8_right_flip_up <= 1.4210854715202004e-14
+    cost_1_1_16_right_flip_up = d4 * versine_1_1_16_right_flip_up + root1 * np.abs(t1890)
+    del versine_1_1_16_right_flip_up
+    t1892 = cost_1_1_16_right_flip_up <= whole_1_1
+    del cost_1_1_16_right_flip_up
+    cosine_1_1_16_right_flip_up = _runtime.select(t1892, by_c_1_1_16_right_flip_up, 1.0)
+    del by_c_1_1_16_right_flip_up
+    t1893 = c_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
+    sine_1_1_16_right_flip_up = _runtime.select(t1892, -t1890, 0.0)
+    del t1890, t1892
+    t1894 = s_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
+    c_1_1_17_right_flip_up = t1893 - t1894
+    del t1893, t1894
+    t1895 = c_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
+    del c_1_1_16_right_flip_up, sine_1_1_16_right_flip_up
+    t1896 = s_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
+    del cosine_1_1_16_right_flip_up, s_1_1_16_right_flip_up
+    s_1_1_17_right_flip_up = t1895 + t1896
+    del t1895, t1896
+    axisx_1_1_17_right_flip_up = T13 * c_1_1_17_right_flip_up + T23 * s_1_1_17_right_flip_up
+    t1897 = axisx_1_1_17_right_flip_up * axisx_1_1_17_right_flip_up
+    h_1_1_17_right_flip_up = np.sqrt(t5 + t1897)
+    del t1897
+    t1898 = h_1_1_17_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_17_right_flip_up = w_x * c_1_1_17_right_flip_up + w_y * s_1_1_17_right_flip_up
+    t1899 = h_1_1_17_right_flip_up == 0.0
+    t1900 = 1.0 / h_1_1_17_right_flip_up
+    del h_1_1_17_right_flip_up
+    t1901 = d5 * _runtime.select(t1899, 0.0, T33 * t1900)
+    x_1_1_17_right_flip_up = _runtime.select(t1898, qx_1_1_17_right_flip_up, qx_1_1_17_right_flip_up + t1901)
+    del qx_1_1_17_right_flip_up, t1901
+    t1902 = x_1_1_17_right_flip_up * x_1_1_17_right_flip_up
+    del x_1_1_17_right_flip_up
+    t1903 = _runtime.select(t1899, 1.0, -(axisx_1_1_17_right_flip_up * t1900))
+    del axisx_1_1_17_right_flip_up, t1899, t1900
+    t1904 = _runtime.select(t1898, t23, t23 - d5 * t1903)
+    del t1903
+    t1905 = np.sqrt(t1902 + t1904 * t1904)
+    del t1902, t1904
+    t1906 = np.maximum(0.0, t1905 - _runtime.select(t1898, t3, full_1_1))
+    t1907 = _runtime.select(t1898, t98, fold_1_1) - t1905
+    del t1898, t1905
+    x_1_1_right_flip_up = _runtime.select(t1291, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t1294)
+    del qx_1_1_right_noflip_up, t1294
+    t1908 = _runtime.select(t1292, 1.0, -t1298)
+    del t1292, t1298
+    dx_1_1_right_flip_up = _runtime.select(t1291, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1297 * t1908)
+    del dqx_1_1_right_noflip_up
+    t1909 = _runtime.select(t1291, t23, t23 - d5 * t1908)
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t1302 * t1909
+    del dx_1_1_right_flip_up, t1302
+    t1910 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    t1911 = t1304 * t1908 - t1296 * (t1305 - t23 * t1908)
+    del t1296, t1304, t1305, t1908
+    bends_1_1_right_flip_up = _runtime.select(t1291, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1297 * t1911)
+    del straight_1_1_right_noflip_up, t1291, t1297, t1911
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t1909 * t1909
+    del t1909, x_1_1_right_flip_up
+    t1912 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    del high_1_1_right_noflip_up
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t1912)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t1912
+    t1913 = bends_1_1_right_flip_up * miss_1_1_right_flip_up
+    inner_1_1_right_flip_up = t1910 - t1913
+    del t1910, t1913
+    t1914 = inner_1_1_right_flip_up < 0.0
+    t1915 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    del inner_1_1_right_flip_up
+    t1916 = _runtime.sign(slope_1_1_right_flip_up) * t1915
+    del t1915
+    below_1_1_right_flip_up = _runtime.select(t1914, 2.0 * bends_1_1_right_flip_up, 2.0 * (slope_1_1_right_flip_up + t1916))
+    del bends_1_1_right_flip_up, t1916
+    above_1_1_right_flip_up = _runtime.select(t1914, slope_1_1_right_flip_up, miss_1_1_right_flip_up)
+    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t1914
+    t1917 = np.abs(below_1_1_right_flip_up) <= np.abs(above_1_1_right_flip_up)
+    t1918 = above_1_1_right_flip_up / below_1_1_right_flip_up
+    del above_1_1_right_flip_up, below_1_1_right_flip_up
+    t1919 = _runtime.select(t1917, 0.0, t1918)
+    del t1917, t1918
+    t1920 = t1919 * t1919
+    t1921 = 1.0 / (1.0 + t1920)
+    by_c_1_1_right_flip_up = (1.0 - t1920) * t1921
+    del t1920
+    t1922 = t1921 * (2.0 * t1919)
+    del t1919, t1921
+    t1923 = t1922 * t1922 / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    versine_1_1_right_flip_up = _runtime.select(0.0 < by_c_1_1_right_flip_up, t1923, 1.0 - by_c_1_1_right_flip_up)
+    del t1923
+    cost_1_1_right_flip_up = d4 * versine_1_1_right_flip_up + root1 * np.abs(t1922)
+    del versine_1_1_right_flip_up
+    t1924 = cost_1_1_right_flip_up <= whole_1_1
+    del cost_1_1_right_flip_up
+    cosine_1_1_right_flip_up = _runtime.select(t1924, by_c_1_1_right_flip_up, 1.0)
+    del by_c_1_1_right_flip_up
+    t1925 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t1924, -t1922, 0.0)
+    del t1922, t1924
+    c_1_1_2_right_flip_up = t1925 + t980 * sine_1_1_right_flip_up
+    del t1925
+    t1926 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    del sine_1_1_right_flip_up
+    s_1_1_2_right_flip_up = t1926 - t980 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t1926
+    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
+    t1927 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    h_1_1_2_right_flip_up = np.sqrt(t5 + t1927)
+    del t1927
+    t1928 = h_1_1_2_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
+    t1929 = h_1_1_2_right_flip_up == 0.0
+    t1930 = 1.0 / h_1_1_2_right_flip_up
+    t1931 = _runtime.select(t1929, 0.0, T33 * t1930)
+    x_1_1_2_right_flip_up = _runtime.select(t1928, qx_1_1_2_right_flip_up, qx_1_1_2_right_flip_up + d5 * t1931)
+    dqx_1_1_2_right_flip_up = w_y * c_1_1_2_right_flip_up - w_x * s_1_1_2_right_flip_up
+    t1932 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    t1933 = h_1_1_2_right_flip_up * h_1_1_2_right_flip_up
+    del h_1_1_2_right_flip_up
+    spin_1_1_2_right_flip_up = _runtime.select(t1928, 0.0, T33 * t1932 / t1933)
+    del t1932, t1933
+    rate_1_1_2_right_flip_up = d5 * spin_1_1_2_right_flip_up
+    t1934 = _runtime.select(t1929, 1.0, -(axisx_1_1_2_right_flip_up * t1930))
+    del axisx_1_1_2_right_flip_up, t1929, t1930
+    t1935 = dqx_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1934
+    dx_1_1_2_right_flip_up = _runtime.select(t1928, dqx_1_1_2_right_flip_up, t1935)
+    del t1935
+    t1936 = x_1_1_2_right_flip_up * dx_1_1_2_right_flip_up
+    del dx_1_1_2_right_flip_up
+    t1937 = _runtime.select(t1928, t23, t23 - d5 * t1934)
+    dy_1_1_2_right_flip_up = _runtime.select(t1928, 0.0, rate_1_1_2_right_flip_up * t1931)
+    slope_1_1_2_right_flip_up = t1936 - t1937 * dy_1_1_2_right_flip_up
+    del dy_1_1_2_right_flip_up, t1936
+    t1938 = slope_1_1_2_right_flip_up * slope_1_1_2_right_flip_up
+    straight_1_1_2_right_flip_up = dqx_1_1_2_right_flip_up * dqx_1_1_2_right_flip_up
+    t1939 = spin_1_1_2_right_flip_up * (qx_1_1_2_right_flip_up * t1931 - t23 * t1934)
+    del qx_1_1_2_right_flip_up, spin_1_1_2_right_flip_up, t1931
+    t1940 = 2.0 * dqx_1_1_2_right_flip_up * t1934 + t1939
+    del dqx_1_1_2_right_flip_up, t1934, t1939
+    t1941 = straight_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1940
+    del rate_1_1_2_right_flip_up, t1940
+    bends_1_1_2_right_flip_up = _runtime.select(t1928, straight_1_1_2_right_flip_up, t1941)
+    del straight_1_1_2_right_flip_up, t1941
+    t1942 = x_1_1_2_right_flip_up * x_1_1_2_right_flip_up
+    del x_1_1_2_right_flip_up
+    square_1_1_2_right_flip_up = t1942 + t1937 * t1937
+    del t1937, t1942
+    t1943 = _runtime.select(t1928, t98, fold_1_1) - whole_1_1
+    t1944 = np.maximum(0.0, t1943)
+    del t1943
+    t1945 = whole_1_1 + _runtime.select(t1928, t3, full_1_1)
+    del t1928
+    t1946 = np.minimum(t1945 * t1945, square_1_1_2_right_flip_up)
+    del t1945
+    miss_1_1_2_right_flip_up = square_1_1_2_right_flip_up - np.maximum(t1944 * t1944, t1946)
+    del square_1_1_2_right_flip_up, t1944, t1946
+    t1947 = bends_1_1_2_right_flip_up * miss_1_1_2_right_flip_up
+    inner_1_1_2_right_flip_up = t1938 - t1947
+    del t1938, t1947
+    t1948 = inner_1_1_2_right_flip_up < 0.0
+    t1949 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_flip_up))
+    del inner_1_1_2_right_flip_up
+    t1950 = _runtime.sign(slope_1_1_2_right_flip_up) * t1949
+    del t1949
+    below_1_1_2_right_flip_up = _runtime.select(t1948, 2.0 * bends_1_1_2_right_flip_up, 2.0 * (slope_1_1_2_right_flip_up + t1950))
+    del bends_1_1_2_right_flip_up, t1950
+    above_1_1_2_right_flip_up = _runtime.select(t1948, slope_1_1_2_right_flip_up, miss_1_1_2_right_flip_up)
+    del miss_1_1_2_right_flip_up, slope_1_1_2_right_flip_up, t1948
+    t1951 = np.abs(below_1_1_2_right_flip_up) <= np.abs(above_1_1_2_right_flip_up)
+    t1952 = above_1_1_2_right_flip_up / below_1_1_2_right_flip_up
+    del above_1_1_2_right_flip_up, below_1_1_2_right_flip_up
+    t1953 = _runtime.select(t1951, 0.0, t1952)
+    del t1951, t1952
+    t1954 = t1953 * t1953
+    t1955 = 1.0 / (1.0 + t1954)
+    by_c_1_1_2_right_flip_up = (1.0 - t1954) * t1955
+    del t1954
+    t1956 = t1955 * (2.0 * t1953)
+    del t1953, t1955
+    t1957 = t1956 * t1956 / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    versine_1_1_2_right_flip_up = _runtime.select(0.0 < by_c_1_1_2_right_flip_up, t1957, 1.0 - by_c_1_1_2_right_flip_up)
+    del t1957
+    cost_1_1_2_right_flip_up = d4 * versine_1_1_2_right_flip_up + root1 * np.abs(t1956)
+    del versine_1_1_2_right_flip_up
+    t1958 = cost_1_1_2_right_flip_up <= whole_1_1
+    del cost_1_1_2_right_flip_up
+    cosine_1_1_2_right_flip_up = _runtime.select(t1958, by_c_1_1_2_right_flip_up, 1.0)
+    del by_c_1_1_2_right_flip_up
+    t1959 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t1958, -t1956, 0.0)
+    del t1956, t1958
+    t1960 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_3_right_flip_up = t1959 - t1960
+    del t1959, t1960
+    t1961 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
+    t1962 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
+    s_1_1_3_right_flip_up = t1961 + t1962
+    del t1961, t1962
+    axisx_1_1_3_right_flip_up = T13 * c_1_1_3_right_flip_up + T23 * s_1_1_3_right_flip_up
+    t1963 = axisx_1_1_3_right_flip_up * axisx_1_1_3_right_flip_up
+    h_1_1_3_right_flip_up = np.sqrt(t5 + t1963)
+    del t1963
+    t1964 = h_1_1_3_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_3_right_flip_up = w_x * c_1_1_3_right_flip_up + w_y * s_1_1_3_right_flip_up
+    t1965 = h_1_1_3_right_flip_up == 0.0
+    t1966 = 1.0 / h_1_1_3_right_flip_up
+    t1967 = _runtime.select(t1965, 0.0, T33 * t1966)
+    x_1_1_3_right_flip_up = _runtime.select(t1964, qx_1_1_3_right_flip_up, qx_1_1_3_right_flip_up + d5 * t1967)
+    dqx_1_1_3_right_flip_up = w_y * c_1_1_3_right_flip_up - w_x * s_1_1_3_right_flip_up
+    t1968 = T13 * s_1_1_3_right_flip_up - T23 * c_1_1_3_right_flip_up
+    t1969 = h_1_1_3_right_flip_up * h_1_1_3_right_flip_up
+    del h_1_1_3_right_flip_up
+    spin_1_1_3_right_flip_up = _runtime.select(t1964, 0.0, T33 * t1968 / t1969)
+    del t1968, t1969
+    rate_1_1_3_right_flip_up = d5 * spin_1_1_3_right_flip_up
+    t1970 = _runtime.select(t1965, 1.0, -(axisx_1_1_3_right_flip_up * t1966))
+    del axisx_1_1_3_right_flip_up, t1965, t1966
+    t1971 = dqx_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1970
+    dx_1_1_3_right_flip_up = _runtime.select(t1964, dqx_1_1_3_right_flip_up, t1971)
+    del t1971
+    t1972 = x_1_1_3_right_flip_up * dx_1_1_3_right_flip_up
+    del dx_1_1_3_right_flip_up
+    t1973 = _runtime.select(t1964, t23, t23 - d5 * t1970)
+    dy_1_1_3_right_flip_up = _runtime.select(t1964, 0.0, rate_1_1_3_right_flip_up * t1967)
+    slope_1_1_3_right_flip_up = t1972 - t1973 * dy_1_1_3_right_flip_up
+    del dy_1_1_3_right_flip_up, t1972
+    t1974 = slope_1_1_3_right_flip_up * slope_1_1_3_right_flip_up
+    straight_1_1_3_right_flip_up = dqx_1_1_3_right_flip_up * dqx_1_1_3_right_flip_up
+    t1975 = spin_1_1_3_right_flip_up * (qx_1_1_3_right_flip_up * t1967 - t23 * t1970)
+    del qx_1_1_3_right_flip_up, spin_1_1_3_right_flip_up, t1967
+    t1976 = 2.0 * dqx_1_1_3_right_flip_up * t1970 + t1975
+    del dqx_1_1_3_right_flip_up, t1970, t1975
+    t1977 = straight_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1976
+    del rate_1_1_3_right_flip_up, t1976
+    bends_1_1_3_right_flip_up = _runtime.select(t1964, straight_1_1_3_right_flip_up, t1977)
+    del straight_1_1_3_right_flip_up, t1977
+    t1978 = x_1_1_3_right_flip_up * x_1_1_3_right_flip_up
+    del x_1_1_3_right_flip_up
+    square_1_1_3_right_flip_up = t1978 + t1973 * t1973
+    del t1973, t1978
+    t1979 = _runtime.select(t1964, t98, fold_1_1) - whole_1_1
+    t1980 = np.maximum(0.0, t1979)
+    del t1979
+    t1981 = whole_1_1 + _runtime.select(t1964, t3, full_1_1)
+    del t1964
+    t1982 = np.minimum(t1981 * t1981, square_1_1_3_right_flip_up)
+    del t1981
+    miss_1_1_3_right_flip_up = square_1_1_3_right_flip_up - np.maximum(t1980 * t1980, t1982)
+    del square_1_1_3_right_flip_up, t1980, t1982
+    t1983 = bends_1_1_3_right_flip_up * miss_1_1_3_right_flip_up
+    inner_1_1_3_right_flip_up = t1974 - t1983
+    del t1974, t1983
+    t1984 = inner_1_1_3_right_flip_up < 0.0
+    t1985 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_flip_up))
+    del inner_1_1_3_right_flip_up
+    t1986 = _runtime.sign(slope_1_1_3_right_flip_up) * t1985
+    del t1985
+    below_1_1_3_right_flip_up = _runtime.select(t1984, 2.0 * bends_1_1_3_right_flip_up, 2.0 * (slope_1_1_3_right_flip_up + t1986))
+    del bends_1_1_3_right_flip_up, t1986
+    above_1_1_3_right_flip_up = _runtime.select(t1984, slope_1_1_3_right_flip_up, miss_1_1_3_right_flip_up)
+    del miss_1_1_3_right_flip_up, slope_1_1_3_right_flip_up, t1984
+    t1987 = np.abs(below_1_1_3_right_flip_up) <= np.abs(above_1_1_3_right_flip_up)
+    t1988 = above_1_1_3_right_flip_up / below_1_1_3_right_flip_up
+    del above_1_1_3_right_flip_up, below_1_1_3_right_flip_up
+    t1989 = _runtime.select(t1987, 0.0, t1988)
+    del t1987, t1988
+    t1990 = t1989 * t1989
+    t1991 = 1.0 / (1.0 + t1990)
+    by_c_1_1_3_right_flip_up = (1.0 - t1990) * t1991
+    del t1990
+    t1992 = t1991 * (2.0 * t1989)
+    del t1989, t1991
+    t1993 = t1992 * t1992 / (1.0 + np.abs(by_c_1_1_3_right_flip_up))
+    versine_1_1_3_right_flip_up = _runtime.select(0.0 < by_c_1_1_3_right_flip_up, t1993, 1.0 - by_c_1_1_3_right_flip_up)
+    del t1993
+    cost_1_1_3_right_flip_up = d4 * versine_1_1_3_right_flip_up + root1 * np.abs(t1992)
+    del versine_1_1_3_right_flip_up
+    t1994 = cost_1_1_3_right_flip_up <= whole_1_1
+    del cost_1_1_3_right_flip_up
+    cosine_1_1_3_right_flip_up = _runtime.select(t1994, by_c_1_1_3_right_flip_up, 1.0)
+    del by_c_1_1_3_right_flip_up
+    t1995 = c_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
+    sine_1_1_3_right_flip_up = _runtime.select(t1994, -t1992, 0.0)
+    del t1992, t1994
+    t1996 = s_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
+    c_1_1_4_right_flip_up = t1995 - t1996
+    del t1995, t1996
+    t1997 = c_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
+    del c_1_1_3_right_flip_up, sine_1_1_3_right_flip_up
+    t1998 = s_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
+    del cosine_1_1_3_right_flip_up, s_1_1_3_right_flip_up
+    s_1_1_4_right_flip_up = t1997 + t1998
+    del t1997, t1998
+    axisx_1_1_4_right_flip_up = T13 * c_1_1_4_right_flip_up + T23 * s_1_1_4_right_flip_up
+    t1999 = axisx_1_1_4_right_flip_up * axisx_1_1_4_right_flip_up
+    t2000 = T13 * s_1_1_4_right_flip_up - T23 * c_1_1_4_right_flip_up
+    most_1_1_4_right_flip_up = np.sqrt(t1999 + t2000 * t2000)
+    t2001 = most_1_1_4_right_flip_up <= 8.881784197001252e-16
+    qx_1_1_4_right_flip_up = w_x * c_1_1_4_right_flip_up + w_y * s_1_1_4_right_flip_up
+    t2002 = qx_1_1_4_right_flip_up * qx_1_1_4_right_flip_up
+    r_1_1_4_right_flip_up = np.sqrt(t24 + t2002)
+    del t2002
+    t2003 = r_1_1_4_right_flip_up <= t25
+    del t25
+    t2004 = d5 + r_1_1_4_right_flip_up
+    h_1_1_4_right_flip_up = np.sqrt(t5 + t1999)
+    del t1999
+    t2005 = h_1_1_4_right_flip_up == 0.0
+    t2006 = 1.0 / h_1_1_4_right_flip_up
+    t2007 = _runtime.select(t2005, 0.0, T33 * t2006)
+    t2008 = qx_1_1_4_right_flip_up + d5 * t2007
+    t2009 = _runtime.select(t2005, 1.0, -(axisx_1_1_4_right_flip_up * t2006))
+    del t2005, t2006
+    t2010 = t23 - d5 * t2009
+    t2011 = np.maximum(np.sqrt(t2008 * t2008 + t2010 * t2010), fold_1_1)
+    goal_1_1_4_right_flip_up = np.minimum(full_1_1, t2011)
+    del t2011
+    t2012 = (t2004 - goal_1_1_4_right_flip_up) * (t2004 + goal_1_1_4_right_flip_up)
+    k_v_1_1_4_right_flip_up = np.maximum(0.0, t2012)
+    del t2012
+    t2013 = d5 - r_1_1_4_right_flip_up
+    t2014 = (goal_1_1_4_right_flip_up - t2013) * (goal_1_1_4_right_flip_up + t2013)
+    del goal_1_1_4_right_flip_up, t2013
+    d_v_1_1_4_right_flip_up = np.maximum(0.0, t2014)
+    del t2014
+    n_v_1_1_4_right_flip_up = k_v_1_1_4_right_flip_up + d_v_1_1_4_right_flip_up
+    t2015 = n_v_1_1_4_right_flip_up <= size * t2004 * 8.881784197001252e-16
+    del t2004
+    t2016 = k_v_1_1_4_right_flip_up - d_v_1_1_4_right_flip_up
+    t2017 = 1.0 / n_v_1_1_4_right_flip_up
+    del n_v_1_1_4_right_flip_up
+    uc_v_1_1_4_right_flip_up = _runtime.select(t2015, 1.0, t2016 * t2017)
+    del t2016
+    t2018 = qx_1_1_4_right_flip_up * uc_v_1_1_4_right_flip_up
+    t2019 = -(qx_1_1_4_right_flip_up * t2009 + t23 * t2007)
+    del t2007, t2009
+    t2020 = k_v_1_1_4_right_flip_up * d_v_1_1_4_right_flip_up
+    del d_v_1_1_4_right_flip_up, k_v_1_1_4_right_flip_up
+    t2021 = t2017 * (2.0 * _runtime.sign(t2019) * np.sqrt(t2020))
+    del t2017, t2019, t2020
+    us_v_1_1_4_right_flip_up = _runtime.select(t2015, 0.0, t2021)
+    del t2015, t2021
+    t2022 = t23 * us_v_1_1_4_right_flip_up
+    t2023 = 1.0 / r_1_1_4_right_flip_up
+    del r_1_1_4_right_flip_up
+    c_v_1_1_4_right_flip_up = _runtime.select(t2003, 1.0, (t2018 + t2022) * t2023)
+    t2024 = -(T33 * c_v_1_1_4_right_flip_up) < 0.0
+    t2025 = qx_1_1_4_right_flip_up * us_v_1_1_4_right_flip_up
+    del us_v_1_1_4_right_flip_up
+    t2026 = t23 * uc_v_1_1_4_right_flip_up
+    del uc_v_1_1_4_right_flip_up
+    wc_1_1_4_right_flip_up = _runtime.select(t2003, 0.0, t2023 * (t2025 + t2026))
+    s_v_1_1_4_right_flip_up = _runtime.select(t2003, 0.0, t2023 * (t2025 - t2026))
+    del t2025, t2026
+    to_c_1_1_4_right_flip_up = _runtime.select(t2024, wc_1_1_4_right_flip_up, -s_v_1_1_4_right_flip_up)
+    del s_v_1_1_4_right_flip_up, wc_1_1_4_right_flip_up
+    c_w_1_1_4_right_flip_up = _runtime.select(t2003, 1.0, t2023 * (t2018 - t2022))
+    del t2003, t2018, t2022, t2023
+    to_s_1_1_4_right_flip_up = _runtime.select(t2024, c_w_1_1_4_right_flip_up, c_v_1_1_4_right_flip_up)
+    del c_v_1_1_4_right_flip_up, c_w_1_1_4_right_flip_up, t2024
+    t2027 = T33 * to_c_1_1_4_right_flip_up * _runtime.sign(to_s_1_1_4_right_flip_up)
+    del to_c_1_1_4_right_flip_up
+    across_1_1_4_right_flip_up = _runtime.select(t22, 0.0, t2027)
+    del t2027, t22
+    t2028 = np.abs(to_s_1_1_4_right_flip_up)
+    del to_s_1_1_4_right_flip_up
+    t2029 = most_1_1_4_right_flip_up * t2028 <= np.abs(across_1_1_4_right_flip_up)
+    t2030 = most_1_1_4_right_flip_up * _runtime.sign(across_1_1_4_right_flip_up)
+    t2031 = _runtime.select(t2029, t2030, across_1_1_4_right_flip_up / t2028)
+    del t2028, t2029, t2030
+    wanted_1_1_4_right_flip_up = _runtime.select(across_1_1_4_right_flip_up == 0.0, 0.0, t2031)
+    del across_1_1_4_right_flip_up, t2031
+    t2032 = axisx_1_1_4_right_flip_up * wanted_1_1_4_right_flip_up
+    t2033 = most_1_1_4_right_flip_up - wanted_1_1_4_right_flip_up
+    t2034 = most_1_1_4_right_flip_up + wanted_1_1_4_right_flip_up
+    rest_1_1_4_right_flip_up = np.sqrt(np.maximum(0.0, t2033 * t2034)) * _runtime.sign(-t2000)
+    del t2033, t2034
+    t2035 = most_1_1_4_right_flip_up * most_1_1_4_right_flip_up
+    del most_1_1_4_right_flip_up
+    t2036 = 1.0 / t2035
+    del t2035
+    t2037 = (t2032 - t2000 * rest_1_1_4_right_flip_up) * t2036
+    del t2032
+    by_c_1_1_4_right_flip_up = _runtime.select(t2001, 1.0, t2037)
+    del t2037
+    t2038 = axisx_1_1_4_right_flip_up * rest_1_1_4_right_flip_up
+    del axisx_1_1_4_right_flip_up, rest_1_1_4_right_flip_up
+    t2039 = t2036 * (t2038 + t2000 * wanted_1_1_4_right_flip_up)
+    del t2000, t2036, t2038, wanted_1_1_4_right_flip_up
+    t2040 = _runtime.select(t2001, 0.0, t2039)
+    del t2001, t2039
+    t2041 = t2040 * t2040 / (1.0 + np.abs(by_c_1_1_4_right_flip_up))
+    versine_1_1_4_right_flip_up = _runtime.select(0.0 < by_c_1_1_4_right_flip_up, t2041, 1.0 - by_c_1_1_4_right_flip_up)
+    del t2041
+    cost_1_1_4_right_flip_up = d4 * versine_1_1_4_right_flip_up + root1 * np.abs(t2040)
+    del versine_1_1_4_right_flip_up
+    t2042 = cost_1_1_4_right_flip_up <= whole_1_1
+    del cost_1_1_4_right_flip_up
+    cosine_1_1_4_right_flip_up = _runtime.select(t2042, by_c_1_1_4_right_flip_up, 1.0)
+    del by_c_1_1_4_right_flip_up
+    t2043 = c_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
+    sine_1_1_4_right_flip_up = _runtime.select(t2042, -t2040, 0.0)
+    del t2040, t2042
+    t2044 = s_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
+    c_1_1_6_right_flip_up = t2043 - t2044
+    del t2043, t2044
+    t2045 = c_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
+    del sine_1_1_4_right_flip_up
+    t2046 = s_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
+    del cosine_1_1_4_right_flip_up
+    s_1_1_6_right_flip_up = t2045 + t2046
+    del t2045, t2046
+    axisx_1_1_6_right_flip_up = T13 * c_1_1_6_right_flip_up + T23 * s_1_1_6_right_flip_up
+    t2047 = axisx_1_1_6_right_flip_up * axisx_1_1_6_right_flip_up
+    h_1_1_6_right_flip_up = np.sqrt(t5 + t2047)
+    del t2047
+    t2048 = h_1_1_6_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_6_right_flip_up = w_x * c_1_1_6_right_flip_up + w_y * s_1_1_6_right_flip_up
+    t2049 = h_1_1_6_right_flip_up == 0.0
+    t2050 = 1.0 / h_1_1_6_right_flip_up
+    t2051 = _runtime.select(t2049, 0.0, T33 * t2050)
+    x_1_1_6_right_flip_up = _runtime.select(t2048, qx_1_1_6_right_flip_up, qx_1_1_6_right_flip_up + d5 * t2051)
+    dqx_1_1_6_right_flip_up = w_y * c_1_1_6_right_flip_up - w_x * s_1_1_6_right_flip_up
+    t2052 = T13 * s_1_1_6_right_flip_up - T23 * c_1_1_6_right_flip_up
+    t2053 = h_1_1_6_right_flip_up * h_1_1_6_right_flip_up
+    del h_1_1_6_right_flip_up
+    spin_1_1_6_right_flip_up = _runtime.select(t2048, 0.0, T33 * t2052 / t2053)
+    del t2052, t2053
+    rate_1_1_6_right_flip_up = d5 * spin_1_1_6_right_flip_up
+    t2054 = _runtime.select(t2049, 1.0, -(axisx_1_1_6_right_flip_up * t2050))
+    del axisx_1_1_6_right_flip_up, t2049, t2050
+    t2055 = dqx_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2054
+    dx_1_1_6_right_flip_up = _runtime.select(t2048, dqx_1_1_6_right_flip_up, t2055)
+    del t2055
+    t2056 = x_1_1_6_right_flip_up * dx_1_1_6_right_flip_up
+    del dx_1_1_6_right_flip_up
+    t2057 = _runtime.select(t2048, t23, t23 - d5 * t2054)
+    dy_1_1_6_right_flip_up = _runtime.select(t2048, 0.0, rate_1_1_6_right_flip_up * t2051)
+    slope_1_1_6_right_flip_up = t2056 - t2057 * dy_1_1_6_right_flip_up
+    del dy_1_1_6_right_flip_up, t2056
+    t2058 = slope_1_1_6_right_flip_up * slope_1_1_6_right_flip_up
+    straight_1_1_6_right_flip_up = dqx_1_1_6_right_flip_up * dqx_1_1_6_right_flip_up
+    t2059 = spin_1_1_6_right_flip_up * (qx_1_1_6_right_flip_up * t2051 - t23 * t2054)
+    del qx_1_1_6_right_flip_up, spin_1_1_6_right_flip_up, t2051
+    t2060 = 2.0 * dqx_1_1_6_right_flip_up * t2054 + t2059
+    del dqx_1_1_6_right_flip_up, t2054, t2059
+    t2061 = straight_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2060
+    del rate_1_1_6_right_flip_up, t2060
+    bends_1_1_6_right_flip_up = _runtime.select(t2048, straight_1_1_6_right_flip_up, t2061)
+    del straight_1_1_6_right_flip_up, t2061
+    t2062 = x_1_1_6_right_flip_up * x_1_1_6_right_flip_up
+    del x_1_1_6_right_flip_up
+    square_1_1_6_right_flip_up = t2062 + t2057 * t2057
+    del t2057, t2062
+    t2063 = _runtime.select(t2048, t98, fold_1_1) - whole_1_1
+    t2064 = np.maximum(0.0, t2063)
+    del t2063
+    t2065 = whole_1_1 + _runtime.select(t2048, t3, full_1_1)
+    del t2048
+    t2066 = np.minimum(t2065 * t2065, square_1_1_6_right_flip_up)
+    del t2065
+    miss_1_1_6_right_flip_up = square_1_1_6_right_flip_up - np.maximum(t2064 * t2064, t2066)
+    del square_1_1_6_right_flip_up, t2064, t2066
+    t2067 = bends_1_1_6_right_flip_up * miss_1_1_6_right_flip_up
+    inner_1_1_6_right_flip_up = t2058 - t2067
+    del t2058, t2067
+    t2068 = inner_1_1_6_right_flip_up < 0.0
+    t2069 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_flip_up))
+    del inner_1_1_6_right_flip_up
+    t2070 = _runtime.sign(slope_1_1_6_right_flip_up) * t2069
+    del t2069
+    below_1_1_6_right_flip_up = _runtime.select(t2068, 2.0 * bends_1_1_6_right_flip_up, 2.0 * (slope_1_1_6_right_flip_up + t2070))
+    del bends_1_1_6_right_flip_up, t2070
+    above_1_1_6_right_flip_up = _runtime.select(t2068, slope_1_1_6_right_flip_up, miss_1_1_6_right_flip_up)
+    del miss_1_1_6_right_flip_up, slope_1_1_6_right_flip_up, t2068
+    t2071 = np.abs(below_1_1_6_right_flip_up) <= np.abs(above_1_1_6_right_flip_up)
+    t2072 = above_1_1_6_right_flip_up / below_1_1_6_right_flip_up
+    del above_1_1_6_right_flip_up, below_1_1_6_right_flip_up
+    t2073 = _runtime.select(t2071, 0.0, t2072)
+    del t2071, t2072
+    t2074 = t2073 * t2073
+    t2075 = 1.0 / (1.0 + t2074)
+    by_c_1_1_6_right_flip_up = (1.0 - t2074) * t2075
+    del t2074
+    t2076 = t2075 * (2.0 * t2073)
+    del t2073, t2075
+    t2077 = t2076 * t2076 / (1.0 + np.abs(by_c_1_1_6_right_flip_up))
+    versine_1_1_6_right_flip_up = _runtime.select(0.0 < by_c_1_1_6_right_flip_up, t2077, 1.0 - by_c_1_1_6_right_flip_up)
+    del t2077
+    cost_1_1_6_right_flip_up = d4 * versine_1_1_6_right_flip_up + root1 * np.abs(t2076)
+    del versine_1_1_6_right_flip_up
+    t2078 = cost_1_1_6_right_flip_up <= whole_1_1
+    del cost_1_1_6_right_flip_up
+    cosine_1_1_6_right_flip_up = _runtime.select(t2078, by_c_1_1_6_right_flip_up, 1.0)
+    del by_c_1_1_6_right_flip_up
+    t2079 = c_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
+    sine_1_1_6_right_flip_up = _runtime.select(t2078, -t2076, 0.0)
+    del t2076, t2078
+    t2080 = s_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
+    c_1_1_7_right_flip_up = t2079 - t2080
+    del t2079, t2080
+    t2081 = c_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
+    del c_1_1_6_right_flip_up, sine_1_1_6_right_flip_up
+    t2082 = s_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
+    del cosine_1_1_6_right_flip_up, s_1_1_6_right_flip_up
+    s_1_1_7_right_flip_up = t2081 + t2082
+    del t2081, t2082
+    axisx_1_1_7_right_flip_up = T13 * c_1_1_7_right_flip_up + T23 * s_1_1_7_right_flip_up
+    t2083 = axisx_1_1_7_right_flip_up * axisx_1_1_7_right_flip_up
+    h_1_1_7_right_flip_up = np.sqrt(t5 + t2083)
+    del t2083
+    t2084 = h_1_1_7_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_7_right_flip_up = w_x * c_1_1_7_right_flip_up + w_y * s_1_1_7_right_flip_up
+    t2085 = h_1_1_7_right_flip_up == 0.0
+    t2086 = 1.0 / h_1_1_7_right_flip_up
+    t2087 = _runtime.select(t2085, 0.0, T33 * t2086)
+    x_1_1_7_right_flip_up = _runtime.select(t2084, qx_1_1_7_right_flip_up, qx_1_1_7_right_flip_up + d5 * t2087)
+    dqx_1_1_7_right_flip_up = w_y * c_1_1_7_right_flip_up - w_x * s_1_1_7_right_flip_up
+    t2088 = T13 * s_1_1_7_right_flip_up - T23 * c_1_1_7_right_flip_up
+    t2089 = h_1_1_7_right_flip_up * h_1_1_7_right_flip_up
+    del h_1_1_7_right_flip_up
+    spin_1_1_7_right_flip_up = _runtime.select(t2084, 0.0, T33 * t2088 / t2089)
+    del t2088, t2089
+    rate_1_1_7_right_flip_up = d5 * spin_1_1_7_right_flip_up
+    t2090 = _runtime.select(t2085, 1.0, -(axisx_1_1_7_right_flip_up * t2086))
+    del axisx_1_1_7_right_flip_up, t2085, t2086
+    t2091 = dqx_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2090
+    dx_1_1_7_right_flip_up = _runtime.select(t2084, dqx_1_1_7_right_flip_up, t2091)
+    del t2091
+    t2092 = x_1_1_7_right_flip_up * dx_1_1_7_right_flip_up
+    del dx_1_1_7_right_flip_up
+    t2093 = _runtime.select(t2084, t23, t23 - d5 * t2090)
+    dy_1_1_7_right_flip_up = _runtime.select(t2084, 0.0, rate_1_1_7_right_flip_up * t2087)
+    slope_1_1_7_right_flip_up = t2092 - t2093 * dy_1_1_7_right_flip_up
+    del dy_1_1_7_right_flip_up, t2092
+    t2094 = slope_1_1_7_right_flip_up * slope_1_1_7_right_flip_up
+    straight_1_1_7_right_flip_up = dqx_1_1_7_right_flip_up * dqx_1_1_7_right_flip_up
+    t2095 = spin_1_1_7_right_flip_up * (qx_1_1_7_right_flip_up * t2087 - t23 * t2090)
+    del qx_1_1_7_right_flip_up, spin_1_1_7_right_flip_up, t2087
+    t2096 = 2.0 * dqx_1_1_7_right_flip_up * t2090 + t2095
+    del dqx_1_1_7_right_flip_up, t2090, t2095
+    t2097 = straight_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2096
+    del rate_1_1_7_right_flip_up, t2096
+    bends_1_1_7_right_flip_up = _runtime.select(t2084, straight_1_1_7_right_flip_up, t2097)
+    del straight_1_1_7_right_flip_up, t2097
+    t2098 = x_1_1_7_right_flip_up * x_1_1_7_right_flip_up
+    del x_1_1_7_right_flip_up
+    square_1_1_7_right_flip_up = t2098 + t2093 * t2093
+    del t2093, t2098
+    t2099 = _runtime.select(t2084, t98, fold_1_1) - whole_1_1
+    t2100 = np.maximum(0.0, t2099)
+    del t2099
+    t2101 = whole_1_1 + _runtime.select(t2084, t3, full_1_1)
+    del t2084
+    t2102 = np.minimum(t2101 * t2101, square_1_1_7_right_flip_up)
+    del t2101
+    miss_1_1_7_right_flip_up = square_1_1_7_right_flip_up - np.maximum(t2100 * t2100, t2102)
+    del square_1_1_7_right_flip_up, t2100, t2102
+    t2103 = bends_1_1_7_right_flip_up * miss_1_1_7_right_flip_up
+    inner_1_1_7_right_flip_up = t2094 - t2103
+    del t2094, t2103
+    t2104 = inner_1_1_7_right_flip_up < 0.0
+    t2105 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_flip_up))
+    del inner_1_1_7_right_flip_up
+    t2106 = _runtime.sign(slope_1_1_7_right_flip_up) * t2105
+    del t2105
+    below_1_1_7_right_flip_up = _runtime.select(t2104, 2.0 * bends_1_1_7_right_flip_up, 2.0 * (slope_1_1_7_right_flip_up + t2106))
+    del bends_1_1_7_right_flip_up, t2106
+    above_1_1_7_right_flip_up = _runtime.select(t2104, slope_1_1_7_right_flip_up, miss_1_1_7_right_flip_up)
+    del miss_1_1_7_right_flip_up, slope_1_1_7_right_flip_up, t2104
+    t2107 = np.abs(below_1_1_7_right_flip_up) <= np.abs(above_1_1_7_right_flip_up)
+    t2108 = above_1_1_7_right_flip_up / below_1_1_7_right_flip_up
+    del above_1_1_7_right_flip_up, below_1_1_7_right_flip_up
+    t2109 = _runtime.select(t2107, 0.0, t2108)
+    del t2107, t2108
+    t2110 = t2109 * t2109
+    t2111 = 1.0 / (1.0 + t2110)
+    by_c_1_1_7_right_flip_up = (1.0 - t2110) * t2111
+    del t2110
+    t2112 = t2111 * (2.0 * t2109)
+    del t2109, t2111
+    t2113 = t2112 * t2112 / (1.0 + np.abs(by_c_1_1_7_right_flip_up))
+    versine_1_1_7_right_flip_up = _runtime.select(0.0 < by_c_1_1_7_right_flip_up, t2113, 1.0 - by_c_1_1_7_right_flip_up)
+    del t2113
+    cost_1_1_7_right_flip_up = d4 * versine_1_1_7_right_flip_up + root1 * np.abs(t2112)
+    del versine_1_1_7_right_flip_up
+    t2114 = cost_1_1_7_right_flip_up <= whole_1_1
+    del cost_1_1_7_right_flip_up, whole_1_1
+    cosine_1_1_7_right_flip_up = _runtime.select(t2114, by_c_1_1_7_right_flip_up, 1.0)
+    del by_c_1_1_7_right_flip_up
+    t2115 = c_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
+    sine_1_1_7_right_flip_up = _runtime.select(t2114, -t2112, 0.0)
+    del t2112, t2114
+    t2116 = s_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
+    c_1_1_8_right_flip_up = t2115 - t2116
+    del t2115, t2116
+    t2117 = c_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
+    del c_1_1_7_right_flip_up, sine_1_1_7_right_flip_up
+    t2118 = s_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
+    del cosine_1_1_7_right_flip_up, s_1_1_7_right_flip_up
+    s_1_1_8_right_flip_up = t2117 + t2118
+    del t2117, t2118
+    axisx_1_1_8_right_flip_up = T13 * c_1_1_8_right_flip_up + T23 * s_1_1_8_right_flip_up
+    t2119 = axisx_1_1_8_right_flip_up * axisx_1_1_8_right_flip_up
+    h_1_1_8_right_flip_up = np.sqrt(t5 + t2119)
+    del t2119
+    t2120 = h_1_1_8_right_flip_up <= 1.4210854715202004e-14
     qx_1_1_8_right_flip_up = w_x * c_1_1_8_right_flip_up + w_y * s_1_1_8_right_flip_up
-    t2191 = h_1_1_8_right_flip_up == 0.0
-    t2192 = 1.0 / h_1_1_8_right_flip_up
+    t2121 = h_1_1_8_right_flip_up == 0.0
+    t2122 = 1.0 / h_1_1_8_right_flip_up
     del h_1_1_8_right_flip_up
-    t2193 = d5 * _runtime.select(t2191, 0.0, T33 * t2192)
-    x_1_1_8_right_flip_up = _runtime.select(t2190, qx_1_1_8_right_flip_up, qx_1_1_8_right_flip_up + t2193)
-    del qx_1_1_8_right_flip_up, t2193
-    t2194 = x_1_1_8_right_flip_up * x_1_1_8_right_flip_up
+    t2123 = d5 * _runtime.select(t2121, 0.0, T33 * t2122)
+    x_1_1_8_right_flip_up = _runtime.select(t2120, qx_1_1_8_right_flip_up, qx_1_1_8_right_flip_up + t2123)
+    del qx_1_1_8_right_flip_up, t2123
+    t2124 = x_1_1_8_right_flip_up * x_1_1_8_right_flip_up
     del x_1_1_8_right_flip_up
-    t2195 = _runtime.select(t2191, 1.0, -(axisx_1_1_8_right_flip_up * t2192))
-    del axisx_1_1_8_right_flip_up, t2191, t2192
-    t2196 = _runtime.select(t2190, t23, t23 - d5 * t2195)
-    del t2195
-    t2197 = np.sqrt(t2194 + t2196 * t2196)
-    del t2194, t2196
-    t2198 = np.maximum(0.0, t2197 - _runtime.select(t2190, t3, full_1_1))
+    t2125 = _runtime.select(t2121, 1.0, -(axisx_1_1_8_right_flip_up * t2122))
+    del axisx_1_1_8_right_flip_up, t2121, t2122
+    t2126 = _runtime.select(t2120, t23, t23 - d5 * t2125)
+    del t2125
+    t2127 = np.sqrt(t2124 + t2126 * t2126)
+    del t2124, t2126
+    t2128 = np.maximum(0.0, t2127 - _runtime.select(t2120, t3, full_1_1))
+    t2129 = _runtime.select(t2120, t98, fold_1_1) - t2127
+    del t2120, t2127
+    t2130 = h_1_1_4_right_flip_up <= 1.4210854715202004e-14
+    del h_1_1_4_right_flip_up
+    x_1_1_4_right_flip_up = _runtime.select(t2130, qx_1_1_4_right_flip_up, t2008)
+    del qx_1_1_4_right_flip_up, t2008
+    t2131 = x_1_1_4_right_flip_up * x_1_1_4_right_flip_up
+    del x_1_1_4_right_flip_up
+    t2132 = _runtime.select(t2130, t23, t2010)
+    del t2010
+    t2133 = np.sqrt(t2131 + t2132 * t2132)
+    del t2131, t2132
+    t2134 = np.maximum(0.0, t2133 - _runtime.select(t2130, t3, full_1_1))
+    t2135 = _runtime.select(t2130, t98, fold_1_1) - t2133
+    del t2130, t2133
+    t2136 = np.maximum(t2128, t2129) < np.maximum(t2134, t2135)
+    del t2128, t2129, t2134, t2135
+    c_1_1_9_right_flip_up = _runtime.select(t2136, c_1_1_8_right_flip_up, c_1_1_4_right_flip_up)
+    del c_1_1_4_right_flip_up, c_1_1_8_right_flip_up
+    s_1_1_9_right_flip_up = _runtime.select(t2136, s_1_1_8_right_flip_up, s_1_1_4_right_flip_up)
+    del s_1_1_4_right_flip_up, s_1_1_8_right_flip_up, t2136
+    axisx_1_1_9_right_flip_up = T13 * c_1_1_9_right_flip_up + T23 * s_1_1_9_right_flip_up
+    t2137 = axisx_1_1_9_right_flip_up * axisx_1_1_9_right_flip_up
+    h_1_1_9_right_flip_up = np.sqrt(t5 + t2137)
+    del t2137
+    t2138 = h_1_1_9_right_flip_up <= 1.4210854715202004e-14
+    qx_1_1_9_right_flip_up = w_x * c_1_1_9_right_flip_up + w_y * s_1_1_9_right_flip_up
+    t2139 = h_1_1_9_right_flip_up == 0.0
+    t2140 = 1.0 / h_1_1_9_right_flip_up
+    del h_1_1_9_right_flip_up
+    t2141 = d5 * _runtime.select(t2139, 0.0, T33 * t2140)
+    x_1_1_9_right_flip_up = _runtime.select(t2138, qx_1_1_9_right_flip_up, qx_1_1_9_right_flip_up + t2141)
+    del qx_1_1_9_right_flip_up, t2141
+    t2142 = x_1_1_9_right_flip_up * x_1_1_9_right_flip_up
+    del x_1_1_9_right_flip_up
+    t2143 = _runtime.select(t2139, 1.0, -(axisx_1_1_9_right_flip_up * t2140))
+    del axisx_1_1_9_right_flip_up, t2139, t2140
+    t2144 = _runtime.select(t2138, t23, t23 - d5 * t2143)
+    del t2143
+    t2145 = np.sqrt(t2142 + t2144 * t2144)
+    del t2142, t2144
+    t2146 = np.maximum(0.0, t2145 - _runtime.select(t2138, t3, full_1_1))
     del t3
-    t2199 = _runtime.select(t2190, t29, fold_1_1) - t2197
-    del t2190, t2197, t29
-    t2200 = np.maximum(t2188, t2189) < np.maximum(t2198, t2199)
-    del t2188, t2189, t2198, t2199
-    s_1_1_17_right_flip_up = _runtime.select(t2200, s_1_1_16_right_flip_up, s_1_1_8_right_flip_up)
-    del s_1_1_16_right_flip_up, s_1_1_8_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, s_1_1_17_right_flip_up, -t1008)
-    del s_1_1_17_right_flip_up, t1008
-    c_1_1_17_right_flip_up = _runtime.select(t2200, c_1_1_16_right_flip_up, c_1_1_8_right_flip_up)
-    del c_1_1_16_right_flip_up, c_1_1_8_right_flip_up, t2200
-    c1_right_flip_up = _runtime.select(tangent1, c_1_1_17_right_flip_up, c_1_1_right_noflip_up)
-    del c_1_1_17_right_flip_up, c_1_1_right_noflip_up, tangent1
-    t2201 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    t2147 = _runtime.select(t2138, t98, fold_1_1) - t2145
+    del t2138, t2145, t98
+    t2148 = np.maximum(t1906, t1907) < np.maximum(t2146, t2147)
+    del t1906, t1907, t2146, t2147
+    s_1_1_18_right_flip_up = _runtime.select(t2148, s_1_1_17_right_flip_up, s_1_1_9_right_flip_up)
+    del s_1_1_17_right_flip_up, s_1_1_9_right_flip_up
+    s1_right_flip_up = _runtime.select(tangent1, s_1_1_18_right_flip_up, -t980)
+    del s_1_1_18_right_flip_up, t980
+    c_1_1_18_right_flip_up = _runtime.select(t2148, c_1_1_17_right_flip_up, c_1_1_9_right_flip_up)
+    del c_1_1_17_right_flip_up, c_1_1_9_right_flip_up, t2148
+    c1_right_flip_up = _runtime.select(tangent1, c_1_1_18_right_flip_up, c_1_1_right_noflip_up)
+    del c_1_1_18_right_flip_up, c_1_1_right_noflip_up, tangent1
+    t2149 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
     h_wrist_right_flip_up = np.sqrt(t5 + M_13_right_flip_up * M_13_right_flip_up)
     del t5
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t366
-    del t366
-    t2202 = t85 + across_right_flip_up * across_right_flip_up
-    del t85
-    r_hub_right_flip_up = np.sqrt(t2202)
-    del t2202
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t369
+    del t369
+    t2150 = t24 + across_right_flip_up * across_right_flip_up
+    del t24
+    r_hub_right_flip_up = np.sqrt(t2150)
+    del t2150
     hub_mid_right_flip_up = r_hub_right_flip_up <= t4
-    t2203 = d5 + r_hub_right_flip_up
-    t2204 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t2203) * 0.5 + np.maximum(fold_1_1, np.abs(t2204)) * 0.5
-    t2205 = (t2203 - mid_reach_right_flip_up) * (t2203 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t2205)
-    del t2205
-    t2206 = (t2204 - mid_reach_right_flip_up) * (t2204 + mid_reach_right_flip_up)
+    t2151 = d5 + r_hub_right_flip_up
+    t2152 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t2151) * 0.5 + np.maximum(fold_1_1, np.abs(t2152)) * 0.5
+    t2153 = (t2151 - mid_reach_right_flip_up) * (t2151 + mid_reach_right_flip_up)
+    k_mid_right_flip_up = np.maximum(0.0, t2153)
+    del t2153
+    t2154 = (t2152 - mid_reach_right_flip_up) * (t2152 + mid_reach_right_flip_up)
     del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t2206)
-    del t2206
+    d_mid_right_flip_up = np.maximum(0.0, -t2154)
+    del t2154
     n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    t2207 = _runtime.VANISHING * (size * t2203)
+    t2155 = _runtime.VANISHING * (size * t2151)
     del size
-    any_mid_right_flip_up = n_mid_right_flip_up <= t2207
-    t2208 = 1.0 / n_mid_right_flip_up
+    any_mid_right_flip_up = n_mid_right_flip_up <= t2155
+    t2156 = 1.0 / n_mid_right_flip_up
     del n_mid_right_flip_up
-    t2209 = (k_mid_right_flip_up - d_mid_right_flip_up) * t2208
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t2209)
-    del t2209
-    t2210 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    t2157 = (k_mid_right_flip_up - d_mid_right_flip_up) * t2156
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t2157)
+    del t2157
+    t2158 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
     del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t2208 * (2.0 * t2210))
-    del any_mid_right_flip_up, t2208, t2210
-    t2211 = across_right_flip_up * uc_mid_right_flip_up + t23 * us_mid_right_flip_up
-    t2212 = 1.0 / r_hub_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t2156 * (2.0 * t2158))
+    del any_mid_right_flip_up, t2156, t2158
+    t2159 = across_right_flip_up * uc_mid_right_flip_up + t23 * us_mid_right_flip_up
+    t2160 = 1.0 / r_hub_right_flip_up
     del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2211 * t2212)
-    del t2211
-    close_right_flip_up = root1 * h_wrist_right_flip_up - t372 <= t4
-    del root1, t372
-    t2213 = 1.0 / h_wrist_right_flip_up
-    t2214 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t2213)
-    t2215 = across_right_flip_up + d5 * t2214
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t2213))
-    del t2213
-    t2216 = t23 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t2215 * t2215 + t2216 * t2216)
-    del t2215, t2216
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2159 * t2160)
+    del t2159
+    close_right_flip_up = root1 * h_wrist_right_flip_up - t375 <= t4
+    del root1, t375
+    t2161 = 1.0 / h_wrist_right_flip_up
+    t2162 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t2161)
+    t2163 = across_right_flip_up + d5 * t2162
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t2161))
+    del t2161
+    t2164 = t23 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t2163 * t2163 + t2164 * t2164)
+    del t2163, t2164
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t2217 = (t2203 - in_reach_right_flip_up) * (t2203 + in_reach_right_flip_up)
-    del t2203
-    k_near_right_flip_up = np.maximum(0.0, t2217)
-    del t2217
-    t2218 = (t2204 - in_reach_right_flip_up) * (t2204 + in_reach_right_flip_up)
-    del t2204
-    d_near_right_flip_up = np.maximum(0.0, -t2218)
-    del t2218
+    t2165 = (t2151 - in_reach_right_flip_up) * (t2151 + in_reach_right_flip_up)
+    del t2151
+    k_near_right_flip_up = np.maximum(0.0, t2165)
+    del t2165
+    t2166 = (t2152 - in_reach_right_flip_up) * (t2152 + in_reach_right_flip_up)
+    del t2152
+    d_near_right_flip_up = np.maximum(0.0, -t2166)
+    del t2166
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t2207
-    del t2207
-    t2219 = 1.0 / n_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t2155
+    del t2155
+    t2167 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t2220 = (k_near_right_flip_up - d_near_right_flip_up) * t2219
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t2220)
-    del t2220
-    t2221 = across_right_flip_up * c_phi_right_flip_up + t23 * t2214
-    t2222 = np.abs(t2221)
-    side_right_flip_up = _runtime.select(t2222 <= t4, 1.0, -(t2221 / t2222))
-    del t2221, t2222
-    t2223 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    t2168 = (k_near_right_flip_up - d_near_right_flip_up) * t2167
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t2168)
+    del t2168
+    t2169 = across_right_flip_up * c_phi_right_flip_up + t23 * t2162
+    t2170 = np.abs(t2169)
+    side_right_flip_up = _runtime.select(t2170 <= t4, 1.0, -(t2169 / t2170))
+    del t2169, t2170
+    t2171 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
     del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t2219 * (2.0 * side_right_flip_up * t2223))
-    del any_near_right_flip_up, side_right_flip_up, t2219, t2223
-    t2224 = across_right_flip_up * uc_near_right_flip_up + t23 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2212 * t2224)
-    del t2224
-    t2225 = t2214 + c_near_right_flip_up
-    t2226 = across_right_flip_up * us_near_right_flip_up - t23 * uc_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t2167 * (2.0 * side_right_flip_up * t2171))
+    del any_near_right_flip_up, side_right_flip_up, t2167, t2171
+    t2172 = across_right_flip_up * uc_near_right_flip_up + t23 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2160 * t2172)
+    del t2172
+    t2173 = t2162 + c_near_right_flip_up
+    t2174 = across_right_flip_up * us_near_right_flip_up - t23 * uc_near_right_flip_up
     del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2212 * t2226)
-    del t2226
-    t2227 = c_phi_right_flip_up + s_near_right_flip_up
-    t2228 = h_wrist_right_flip_up * np.sqrt(t2225 * t2225 + t2227 * t2227)
-    del h_wrist_right_flip_up, t2225, t2227
-    t2229 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2160 * t2174)
+    del t2174
+    t2175 = c_phi_right_flip_up + s_near_right_flip_up
+    t2176 = h_wrist_right_flip_up * np.sqrt(t2173 * t2173 + t2175 * t2175)
+    del h_wrist_right_flip_up, t2173, t2175
+    t2177 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t2230 = (t2228 - 2.2737367544323206e-13 <= t383) & np.logical_not(t2229 <= t4)
-    del t2228, t2229, t383
-    s_kept_right_flip_up = _runtime.select(t2230, c_near_right_flip_up, -t2214)
+    t2178 = (t2176 - 2.2737367544323206e-13 <= t386) & np.logical_not(t2177 <= t4)
+    del t2176, t2177, t386
+    s_kept_right_flip_up = _runtime.select(t2178, c_near_right_flip_up, -t2162)
     del c_near_right_flip_up
-    t2231 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t2214)
-    del s_kept_right_flip_up, t2214
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t2231)
-    del c_mid_right_flip_up, t2231
-    t2232 = across_right_flip_up - d5 * sphi_right_flip_up
-    t2233 = across_right_flip_up * us_mid_right_flip_up - t23 * uc_mid_right_flip_up
+    t2179 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t2162)
+    del s_kept_right_flip_up, t2162
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t2179)
+    del c_mid_right_flip_up, t2179
+    t2180 = across_right_flip_up - d5 * sphi_right_flip_up
+    t2181 = across_right_flip_up * us_mid_right_flip_up - t23 * uc_mid_right_flip_up
     del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2212 * t2233)
-    del hub_mid_right_flip_up, t2212, t2233
-    c_kept_right_flip_up = _runtime.select(t2230, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t2230
-    t2234 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2160 * t2181)
+    del hub_mid_right_flip_up, t2160, t2181
+    c_kept_right_flip_up = _runtime.select(t2178, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t2178
+    t2182 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
     del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t2234)
-    del s_mid_right_flip_up, t2234
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t2182)
+    del s_mid_right_flip_up, t2182
     ey_right_flip_up = t23 - d5 * cphi_right_flip_up
     del t23
-    t2235 = t2232 * t2232 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t2235)
-    del t2235
-    t2236 = full_1_1 - r_elbow_right_flip_up
-    t2237 = t28 + r_elbow_right_flip_up
-    t2238 = r_elbow_right_flip_up - t28
-    del t28
-    t2239 = t365 & (t364 <= t2236) & (t364 <= t2237) & (t364 <= t2238)
-    del t364, t365
-    unreachable_4 = np.logical_not(t2239)
-    del t2239
-    t2240 = _runtime.poison(invalid | unreachable_4)
-    t2241 = _runtime.wrap_cut(t2201) + t2240
-    del t2201
+    t2183 = t2180 * t2180 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t2183)
+    del t2183
+    t2184 = full_1_1 - r_elbow_right_flip_up
+    t2185 = t35 + r_elbow_right_flip_up
+    t2186 = r_elbow_right_flip_up - t35
+    del t35
+    t2187 = t368 & (t367 <= t2184) & (t367 <= t2185) & (t367 <= t2186)
+    del t367, t368
+    unreachable_4 = np.logical_not(t2187)
+    del t2187
+    t2188 = _runtime.poison(invalid | unreachable_4)
+    t2189 = _runtime.wrap_cut(t2149) + t2188
+    del t2149
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t4
     del t4
-    t2242 = folded_elbow_right_flip_up | no_link_elbow
-    A_elbow_right_flip_up = np.maximum(t2236, 0.0)
-    del t2236
-    C_elbow_right_flip_up = np.maximum(t2238, 0.0)
-    del t2238
-    t2243 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t2190 = folded_elbow_right_flip_up | no_link_elbow
+    A_elbow_right_flip_up = np.maximum(t2184, 0.0)
+    del t2184
+    C_elbow_right_flip_up = np.maximum(t2186, 0.0)
+    del t2186
+    t2191 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t2237, 0.0)
-    del t2237
-    t2244 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t2245 = 1.0 / (t2243 + t2244)
-    c_base_elbow_right_flip_up = _runtime.select(t2242, 1.0, -((t2243 - t2244) * t2245))
-    t2246 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t2185, 0.0)
+    del t2185
+    t2192 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t2193 = 1.0 / (t2191 + t2192)
+    c_base_elbow_right_flip_up = _runtime.select(t2190, 1.0, -((t2191 - t2192) * t2193))
+    t2194 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t2247 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t2246)
+    t2195 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t2194)
     del ey_right_flip_up
-    t2248 = c_base_elbow_right_flip_up * t2247
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t2243 * t2244)
-    del t2243, t2244
-    s_base_elbow_right_flip_up = _runtime.select(t2242, 0.0, t2245 * area_elbow_right_flip_up)
-    del t2242, t2245
-    t2249 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t2232 * t2246))
-    del t2232, t2246
-    t2250 = s_base_elbow_right_flip_up * t2249
-    s2_right_flip_up = t2248 - t2250
-    t2251 = c_base_elbow_right_flip_up * t2249
-    del c_base_elbow_right_flip_up, t2249
-    t2252 = t2247 * s_base_elbow_right_flip_up
-    del s_base_elbow_right_flip_up, t2247
-    c2_right_flip_up = t2251 + t2252
-    t2253 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t2254 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t2196 = c_base_elbow_right_flip_up * t2195
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t2191 * t2192)
+    del t2191, t2192
+    s_base_elbow_right_flip_up = _runtime.select(t2190, 0.0, t2193 * area_elbow_right_flip_up)
+    del t2190, t2193
+    t2197 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t2180 * t2194))
+    del t2180, t2194
+    t2198 = s_base_elbow_right_flip_up * t2197
+    s2_right_flip_up = t2196 - t2198
+    t2199 = c_base_elbow_right_flip_up * t2197
+    del c_base_elbow_right_flip_up, t2197
+    t2200 = t2195 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t2195
+    c2_right_flip_up = t2199 + t2200
+    t2201 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t2202 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t2255 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t2203 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t2256 = 1.0 / (t2254 + t2255)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t2256)
+    t2204 = 1.0 / (t2202 + t2203)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t2204)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t2256 * (t2254 - t2255)))
-    del t2254, t2255, t2256
-    t2257 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t2258 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t2259 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t2204 * (t2202 - t2203)))
+    del t2202, t2203, t2204
+    t2205 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t2206 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t2207 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t2260 = c3_right_flip_up * t2258 - s3_right_flip_up * t2259
-    t2261 = c3_right_flip_up * t2259 + s3_right_flip_up * t2258
-    del t2258, t2259
-    t2262 = _runtime.wrap_cut(np.arctan2(t2260, t2261)) + t2240
-    del t2260, t2261
-    t2263 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t2208 = c3_right_flip_up * t2206 - s3_right_flip_up * t2207
+    t2209 = c3_right_flip_up * t2207 + s3_right_flip_up * t2206
+    del t2206, t2207
+    t2210 = _runtime.wrap_cut(np.arctan2(t2208, t2209)) + t2188
+    del t2208, t2209
+    t2211 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t2264 = _runtime.wrap_cut(-np.arctan2(t2263, M_33_right_flip_up))
-    del M_33_right_flip_up, t2263
-    t2265 = t2264 + t2240
-    del t2264
+    t2212 = _runtime.wrap_cut(-np.arctan2(t2211, M_33_right_flip_up))
+    del M_33_right_flip_up, t2211
+    t2213 = t2212 + t2188
+    del t2212
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t2266 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t2214 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t2267 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t2215 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t2268 = _runtime.wrap_cut(-np.arctan2(t2266, t2267)) + t2240
-    del t2266, t2267
-    s2_right_flip_down = t2248 + t2250
-    del t2248, t2250
-    c2_right_flip_down = t2251 - t2252
-    del t2251, t2252
-    t2269 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t2270 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t2271 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t2216 = _runtime.wrap_cut(-np.arctan2(t2214, t2215)) + t2188
+    del t2214, t2215
+    s2_right_flip_down = t2196 + t2198
+    del t2196, t2198
+    c2_right_flip_down = t2199 - t2200
+    del t2199, t2200
+    t2217 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t2218 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t2219 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t2272 = c3_right_flip_up * t2270 + s3_right_flip_up * t2271
-    t2273 = c3_right_flip_up * t2271 - s3_right_flip_up * t2270
-    del c3_right_flip_up, s3_right_flip_up, t2270, t2271
-    t2274 = _runtime.wrap_cut(np.arctan2(t2272, t2273)) + t2240
-    del t2272, t2273
-    t2275 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t2220 = c3_right_flip_up * t2218 + s3_right_flip_up * t2219
+    t2221 = c3_right_flip_up * t2219 - s3_right_flip_up * t2218
+    del c3_right_flip_up, s3_right_flip_up, t2218, t2219
+    t2222 = _runtime.wrap_cut(np.arctan2(t2220, t2221)) + t2188
+    del t2220, t2221
+    t2223 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t2276 = _runtime.status(invalid, unreachable, t2275)
-    del t2275, unreachable
-    t2277 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t2224 = _runtime.status(invalid, unreachable, t2223)
+    del t2223, unreachable
+    t2225 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t2278 = _runtime.status(invalid, unreachable_2, t2277 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t2277, unreachable_2
-    t2279 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t2226 = _runtime.status(invalid, unreachable_2, t2225 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t2225, unreachable_2
+    t2227 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t2280 = _runtime.status(invalid, unreachable_3, t2279 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t2279, unreachable_3
-    t2281 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t2228 = _runtime.status(invalid, unreachable_3, t2227 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t2227, unreachable_3
+    t2229 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t2282 = _runtime.status(invalid, unreachable_4, t2281 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t2281, unreachable_4
+    t2230 = _runtime.status(invalid, unreachable_4, t2229 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t2229, unreachable_4
     return (
-        t394,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t393,
-        _runtime.wrap_cut(t409) + t393,
-        _runtime.wrap_cut(t412) + t393,
-        t414,
-        t416,
-        t394,
-        _runtime.wrap_cut(t417) + t393,
-        _runtime.wrap_cut(-t409) + t393,
-        _runtime.wrap_cut(t420) + t393,
-        t414,
-        t416,
-        t974,
-        t986 + t973,
-        _runtime.wrap_cut(t990) + t973,
-        t995,
-        t998,
-        t1001,
-        t974,
-        _runtime.wrap_cut(t1002) + t973,
-        _runtime.wrap_cut(-t990) + t973,
-        t1007,
-        t998,
-        t1001,
+        t397,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t396,
+        _runtime.wrap_cut(t412) + t396,
+        _runtime.wrap_cut(t415) + t396,
+        t417,
+        t419,
+        t397,
+        _runtime.wrap_cut(t420) + t396,
+        _runtime.wrap_cut(-t412) + t396,
+        _runtime.wrap_cut(t423) + t396,
+        t417,
+        t419,
+        t946,
+        t958 + t945,
+        _runtime.wrap_cut(t962) + t945,
+        t967,
+        t970,
+        t973,
+        t946,
+        _runtime.wrap_cut(t974) + t945,
+        _runtime.wrap_cut(-t962) + t945,
+        t979,
+        t970,
+        t973,
+        t1601,
+        _runtime.wrap_cut(t1613) + t1600,
+        _runtime.wrap_cut(t1617) + t1600,
+        t1622,
+        t1625,
         t1628,
-        _runtime.wrap_cut(t1640) + t1627,
-        _runtime.wrap_cut(t1644) + t1627,
-        t1649,
-        t1652,
-        t1655,
+        t1601,
+        _runtime.wrap_cut(t1629) + t1600,
+        _runtime.wrap_cut(-t1617) + t1600,
+        t1634,
+        t1625,
         t1628,
-        _runtime.wrap_cut(t1656) + t1627,
-        _runtime.wrap_cut(-t1644) + t1627,
-        t1661,
-        t1652,
-        t1655,
-        t2241,
-        _runtime.wrap_cut(t2253) + t2240,
-        _runtime.wrap_cut(t2257) + t2240,
-        t2262,
-        t2265,
-        t2268,
-        t2241,
-        _runtime.wrap_cut(t2269) + t2240,
-        _runtime.wrap_cut(-t2257) + t2240,
-        t2274,
-        t2265,
-        t2268,
-        t2276,
-        t2276,
-        t2278,
-        t2278,
-        t2280,
-        t2280,
-        t2282,
-        t2282,
+        t2189,
+        _runtime.wrap_cut(t2201) + t2188,
+        _runtime.wrap_cut(t2205) + t2188,
+        t2210,
+        t2213,
+        t2216,
+        t2189,
+        _runtime.wrap_cut(t2217) + t2188,
+        _runtime.wrap_cut(-t2205) + t2188,
+        t2222,
+        t2213,
+        t2216,
+        t2224,
+        t2224,
+        t2226,
+        t2226,
+        t2228,
+        t2228,
+        t2230,
+        t2230,
     )
 
 

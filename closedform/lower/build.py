@@ -180,6 +180,8 @@ class Builder:
         if angle.is_number:
             return self(sp.sin(angle)), self(sp.cos(angle))
         coefficient, symbol = angle.as_coeff_Mul()
+        if isinstance(symbol, sp.atan2) and coefficient in (1, -1):
+            return self(coefficient * sp.sin(symbol)), self(sp.cos(symbol))
         if symbol not in self.known:
             raise TypeError(f"the sine of {angle} is not that of a multiple of an input")
         divisor = self.divisors.get(symbol, 1)

@@ -19,6 +19,7 @@ from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
+    frame_along,
     homogeneous,
     reduce_circle,
     rotation,
@@ -501,7 +502,7 @@ def from_screws(
         points.append(at)
         moves.append(exponential(twist, joint))
     home = rigid(d, home, "the pose at home")
-    frame = _frame_along(directions[0])
+    frame = frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
     if base is not None:
         mount = rigid(d, base, "the base")
@@ -512,37 +513,22 @@ def from_screws(
     for i, (joint, slides, _) in enumerate(motions):
         sign = 1 if frame[:, 2] == directions[i] else -1
         last = i == len(motions) - 1
-        step = frame.T * ((home[:3, 3] if last else points[i + 1]) - points[i])
+        step = _seen(frame, (home[:3, 3] if last else points[i + 1]) - points[i])
         turn = sp.S.Zero if slides else sign * joint
         shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
         current.append(Row(sign, turn, shift, slides))
         if last or directions[i + 1] not in (frame[:, 2], -frame[:, 2]):
-            after = home[:3, :3] if last else _frame_along(directions[i + 1])
-            groups.append(Group(tuple(current), frame.T * after))
+            after = home[:3, :3] if last else frame_along(directions[i + 1])
+            groups.append(Group(tuple(current), _seen(frame, after)))
             frame, current = after, []
     moved = tuple(motion.joint for motion in motions)
     return Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
 
 
-def _frame_along(w: sp.Matrix) -> sp.Matrix:
-    """A rotation whose z is the unit vector ``w``."""
-    across = next(e for k in (0, 1) if (e := sp.eye(3)[:, k].cross(w)) != sp.zeros(3, 1))
-    if w == sp.Matrix([0, 0, 1]):
-        return sp.eye(3)
-    length = sp.sqrt(across.dot(across))
-    if not length.is_Rational and all(e.is_Rational for e in w):
-        return _rational_frame(w)
-    x = across / length
-    return sp.Matrix.hstack(x, w.cross(x), w)
-
-
-def _rational_frame(w: sp.Matrix) -> sp.Matrix:
-    """The least turn that takes z to ``w``, or to its opposite and then around x; without roots."""
-    x, y, z = up = w if w[2] >= 0 else -w
-    share = 1 / (1 + z)
-    turned = sp.Matrix([[1 - share * x**2, -share * x * y], [-share * x * y, 1 - share * y**2]])
-    turned = sp.Matrix.hstack(turned.col_join(sp.Matrix([[-x, -y]])), up)
-    return turned if up == w else turned * sp.diag(1, -1, -1)
+def _seen(frame: sp.Matrix, value: sp.Matrix) -> sp.Matrix:
+    """Vectors in the axes of a frame, the squares of sines and cosines of parameters reduced."""
+    seen = frame.T * value
+    return reduce_circle(seen.applyfunc(sp.expand)) if seen.free_symbols else seen
 
 
 def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:

@@ -151,6 +151,29 @@ def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     return min((value, reduced, sp.factor(reduced)), key=sp.count_ops)
 
 
+def frame_along(w: sp.Matrix) -> sp.Matrix:
+    """A rotation whose z is the unit vector ``w``."""
+    across = next(e for k in (0, 1) if (e := sp.eye(3)[:, k].cross(w)) != sp.zeros(3, 1))
+    if w == sp.Matrix([0, 0, 1]):
+        return sp.eye(3)
+    if sum(e != 0 for e in across) == 1:  # without a root, as its size may depend on an angle
+        across = across.applyfunc(lambda e: sp.sign(e) if e.is_number else sp.Integer(e != 0))
+    length = sp.sqrt(across.dot(across))
+    if not length.is_Rational and all(e.is_Rational for e in w):
+        return _rational_frame(w)
+    x = across / length
+    return sp.Matrix.hstack(x, w.cross(x), w)
+
+
+def _rational_frame(w: sp.Matrix) -> sp.Matrix:
+    """The least turn that takes z to ``w``, or to its opposite and then around x; without roots."""
+    x, y, z = up = w if w[2] >= 0 else -w
+    share = 1 / (1 + z)
+    turned = sp.Matrix([[1 - share * x**2, -share * x * y], [-share * x * y, 1 - share * y**2]])
+    turned = sp.Matrix.hstack(turned.col_join(sp.Matrix([[-x, -y]])), up)
+    return turned if up == w else turned * sp.diag(1, -1, -1)
+
+
 def inverse(T: sp.Matrix) -> sp.Matrix:
     """The inverse of a rigid motion."""
     R, p = T[:3, :3], T[:3, 3]

@@ -8,7 +8,7 @@ import sympy as sp
 
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles
-from closedform.scaffold.maker import followed, norm, times
+from closedform.scaffold.maker import followed, heading, norm, times
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
 from closedform.scaffold.wrists import ELBOW
@@ -70,7 +70,7 @@ class ArmAngleMaker(SubproblemMaker):
         )
         links = [self.length_of(f"link{k}", w) for k, w in enumerate(lengths, 1)]
         between = sp.Matrix([e.dot(u), e[0] * u[1] - e[1] * u[0]])
-        offset = sp.atan2(between[1], between[0])
+        offset = heading(between)
         x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
         pair = f"pair{joint.number}"
         self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), p_norm, {ELBOW}", pair, 2)

@@ -20,7 +20,7 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.axes import met
 from closedform.mechanics.frames import rotation
-from closedform.scaffold.maker import Maker, Z, norm, point, times
+from closedform.scaffold.maker import Maker, Z, heading, norm, point, sine_cosine, times
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 
@@ -194,7 +194,7 @@ class KnownMaker(Maker):
             _symbol(self.arm, base.rows, slide),
             _only(along.free_symbols & set(self.arm.joints)),
         )
-        a = self.angle(turn.turn + sp.atan2(direction[1], direction[0]))
+        a = self.angle(turn.turn + heading(direction))
         length = self.length(along, reach)
         sides = "{+1: 'front', -1: 'back'}"
         self.solve("polar", f"{a}, {length}, (p[0], p[1]), {sides}", f"{a}_, _", 2)
@@ -249,7 +249,7 @@ class KnownMaker(Maker):
             "In a polar arm they must intersect.",
         )
         slide = self.arm.joints[2]
-        offset = sp.atan2(direction[1], direction[0])
+        offset = heading(direction)
         a = self.angle(second.rows[0].turn + offset)
         name = self.length(length, slide)
         self.solve(
@@ -380,11 +380,10 @@ class KnownMaker(Maker):
         length = norm(w)
         lead = times(self.arm.lead[:3, :3].T, "ik.R")
         e = parallel.end * Z
-        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
-        if e[1].is_negative:
-            epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
-        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
-        ahead = f"Pair({source(sp.sin(angle))}, {source(sp.cos(angle))})"
+        epsilon = heading(-e if e[1].is_negative else e) - sp.pi / 2
+        angle = (heading(w) if length != 0 else sp.S.Zero) - epsilon
+        sine, cosine = sine_cosine(angle)
+        ahead = f"Pair({source(sine)}, {source(cosine)})"
         after = last.end * self.arm.last[:3, :3]
         axis = f"{lead} * {source(after.T[:, 2])}"
         axis = times(base.end.T, f"turned(pair).T * {axis}")
@@ -398,7 +397,7 @@ class KnownMaker(Maker):
         pair, _ = self.wrist(lift, groups[1:], "M", after, more=", reaching=reaching")
         c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")
         q = point("q")
-        past = length * rotation("z", angle) * sp.Matrix([c, t, 0])
+        past = length * sp.Matrix([cosine * c - sine * t, sine * c + cosine * t])
         self.add(f"x = ik.let('ex', {source(q[0] - past[0])})")
         self.add(f"y = ik.let('ey', {source(q[1] - past[1])})")
         turns = [row.turn for row in parallel.rows]

@@ -81,7 +81,7 @@ class Maker:
             "Both links need one.  If the last is missing, say where the tool is, in the last row "
             "of the table or, for a modified table, with tool= of from_dh.",
         )
-        at = [sp.atan2(w[1], w[0]) for w in (u, v)]
+        at = [heading(w) for w in (u, v)]
         a = self.angle(first + at[0])
         b = self.angle(second + at[1] - at[0])
         more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
@@ -162,12 +162,12 @@ class Maker:
         self.require_normal(e[2], numbers[0], numbers[1])
         if e[1].is_negative:  # a turn about -y is a turn about y in the other direction
             e, sense = -e, -1
-        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
+        epsilon = heading(e) - sp.pi / 2
         W = rotation("z", -epsilon) * first.end * middle.end
         self.require_normal(sp.simplify(W[1, 2]), numbers[1], numbers[2])
-        tau = sp.atan2(W[0, 2], W[2, 2])
+        tau = heading((W[2, 2], W[0, 2]))
         rest = sp.simplify(rotation("y", -tau) * W)
-        omega = sp.atan2(rest[1, 0], rest[0, 0])
+        omega = heading((rest[0, 0], rest[1, 0]))
         if after != sp.eye(3):
             self.add(f"{M} = ik.matrix('{M}_tool', {M} * {source(after.T)})")
         turns = [g.rows[0].turn for g in (middle, last)]
@@ -194,10 +194,32 @@ def followed(value: str, R: sp.Matrix) -> str:
     return value if sp.eye(3) == R else f"{value} * {source(R)}"
 
 
+def sine_cosine(angle: Any) -> tuple[Any, Any]:
+    """Sine and cosine of an angle that holds directions of vectors."""
+    found = (sp.sin(angle), sp.cos(angle))
+    if not angle.free_symbols:
+        return found
+    sine, cosine = (sp.simplify(sp.expand_trig(e)) for e in found)
+    return sine, cosine
+
+
 def norm(v: sp.Matrix) -> Any:
     """The length of a vector in the plane."""
 
     return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
+
+
+def heading(v: Sequence[Any]) -> Any:
+    """The direction of a plane vector; that of a turn by a parameter has its sine and cosine."""
+    x, y = (sp.simplify(e) if e.has(sp.sin, sp.cos) else e for e in v[:2])
+    held = {f.args[0] for e in (x, y) for f in e.atoms(sp.sin, sp.cos) if f.free_symbols}
+    for angle in (s * a for a in sorted(held, key=sp.default_sort_key) for s in (1, -1)):
+        c, s = sp.cos(angle), sp.sin(angle)
+        along, across = sp.simplify(x * c + y * s), sp.simplify(y * c - x * s)
+        if 0 in (along, across) and (along + across).is_number:
+            turn = angle + sp.atan2(across, along)
+            return sp.atan2(sp.sin(turn), sp.cos(turn))
+    return sp.atan2(y, x)
 
 
 def turning(w: Any, v: Any) -> tuple[Any, Any]:
@@ -205,4 +227,15 @@ def turning(w: Any, v: Any) -> tuple[Any, Any]:
     return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
 
 
-__all__ = ["Maker", "Solved", "Z", "followed", "norm", "point", "times", "turning"]
+__all__ = [
+    "Maker",
+    "Solved",
+    "Z",
+    "followed",
+    "heading",
+    "norm",
+    "point",
+    "sine_cosine",
+    "times",
+    "turning",
+]

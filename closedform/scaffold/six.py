@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.scaffold.chainlinks import Single, Singles, parallel
-from closedform.scaffold.maker import Z, followed, norm, point, times, turning
+from closedform.scaffold.maker import Z, followed, heading, norm, point, sine_cosine, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
@@ -190,8 +190,9 @@ class SixMaker(SubproblemMaker):
         if e[1].is_negative:
             e = -e
         length = norm(w[:2, 0])
-        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - sp.atan2(e[1], e[0])
-        ahead = f"Pair({source(sp.sin(angle + sp.pi / 2))}, {source(sp.cos(angle + sp.pi / 2))})"
+        angle = (heading(w) if length != 0 else sp.S.Zero) - heading(e)
+        sine, cosine = sine_cosine(angle + sp.pi / 2)
+        ahead = f"Pair({source(sine)}, {source(cosine)})"
         w, u, v = (source(norm(x[:2, 0])) for x in (w, u, v))
         turned = f"offset={w}, ahead={ahead}, lever={pair}.lever"
         self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({u}, {v}), {turned})")

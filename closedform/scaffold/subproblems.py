@@ -19,7 +19,7 @@ import sympy as sp
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
 from closedform.scaffold.ellipse import Ellipse, folds
-from closedform.scaffold.maker import Solved, Z, followed, norm, point, times, turning
+from closedform.scaffold.maker import Solved, Z, followed, heading, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
@@ -228,7 +228,7 @@ class SubproblemMaker(WristMaker):
         self.two_links(turns, links, f"{at}[0]", f"{at}[1]")
         before = sp.S.Zero
         for joint, pair, w in zip((first, second), self.pairs, links, strict=True):
-            ahead = sp.atan2(w[1], w[0])
+            ahead = heading(w)
             self.solved_as[joint.number] = (pair[:-1], pair, ahead - before)
             before = ahead
         self.levers.append(f"{self.pairs[1]}.s")
@@ -320,7 +320,9 @@ class SubproblemMaker(WristMaker):
         third = self._by_distance(three, e, u, c, scale=scale, toward="seen_across")
         self.vector("to_end", to_end.format(third))
         v = point("to_end")
-        first = self._turn(one, (*sides, v[2] - g[2] * p[2]))
+        seen = norm(g[:2, 0]) * sp.sqrt(v[0] ** 2 + v[1] ** 2)
+        self.add(f"link = LinksAtHeight({source(seen)}, 0, {source(p[2] - g[2] * v[2])})")
+        first = self._turn(one, (*sides, v[2] - g[2] * p[2]), "link")
         self.vector("to_target", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
             f"{{{self.unknowns[three.number]}: 2*ik.size, "

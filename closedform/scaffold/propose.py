@@ -20,10 +20,10 @@ from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.decoupled import DecoupledMaker
+from closedform.scaffold.degree import Solutions, solutions
 from closedform.scaffold.known import KnownMaker
 from closedform.scaffold.maker import Maker
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
-from closedform.scaffold.recognise import general_degree
 from closedform.scaffold.six import SixMaker
 from closedform.scaffold.source import GIVEN
 from closedform.scaffold.subproblems import SubproblemMaker
@@ -63,11 +63,11 @@ def propose(
             tried = [t for t in tried if t.name != name]
             lemmas = tuple(dict.fromkeys(maker.used))
             return Proposal(name, found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
-    raise refused[0].error.after(tried) if refused else _refusal(arm, tried)
+    raise refused[0].error.after(tried) if refused else _refusal(arm, tried, progress)
 
 
-def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:
-    """Why no chain is known, with the degree of what is left if that is known."""
+def _refusal(arm: Serial, tried: Sequence[Tried], progress: Callable[[str], None]) -> NoChainError:
+    """Why no chain is known, with the degree of what is left if that is known or can be counted."""
     if len(arm.joints) == 7 and len(tried) > 2:
         return NoChainError(
             "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and "
@@ -76,9 +76,30 @@ def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:
             tried=tried,
         )
     error = next((t.error for t in tried if t.error.degree), tried[0].error)
-    if not error.degree and (degree := general_degree(arm)):
-        error = NoChainError(error.found, f"{error.needed}  {degree}")
+    if not error.degree and len(arm.joints) == 6:
+        progress("counting the solutions")
+        error = _counted(error, solutions(singles(arm)))
     return error.after(tried)
+
+
+NUMERIC = "Use ssik for a numeric inverse."
+
+
+def _counted(error: NoChainError, counted: Solutions | None) -> NoChainError:
+    """The error with the degree of the equations for a pose, if their solutions were counted."""
+    if counted is None:
+        return NoChainError(error.found, f"{error.needed}  {NUMERIC}")
+    *few, last = (str(n) for n in reversed(counted.steps))
+    degrees = f"equations of degree {', '.join(few)} and {last}" if few else "one equation"
+    told = (
+        f"A pose has {counted.number} solutions in complex numbers, counted numerically, which "
+        f"{degrees} {'give' if few else 'gives'}"
+    )
+    if counted.solvable:
+        chain = f"{told}; so a chain of your own may solve them.  {NUMERIC}"
+        return NoChainError(error.found, f"{error.needed}  {chain}")
+    found = f"{error.found}, and there is no closed form: degree {counted.degree}"
+    return NoChainError(found, f"{told}; roots do not solve them.  {NUMERIC}", counted.degree)
 
 
 class _Candidate(NamedTuple):

@@ -7,7 +7,7 @@ from itertools import pairwise
 import sympy as sp
 
 from closedform.mechanics.arm import Serial
-from closedform.scaffold.chainlinks import Single, Singles, parallel, singles
+from closedform.scaffold.chainlinks import Single, parallel, singles
 from closedform.scaffold.maker import Z
 
 
@@ -45,16 +45,4 @@ def _relation(a: Single, b: Single) -> str:
     return f"{names} {'meet at an oblique angle' if meet else 'are skew, at an oblique angle'}"
 
 
-def general_degree(arm: Serial) -> str:
-    """Sentences on the degree of an arm of six joints for which no chain is known; else empty."""
-    whole: Singles = singles(arm)
-    if len(whole.joints) != 6 or any(j.slides for j in whole.joints):
-        return ""
-    return (
-        "In general the solutions of six joints that turn are the roots of a polynomial of degree "
-        "16, and there is no closed form; the degree for this arm was not computed.  Use ssik for "
-        "a numeric inverse."
-    )
-
-
-__all__ = ["general_degree", "recognised"]
+__all__ = ["recognised"]

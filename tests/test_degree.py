@@ -1,0 +1,48 @@
+"""The number of solutions for a pose, and the degrees of the equations that give them."""
+
+import pytest
+import sympy as sp
+from chains import arm
+from sympy import pi
+from sympy.combinatorics import Permutation, PermutationGroup
+
+from closedform.scaffold.chainlinks import singles
+from closedform.scaffold.degree import solutions, steps
+
+H = sp.Rational(1, 2)
+COUNTED = {
+    "spherical wrist": (
+        [(0, pi / 2, 1), (2, 0, 0), (H, pi / 2, 0), (0, -pi / 2, 2), (0, pi / 2, 0), (0, 0, 1)],
+        8, (2, 2, 2), True,
+    ),
+    "spherical wrist after three joints at random": (
+        [(1, pi / 3, 1), (2, pi / 4, H), (H, pi / 5, 0), (0, pi / 2, 2), (0, pi / 2, 0), (0, 0, 1)],
+        8, (2, 4), True,
+    ),
+    "six joints at random": (
+        [(1, pi / 2, 0), (2, pi / 3, 1), (1, pi / 4, 2), (3, pi / 2, 1), (1, pi / 3, 0),
+         (2, pi / 5, 1)],
+        16, (16,), False,
+    ),
+    "a slide": (
+        [(0, pi / 2, 1), (0, pi / 2, H), (0, 0, None, 0), (0, -pi / 2, 0), (0, pi / 2, 0),
+         (0, 0, 1)],
+        8, (2, 2, 2), True,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_the_solutions_of_a_pose_are_counted(name: str) -> None:
+    """Those of a spherical wrist are twice those of the joints before; Raghavan and Roth: 16."""
+    rows, number, degrees, solvable = COUNTED[name]
+    found = solutions(singles(arm(rows)[1]))
+    assert found is not None
+    assert (found.number, sorted(found.steps), found.solvable) == (number, [*degrees], solvable)
+
+
+def test_the_steps_of_a_group_are_those_of_its_blocks() -> None:
+    assert steps(PermutationGroup([Permutation([1, 2, 3, 4, 5, 0])])) in ((2, 3), (3, 2))
+    assert steps(
+        PermutationGroup([Permutation([1, 2, 3, 4, 0]), Permutation([1, 0, 2, 3, 4])])
+    ) == (5,)

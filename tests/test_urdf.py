@@ -1,5 +1,6 @@
 """URDF files: the axes that are read, the choices of a chain, and what is refused."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,6 +18,7 @@ from closedform.scaffold.tables import Table, TableError
 from closedform.scaffold.tree import Choice, meant_angle
 from closedform.scaffold.urdf import read_urdf
 
+ARMS = Path(__file__).parents[1] / "benchmarks" / "arms"
 UR5 = """
 <robot name="ur5">
   <link name="base"/>
@@ -202,6 +204,32 @@ def test_what_was_not_taken_literally_is_said(ur5: Path) -> None:
     assert 'lift = d.joint("lift")' in script.text
     assert "an inverse with 8 branches is proposed" in script.inverse
     assert max(len(line) for line in script.text.splitlines() if line.startswith("#")) <= 100
+
+
+TAKEN = re.compile(
+    r"other numbers moves the tool by at most (\S+), and turns it by at most (\S+) rad"
+)
+
+
+@pytest.mark.parametrize("name", ["nero", "aubo_i16", "xarm7", "x5"])
+def test_how_far_what_was_taken_for_other_numbers_moves_the_tool(name: str) -> None:
+    """1.5708 for pi/2, 3.1415 for pi, 0 for 3.7e-6 in an axis: as much as in the worst posture."""
+    path = ARMS / f"{name}.urdf"
+    (said,) = (m for note in read_urdf(path).notes if (m := TAKEN.search(note)))
+    moved, turned = map(float, said.groups())
+    arm = arm_of(path)
+    pose = sp.lambdify(arm.joints, arm.pose, "numpy")
+    away = []
+    for q in np.random.default_rng(3).uniform(-3, 3, (300, len(arm.joints))):
+        there, here = forward(path.read_text("utf-8"), q), pose(*q)
+        R = np.linalg.norm(there[:3, :3] - here[:3, :3]) / np.sqrt(2)
+        away.append((np.linalg.norm(there[:3, 3] - here[:3, 3]), R))
+    most = np.max(away, axis=0)
+    assert moved / 6 < most[0] <= moved and turned / 6 < most[1] <= turned
+
+
+def test_a_file_that_is_taken_literally_moves_nothing() -> None:
+    assert not any("other numbers" in note for note in read_urdf(ARMS / "a1xy.urdf").notes)
 
 
 def test_base_and_tool_choose_the_chain(ur5: Path) -> None:

@@ -73,37 +73,42 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
     """The joints between a body and its parent, one after the other."""
     body = model.body(k)
     where = f"{file}, body {shown_name(body.name or str(k))}"
-    place = _pose(body.pos, body.quat, where, notes)
+    place, written = _pose(body.pos, body.quat, where, notes)
     at, end = _name(model.body(int(body.parentid[0]))), _name(body)
     first, count = int(body.jntadr[0]), int(body.jntnum[0])
     level = (0, 0, 0)
-    back = sp.eye(4)
+    back = back_written = sp.eye(4)
     for i in range(first, first + count):
         joint = model.joint(i)
         of = f"{file}, joint {shown_name(joint.name or str(i))}"
         kind = KINDS[int(joint.type[0])]
         through = _place(joint.pos, of, notes)
-        axis = sp.Matrix([0, 0, 1])
+        axis = given = sp.Matrix([0, 0, 1])
         if kind in ("prismatic", "revolute"):
-            axis = meant_axis(sp.Matrix(_exact(joint.axis)), of, notes)
+            given = sp.Matrix(_exact(joint.axis))
+            axis = meant_axis(given, of, notes)
         if model.qpos0[joint.qposadr[0]] and kind != "floating":
             notes.append(f"{of}: it is 0 in the pose of the file, not at the value of ref")
         least, most = (repr(float(v)) for v in joint.range)
         limits = (least, most) if model.jnt_limited[i] else None
         place = (place * back * placed(through, level)).applyfunc(sp.expand)
+        written = written * back_written * placed(_exact(joint.pos), level)
         link = f"{end} after {joint.name or i}"
-        yield Joint(joint.name or f"q{i + 1}", kind, at, link, place, axis, limits)
-        at, place = link, sp.eye(4)
+        name, literal = joint.name or f"q{i + 1}", (written, given)
+        yield Joint(name, kind, at, link, place, axis, limits, written=literal)
+        at, place, written = link, sp.eye(4), sp.eye(4)
         back = placed([-e for e in through], level)
-    yield Joint(f"{end} on {at}", "fixed", at, end, place * back, sp.Matrix([0, 0, 1]))
+        back_written = placed([-e for e in _exact(joint.pos)], level)
+    last, literal = place * back, (written * back_written, sp.Matrix([0, 0, 1]))
+    yield Joint(f"{end} on {at}", "fixed", at, end, last, literal[1], written=literal)
 
 
 def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
     site = model.site(k)
     where = f"{file}, site {shown_name(site.name)}"
-    place = _pose(site.pos, site.quat, where, notes)
-    body = _name(model.body(int(site.bodyid[0])))
-    fixed = Joint(site.name, "fixed", body, site.name, place, sp.Matrix([0, 0, 1]))
+    place, written = _pose(site.pos, site.quat, where, notes)
+    body, z = _name(model.body(int(site.bodyid[0]))), sp.Matrix([0, 0, 1])
+    fixed = Joint(site.name, "fixed", body, site.name, place, z, written=(written, z))
     return fixed if site.name else None
 
 
@@ -120,7 +125,10 @@ def _place(pos: NDArray[Any], where: str, notes: list[str]) -> list[sp.Rational]
     return [meant_length(e, f"{where}: pos", notes) for e in _exact(pos)]
 
 
-def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -> sp.Matrix:
+def _pose(
+    pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]
+) -> tuple[sp.Matrix, sp.Matrix]:
+    """A pose as it is meant, and in numbers as the file has it."""
     w, x, y, z = quat
     sine = 2 * (w * y - z * x)
     if abs(sine) > 1 - 1e-9:  # the first turn and the last have the same axis
@@ -131,10 +139,10 @@ def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -
             np.arcsin(sine),
             np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
         )
-    turns = []
-    for angle in _exact(np.array(angles)):
+    turns, given = [], _exact(np.array(angles))
+    for angle in given:
         said: list[str] = []
         turns.append(meant_angle(angle, where, said))
         if abs(float(turns[-1] - angle)) > ROUNDED:
             notes += said
-    return placed(_place(pos, where, notes), turns)
+    return placed(_place(pos, where, notes), turns), placed(_exact(pos), given).evalf(30)

@@ -58,6 +58,8 @@ class Joint:
     factor: sp.Rational = sp.S.One
     offset: sp.Rational = sp.S.Zero
     """Of a joint that mimics another: its value is the factor times that one, plus the offset."""
+    written: tuple[sp.Matrix, sp.Matrix] | None = None
+    """Place and axis without what was taken for other numbers; None if nothing was."""
 
 
 @dataclass(frozen=True)
@@ -81,13 +83,16 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
         raise TableError(f"{file}: there are no joints")
     chain = _chain(joints, choice.base, choice.tool, file)
     table = Table(notes=[*notes])
+    away = Away.of(chain)
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.doubt = _doubt(chain)
     place = sp.eye(4)
     mimics: list[_Mimic] = []
     for joint in chain:
         where = f"{file}, joint {shown_name(joint.name)}"
-        place = _meant_turns(_product(place, joint.origin), where, table.notes)
+        there = _product(place, joint.origin)
+        place = _meant_turns(there, where, table.notes)
+        away.turn(joint, between(place, there))
         if joint.kind == "fixed":
             continue
         if joint.mimics:
@@ -112,8 +117,64 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
         f"{shown_name(chain[-1].child)}"
     )
+    table.notes += away.notes(file)
     use_exact(table, file)
     return table
+
+
+class Away:
+    """How far what was taken for other numbers moves the tool, in any posture."""
+
+    def __init__(self) -> None:
+        self.turned = self.moved = 0.0
+        self.after: dict[str, float] = {}
+        self.slides = False
+
+    @classmethod
+    def of(cls, chain: Sequence[Joint]) -> Away:
+        away, after = cls(), 0.0
+        for joint in reversed(chain):
+            if MOVING.get(joint.kind) == "prismatic":
+                away.slides = True
+            away.after[joint.name] = after
+            if joint.written is not None:
+                place, axis = joint.written
+                away.turn(joint, between(joint.origin, place))
+                away.moved += _size(joint.origin[:3, 3] - place[:3, 3])
+                if joint.kind in MOVING:
+                    away.turn(joint, 2 * _between(joint.axis, axis))
+            after += _size(joint.origin[:3, 3])
+        return away
+
+    def turn(self, joint: Joint, angle: float) -> None:
+        """Add a turn of what comes after a joint."""
+        self.turned += angle
+        self.moved += angle * self.after[joint.name]
+
+    def notes(self, file: str) -> list[str]:
+        if max(self.turned, self.moved) < NOISE:
+            return []
+        slides = ", with its slides at 0," if self.slides else ""
+        return [
+            f"{file}: what is taken for other numbers moves the tool{slides} by at most "
+            f"{_rounded_up(self.moved)}, and turns it by at most {_rounded_up(self.turned)} rad"
+        ]
+
+
+def between(one: sp.Matrix, other: sp.Matrix) -> float:
+    """The angle of the rotation between those of two poses."""
+    if one == other:
+        return 0.0
+    return 2 * math.asin(min(1.0, _size(one[:3, :3] - other[:3, :3]) / math.sqrt(8)))
+
+
+def _between(one: sp.Matrix, other: sp.Matrix) -> float:
+    """The angle between two directions."""
+    return math.asin(min(1.0, _size(one.cross(other)) / (_size(one) * _size(other))))
+
+
+def _size(value: sp.Matrix) -> float:
+    return math.sqrt(sum(float(e.evalf(30)) ** 2 for e in value))
 
 
 @dataclass(frozen=True)
@@ -195,8 +256,10 @@ def _without_short(
 
 
 def _rounded_up(length: float) -> str:
+    if length < 1e-12:  # what rounding adds
+        return "0"
     step = 10.0 ** (math.floor(math.log10(length)) - 1)
-    return f"{math.ceil(length / step) * step:.2g}"
+    return f"{math.ceil(length / step - 1e-9) * step:.2g}"
 
 
 def _doubt(chain: Sequence[Joint]) -> str:

@@ -76,6 +76,7 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
             (axis, "xyz", (1, 0, 0)),
         )
     )
+    written = (placed(xyz, rpy), sp.Matrix(direction))
     xyz = [meant_length(e, f"{where}: xyz", notes) for e in xyz]
     rpy = [meant_number(e, f"{where}: rpy", notes) for e in rpy]
     direction = sp.Matrix([meant_number(e, f"{where}: xyz", notes) for e in direction])
@@ -85,19 +86,19 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
     if kind in MOVING:
         direction = meant_axis(direction, where, notes)
     mimic = element.find("mimic")
+    meant = placed(xyz, rpy)
     return Joint(
         name,
         kind,
         links[0],
         links[1],
-        placed(xyz, rpy),
+        meant,
         direction,
         None if kind == "continuous" else _limits(element.find("limit"), where, notes),
         "" if mimic is None else mimic.get("joint", "another joint"),
-        *(
-            _number(mimic, key, default, where)
-            for key, default in (("multiplier", 1), ("offset", 0))
-        ),
+        _number(mimic, "multiplier", 1, where),
+        _number(mimic, "offset", 0, where),
+        written=None if written == (meant, direction) else written,
     )
 
 

@@ -13,6 +13,7 @@ from closedform.model.functions import real
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.trial import fault
 from closedform.scaffold.new import Search, new
+from closedform.scaffold.recognise import recognised
 from closedform.scaffold.urdf import read_urdf
 
 PANTHERA = Path(__file__).parents[1] / "benchmarks" / "arms" / "panthera.urdf"
@@ -58,3 +59,28 @@ def test_angles_that_add_up_to_a_right_angle_are_taken_for_it(tmp_path: Path) ->
     assert "joint q2" in note
     sums = arm_of(path).pose[:3, :3]
     assert sums == sp.Matrix(sums).xreplace({real("angle1"): sp.S.Zero})
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("0.26726 0.53452 0.80178", (1, 2, 3)), ("0.70710678 0 0.70710678", (1, 0, 1))],
+)
+def test_a_decimal_axis_behind_a_turned_frame_keeps_its_digits(
+    written: str, meant: tuple, tmp_path: Path
+) -> None:
+    """The same axis twice is parallel to itself; the last digit is that written."""
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="0.1 0 0.2" rpy="0 {turn} 0"/><axis xyz="{axis}"/></joint>'
+        for k, (turn, axis) in enumerate([("0", "0 1 0"), ("0.1359", written), ("0", written)])
+    )
+    path = tmp_path / "tilted.urdf"
+    path.write_text(f'<robot name="tilted">{joints}</robot>', "utf-8")
+    table = read_urdf(path)
+    c, s = np.cos(0.1359), np.sin(0.1359)
+    turned = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ meant / np.linalg.norm(meant)
+    place = 10.0 ** -len(written.split()[0].partition(".")[2])
+    for _, direction, _ in table.axes[1:]:
+        found = [float(e.subs(real("angle1"), sp.Rational(1359, 10000))) for e in direction]
+        np.testing.assert_allclose(found, turned, atol=1.5 * place)
+    assert "axes 2 and 3 are parallel" in recognised(arm_of(path))

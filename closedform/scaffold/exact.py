@@ -38,10 +38,10 @@ def orthonormal(given: sp.Matrix) -> bool:
     Sines and cosines, as of a turn by 0.1359, are exact; this must hold for all of their angles.
     """
     unit: sp.Matrix = sp.eye(given.cols)
-    return bool((given.T * given).applyfunc(_without_squares) == unit)
+    return bool((given.T * given).applyfunc(without_squares) == unit)
 
 
-def _without_squares(value: sp.Expr) -> sp.Expr:
+def without_squares(value: sp.Expr) -> sp.Expr:
     """A polynomial in sines and cosines, with cosines for squares of sines."""
     found = sp.expand(value).replace(
         lambda e: e.is_Pow and isinstance(e.base, sp.sin) and e.exp.is_Integer and e.exp > 1,
@@ -204,4 +204,12 @@ def decimal(value: sp.Expr) -> str:
     return str(value) if value.is_Rational else str(value.evalf(20))
 
 
-__all__ = ["Angles", "decimal", "orthonormal", "rotation", "turned_on", "unit_vector"]
+__all__ = [
+    "Angles",
+    "decimal",
+    "orthonormal",
+    "rotation",
+    "turned_on",
+    "unit_vector",
+    "without_squares",
+]

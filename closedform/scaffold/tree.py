@@ -16,7 +16,7 @@ import sympy as sp
 
 from closedform.mechanics.frames import homogeneous, rotation
 from closedform.model.functions import real
-from closedform.scaffold.exact import turned_on
+from closedform.scaffold.exact import orthonormal, turned_on, unit_vector, without_squares
 from closedform.scaffold.tables import (
     JOINTS,
     NUMBERED,
@@ -102,7 +102,8 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
             table.base, place = place, sp.eye(4)  # what a tilted mount does to all axes stays apart
         name = _symbol(joint.name)
         add_joint(table, name, MOVING[joint.kind], where)
-        direction = (place[:3, :3] * joint.axis).applyfunc(sp.expand)
+        axis = _unit(joint.axis, place[:3, :3], table, where)
+        direction = (place[:3, :3] * axis).applyfunc(sp.expand)
         table.axes.append((real(name), list(direction), list(place[:3, 3])))
         if name != joint.name:
             table.notes.append(f"{where}: it is called {name}")
@@ -171,6 +172,21 @@ def between(one: sp.Matrix, other: sp.Matrix) -> float:
 def _between(one: sp.Matrix, other: sp.Matrix) -> float:
     """The angle between two directions."""
     return math.asin(min(1.0, _size(one.cross(other)) / (_size(one) * _size(other))))
+
+
+def _unit(axis: sp.Matrix, frame: sp.Matrix, table: Table, where: str) -> sp.Matrix:
+    """The unit vector that the decimals of an axis stand for, if its frame hides them later."""
+    if not frame.has(sp.sin, sp.cos) or orthonormal(axis):
+        return axis
+    seen = [(frame.T * sp.Matrix(v)).applyfunc(without_squares) for _, v, _ in table.axes]
+    unit = unit_vector(axis, [v for v in seen if not v.has(sp.sin, sp.cos)])
+    if unit is None:
+        return axis
+    table.notes.append(
+        f"{where}: the axis {_listed(axis)} is rounded; the unit vector "
+        f"({', '.join(map(str, unit))}) is used instead"
+    )
+    return unit
 
 
 def _size(value: sp.Matrix) -> float:

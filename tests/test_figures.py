@@ -288,3 +288,13 @@ def test_the_velocities_are_derivatives_of_the_position() -> None:
         t, v = panel.lines[0].get_data()
         x = irb260.fk(t[:, None] * shi_zhu_li.RATES)[:, k]
         np.testing.assert_allclose(v[1:-1], np.gradient(x, t)[1:-1], atol=2e-3)
+
+
+def test_the_page_says_which_mechanisms_have_no_map() -> None:
+    told = [line for line in figures.page().splitlines() if line.startswith("- `")]
+    lines = {line.split("`")[1]: line for line in told}
+    for name in figures.names():
+        drawn = {f.name for f in figures.catalogue(name)}
+        for figure in ("mechanism", "branches", "workspace", "conditioning"):
+            assert (f"`{name}`" in lines[figure]) == (figure not in drawn), (name, figure)
+    assert "four_bar" in lines["workspace"] and "`hybrid_five_bar` only: " in lines["volume"]

@@ -89,7 +89,10 @@ def page() -> str:
         "dimensions; unless the caption says otherwise, the drawings use the default parameters,",
         "whose docstrings name their source.",
         "",
-        "## Figures of every mechanism",
+        "## Figures of the mechanisms",
+        "",
+        "A map needs two joints and a forward map, that of a workspace also a position in the task",
+        "that no surface holds.",
         "",
         *_of_mechanisms(),
         "",
@@ -101,15 +104,17 @@ def page() -> str:
 
 
 def _of_mechanisms() -> Iterator[str]:
-    figures = [f for f in drawings().figures("planar_2r") if "fig" not in f.name]
-    yield from (f"- `{f.name}`: {f.caption}" for f in figures)
-    extra = {
-        n: [f.name for f in catalogue(n) if (n, f.name) not in shown()][len(figures) :]
-        for n in names()
-    }
-    for name, more in extra.items():
-        if more:
-            yield f"- `{name}` only: {', '.join(f'`{m}`' for m in more)}"
+    """The figures that most mechanisms have, with those that have not, and the further ones."""
+    drawn = {name: catalogue(name) for name in names()}
+    usual = {f.name: f.caption for f in drawn["planar_2r"] if ("planar_2r", f.name) not in shown()}
+    for figure, caption in usual.items():
+        without = [n for n, figures in drawn.items() if figure not in {f.name for f in figures}]
+        listed = f" Not of {', '.join(f'`{n}`' for n in without)}." if without else ""
+        yield f"- `{figure}`: {caption}{listed}"
+    for name, figures in drawn.items():
+        for f in figures:
+            if f.name not in usual and (name, f.name) not in shown():
+                yield f"- `{f.name}`, of `{name}` only: {f.caption}"
 
 
 def _of_paper(paper: Any) -> Iterator[str]:

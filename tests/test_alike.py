@@ -75,3 +75,12 @@ def test_a_truth_value_is_that_of_all_legs() -> None:
 def test_what_no_leg_computes_alone_is_told_as_a_whole(name: str) -> None:
     told = Subject.of(d, d[name])
     assert not told.each and told.function is d[name]
+
+
+def test_what_is_singular_in_several_legs_is_said_once() -> None:
+    notes = [n for n in d["ik"].notes if "is free" in n]
+    assert notes == [
+        "SINGULAR: a rod ends on the axis of its crank; theta1, theta2 or theta3 is free, 0 is "
+        "returned.",
+        "SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.",
+    ]

@@ -114,7 +114,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
         result="Positions",
         notes=(
             "UNREACHABLE: the rod does not reach, so the loop cannot close.",
-            *where_free(found),
+            *where_free([found]),
             "Ill-conditioned near the parallel singularity, where both modes meet.",
         ),
     )
@@ -237,7 +237,7 @@ def _inverse(loop: _Loop) -> None:
         result="Solutions",
         notes=(
             "UNREACHABLE: the rod does not reach.",
-            *where_free(found),
+            *where_free([found]),
             "SINGULAR also near the parallel singularity, where the rod is at right angles to the "
             "path of the follower: the loop closes, but one ulp of the driver moves the follower "
             "by more than 1e-12.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -117,7 +117,7 @@ class LegByLeg:
             result="Solutions",
             notes=(
                 *([unreachable] if inside.body else []),
-                *(note for s in self.found for note in where_free(s)),
+                *where_free(self.found),
                 *notes,
             ),
         )
@@ -155,12 +155,21 @@ def record_lemma(d: Derivation, function: str, link: Link) -> None:
     d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
 
 
-def where_free(found: Solution) -> list[str]:
-    """Notes on where the joint of a leg is free."""
+def where_free(found: Iterable[Solution]) -> list[str]:
+    """Notes on where the joint of a leg is free; what holds for several legs is said once."""
+    free: dict[str, list[str]] = {}
+    for case in (c for s in found for c in s.link.degenerate):
+        free.setdefault(case.meaning, []).append(str(case.free))
     return [
-        f"SINGULAR: {case.meaning}; {case.free} is free, 0 is returned."
-        for case in found.link.degenerate
+        f"SINGULAR: {meaning}; {_either(names)} is free, 0 is returned."
+        for meaning, names in free.items()
     ]
+
+
+def _either(names: Sequence[str]) -> str:
+    """``a, b or c``."""
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:

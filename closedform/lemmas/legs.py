@@ -233,8 +233,10 @@ class Crank:
         )
         root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
         cases = (
-            Degenerate((met,), {a: 0, b: 0, l: root}, q, f"the rod ends on the axis of {q}"),
-            Degenerate((none,), {l: 0, r: sp.sqrt(a**2 + b**2 + aside**2)}, q, "no crank"),
+            Degenerate((met,), {a: 0, b: 0, l: root}, q, "a rod ends on the axis of its crank"),
+            Degenerate(
+                (none,), {l: 0, r: sp.sqrt(a**2 + b**2 + aside**2)}, q, "a crank has no length"
+            ),
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
         return Solution(link, lemma[q], w - away)

@@ -2240,12 +2240,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
-    - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
-    - SINGULAR: no crank; theta1 is free, 0 is returned.
-    - SINGULAR: the rod ends on the axis of theta2; theta2 is free, 0 is returned.
-    - SINGULAR: no crank; theta2 is free, 0 is returned.
-    - SINGULAR: the rod ends on the axis of theta3; theta3 is free, 0 is returned.
-    - SINGULAR: no crank; theta3 is free, 0 is returned.
+    - SINGULAR: a rod ends on the axis of its crank; theta1, theta2 or theta3 is free, 0 is
+      returned.
+    - SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in

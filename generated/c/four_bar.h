@@ -61,8 +61,8 @@ typedef struct {
  * -----
  * - The assembly modes, in order: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
- * - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
- * - SINGULAR: no crank; psi is free, 0 is returned.
+ * - SINGULAR: a rod ends on the axis of its crank; psi is free, 0 is returned.
+ * - SINGULAR: a crank has no length; psi is free, 0 is returned.
  * - Ill-conditioned near the parallel singularity, where both modes meet.
  */
 void four_bar_fk(const four_bar_params *params, const real_t q[1],
@@ -239,8 +239,8 @@ void four_bar_singularities_batch(size_t n, const four_bar_params *params,
  * -----
  * - The branches, in order: plus, minus.
  * - UNREACHABLE: the rod does not reach.
- * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
- * - SINGULAR: no crank; theta is free, 0 is returned.
+ * - SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.
+ * - SINGULAR: a crank has no length; theta is free, 0 is returned.
  * - SINGULAR also near the parallel singularity, where the rod is at right angles to the path
  *   of the follower: the loop closes, but one ulp of the driver moves the follower by more than
  *   1e-12.

@@ -1374,10 +1374,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     -----
     - The branches, in the order of `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
     - UNREACHABLE: a rod does not reach.
-    - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
-    - SINGULAR: no crank; theta1 is free, 0 is returned.
-    - SINGULAR: the rod ends on the axis of theta2; theta2 is free, 0 is returned.
-    - SINGULAR: no crank; theta2 is free, 0 is returned.
+    - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
+    - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
       but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
     """

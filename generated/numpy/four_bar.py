@@ -196,8 +196,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
-    - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
-    - SINGULAR: no crank; psi is free, 0 is returned.
+    - SINGULAR: a rod ends on the axis of its crank; psi is free, 0 is returned.
+    - SINGULAR: a crank has no length; psi is free, 0 is returned.
     - Ill-conditioned near the parallel singularity, where both modes meet.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
@@ -984,8 +984,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     -----
     - The branches, in the order of `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
-    - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
-    - SINGULAR: no crank; theta is free, 0 is returned.
+    - SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.
+    - SINGULAR: a crank has no length; theta is free, 0 is returned.
     - SINGULAR also near the parallel singularity, where the rod is at right angles to the path
       of the follower: the loop closes, but one ulp of the driver moves the follower by more
       than 1e-12.

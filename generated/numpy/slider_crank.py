@@ -730,8 +730,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     -----
     - The branches, in the order of `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
-    - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
-    - SINGULAR: no crank; theta is free, 0 is returned.
+    - SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.
+    - SINGULAR: a crank has no length; theta is free, 0 is returned.
     - SINGULAR also near the parallel singularity, where the rod is at right angles to the path
       of the follower: the loop closes, but one ulp of the driver moves the follower by more
       than 1e-12.

@@ -113,8 +113,8 @@ def loop_factors(
         "K": virtual,
         "A_R": right,
         "A_L": left,
-        "W": r"E\,S \begin{bmatrix} \frac{1}{2} A_R & - \frac{1}{2} A_L \\[5pt] "
-        r"\multicolumn{2}{c}{\text{second row of $V$}} \end{bmatrix}",
+        "W": r"E\,S \begin{bmatrix} \left[\frac{1}{2} A_R \;\; - \frac{1}{2} A_L\right] \\[5pt] "
+        r"\left[0 \;\; 1\right] V \end{bmatrix}",
         "E": by_line,
         "S": line_by,
     }

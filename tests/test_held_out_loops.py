@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from loop_files import apart, derived, newton, script_of
 
-FOLDER = Path(__file__).parent / "held_out" / "loops"
+FOLDER = Path(__file__).parent / "held_out_loops"
 OK, STARTS, LINES = 0, 30, 40
 
 

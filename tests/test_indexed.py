@@ -61,7 +61,7 @@ class TestEqualForEachIndex:
         b = numbered([x + (1 if k >= wrong else 0) for k in (1, 2, 3)])
         verdict = judged("a_i = b_i", a_i=a, b_i=b)
         assert verdict.kind == REFUTED
-        assert verdict.evidence[0] == f"index {wrong}: "
+        assert verdict.evidence[0] == f"for $i = {wrong}$: "
 
 
 class Counted(Check):

@@ -172,6 +172,8 @@ def two_circles(
         the sign that names the two points
     scale
         the size of the coordinates, whose rounding decides what counts as zero
+    share
+        what the point may miss a circle by, as a share of the scale
     free
         the joints that are free if the point is
     """

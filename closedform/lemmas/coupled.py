@@ -122,7 +122,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
     d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop.equation,), links=(found.link,)))
     record_lemma(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
-    along = sp.Matrix([v.let(f"w{i}", -e) for i, e in zip("xy", found.rod, strict=True)])
+    along = sp.Matrix([v.let(f"w{i}", -e) for i, e in zip("xyz", found.rod, strict=False)])
     return _Rod(v, modes, along)
 
 

@@ -534,7 +534,7 @@ def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
 
 def sign_of(value: Number) -> sp.Expr:
     """1 if ``value`` is not negative, else -1."""
-    return choose(sp.sympify(value) >= 0, 1, -1)
+    return choose(sp.sympify(value, strict=True) >= 0, 1, -1)
 
 
 def used_up(margin: Number) -> sp.Expr:

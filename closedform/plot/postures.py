@@ -321,7 +321,7 @@ def draw(
         what the legend calls it
     width
         that of the links, in points
-    faint, about
+    faint, about, hues
         as in :func:`mechanism`
     """
     skeleton = r.module.SKELETON

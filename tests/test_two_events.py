@@ -5,13 +5,13 @@ its range too, would seem to be out of reach.
 """
 
 import itertools
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from chains import arm, printed, solved
+from loop_files import newton
 from test_six import CHAINS as SIX
 from test_subproblems import CHAINS as SUBPROBLEMS
 
@@ -30,16 +30,6 @@ OK, SINGULAR = 0, 2
 BASES, AROUND = 4, 400
 SIZE = 6
 """About the sum of the lengths of each of these arms."""
-
-
-def zero_near(f: Callable[[np.ndarray], np.ndarray], q: np.ndarray) -> np.ndarray | None:
-    """The nearest posture where all ``f`` vanish, if the steps of Newton's method lead there."""
-    steps = 1e-6 * np.eye(len(q))
-    for _ in range(40):
-        rates = np.array([(f(q + s) - f(q - s)) / 2e-6 for s in steps]).T
-        step = np.linalg.lstsq(rates, f(q), rcond=1e-9)[0]
-        q = q - step / max(1.0, np.abs(step).max())
-    return q if np.abs(f(q)).max() < 1e-13 else None
 
 
 def around(bases: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -66,7 +56,7 @@ def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_pa
     robot, rng, tried = printed(d, tmp_path), np.random.default_rng(2), 0
     for pair in itertools.combinations(range(len(robot.SINGULARITIES)), 2):
         starts = rng.uniform(-np.pi, np.pi, (3 * BASES, 6))
-        found = [zero_near(lambda q: robot.singularities(q)[list(pair)], q) for q in starts]  # noqa: B023
+        found = [newton(lambda q: robot.singularities(q)[list(pair)], q) for q in starts]  # noqa: B023
         bases = [q for q in found if q is not None][:BASES]
         if bases:
             tried += 1

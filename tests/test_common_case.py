@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 from interpreter import run
 
+from closedform.emit.backends.c.kernel import Emission
 from closedform.lower import Lowered, lower
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Program, choose, real, used_up
@@ -145,3 +146,18 @@ def test_rare_postures_of_a_batch(robot: str, name: str) -> None:
 def parts(result: object) -> tuple[np.ndarray, ...]:
     """The answer and the status, or the only result."""
     return tuple(result) if isinstance(result, tuple) else (result,)
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+def test_in_c_a_quotient_does_not_wait_for_what_hardly_ever_holds(*, inverse: bool) -> None:
+    """An inverse is different: jumps would part its branches, which are computed side by side."""
+    p = Program()
+    flag = p.vanishes("flag", sp.Abs(x), 1, "x is zero")
+    divisor = p.let("divisor", choose(flag, 1, x))
+    angle = sp.atan2(y, divisor) if inverse else y
+    d = Derivation("test", "", Paper("", "", ()), "")
+    f = d.function("f", "", {"q": (x, y, z)}, {"p": [z / divisor, angle]}, program=p)
+    lines = Emission(d, f, lower(f, d), "f").emit().kernel_lines
+    chosen = next(line for line in lines if "divisor =" in line)
+    assert ("cf_rarely(single, " in chosen) is not inverse
+    assert ("cf_select(" in chosen) is inverse

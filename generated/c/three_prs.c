@@ -1563,8 +1563,8 @@ CF_INLINE void three_prs_ik_kernel(const int single, const real_t one,
     const real_t t7 = t6 + a * CLOSEDFORM_C(2.0);
     const int untwisted = delta <= CLOSEDFORM_VANISHING * t7;
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_divisor(single, untwisted, delta);
-    const real_t c = cf_select(untwisted, CLOSEDFORM_C(1.0), g * t8);
-    const real_t s = cf_select(untwisted, CLOSEDFORM_C(0.0), t3 * t8);
+    const real_t c = cf_rarely(single, untwisted, CLOSEDFORM_C(1.0), g * t8);
+    const real_t s = cf_rarely(single, untwisted, CLOSEDFORM_C(0.0), t3 * t8);
     const real_t t9 = s_tilt_x * s;
     const real_t t10 = cf_rounded(single, one, s_tilt_y * c) - cf_rounded(single, one, c_tilt_y * t9);
     const real_t t11 = cf_rounded(single, one, a * t10);
@@ -2060,8 +2060,8 @@ CF_INLINE void three_prs_workspace_contains_kernel(const int single, const real_
     const real_t t9 = cf_rounded(single, one, a * CLOSEDFORM_C(1.7320508075688772));
     const real_t t10 = CLOSEDFORM_VANISHING * (t9 + a * CLOSEDFORM_C(2.0));
     const int untwisted = delta <= t10;
-    const real_t c = cf_select(untwisted, CLOSEDFORM_C(1.0), g / cf_divisor(single, untwisted, delta));
-    const real_t s = cf_select(untwisted, CLOSEDFORM_C(0.0), t7 / cf_divisor(single, untwisted, delta));
+    const real_t c = cf_rarely(single, untwisted, CLOSEDFORM_C(1.0), g / cf_divisor(single, untwisted, delta));
+    const real_t s = cf_rarely(single, untwisted, CLOSEDFORM_C(0.0), t7 / cf_divisor(single, untwisted, delta));
     const real_t R_11 = cf_rounded(single, one, c_tilt_y * c) + cf_rounded(single, one, t6 * s);
     const real_t h_11 = cf_rounded(single, one, a * R_11);
     const real_t h_12 = cf_rounded(single, one, a * (c_tilt_x * s));

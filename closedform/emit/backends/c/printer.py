@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from closedform.emit.backends.c.guards import (
     deciding_products,
@@ -46,6 +46,7 @@ class CPrinter(Printer):
         self._divided = Counter(n.args[1].id for n in lowered.schedule() if n.op == "div")
         self._tested: dict[int, str] = {}
         self._deciding = set(deciding_products(lowered))
+        self._awaited = awaited(lowered.schedule())
 
     def _before_arctangents(self) -> set[int]:
         """The nodes that need no ``atan2``."""
@@ -156,11 +157,15 @@ class CPrinter(Printer):
             self.lines.append(Line(self._tested[divisor.id], code, False))
         return self._tested[divisor.id]
 
-    @staticmethod
-    def _is_worth_a_jump(select: Node) -> bool:
-        """Whether a jump avoids the computation of a value that is hardly ever selected."""
+    def _is_worth_a_jump(self, select: Node) -> bool:
+        """Whether a choice is hardly ever made, and a jump saves time.
+
+        It saves the computation of the value, if there is any.  It also saves a wait: a quotient or
+        a root that needs the choice starts before the condition is known.
+        """
         condition, value, _ = select.args
-        return hardly_ever(condition) and strip_sign(value).op not in LEAVES
+        computed = strip_sign(value).op not in LEAVES
+        return hardly_ever(condition) and (computed or select.id in self._awaited)
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         """Comparisons of calls get a name, an int, because clang warns about ``&`` between them."""
@@ -168,6 +173,17 @@ class CPrinter(Printer):
             return False
         compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
         return compares_calls or super().deserves_name(node, text, uses)
+
+
+def awaited(schedule: Sequence[Node]) -> set[int]:
+    """The values that a quotient or a square root needs.
+
+    There are none in an inverse: it computes its branches side by side, and jumps would part them.
+    """
+    if any(node.op == "atan2" for node in schedule):
+        return set()
+    slow = [arg for node in schedule if node.op in ("div", "sqrt") for arg in node.args]
+    return {node.id for node in reachable(slow)}
 
 
 __all__ = ["CPrinter"]

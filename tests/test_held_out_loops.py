@@ -90,3 +90,9 @@ def test_all_postures_close_the_loop(loop: ModuleType) -> None:
         assert (answers.status == OK).any()
         for joints in answers.q[answers.status == OK]:
             assert np.abs(misses(v, joints, target)).max() < 1e-12
+
+
+def test_the_words_for_a_single_loop_name_no_hand(tmp_path: Path) -> None:
+    script = script_of("rssr", (FOLDER / "rssr.toml").read_text("utf-8"), tmp_path)
+    assert "Joint theta turns a crank of length a, which" in script
+    assert script.count("joins to the other leg") == 2

@@ -91,7 +91,7 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
         if near is None:
             raise loop.error(f"{body} is joined to the ground alone")
         ends.append((joint, near))
-    hand = loop.hand
+    hand, found.end = loop.hand, "the other leg"
     loop.hand = ends[1][1].at
     first = found.leg(driver)
     loop.hand = ends[0][1].at
@@ -109,11 +109,18 @@ def _way(legs: Sequence[LoopLeg], task: Sequence[str]) -> str:
     return {0: "platform", 1: "coupled"}.get(len(task), "parallel")
 
 
+def _sentence(leg: LoopLeg) -> str:
+    """What a leg is; the name of a joint keeps its letters."""
+    if leg.words.startswith(f"{leg.joint.name} "):
+        return f"Joint {leg.words}"
+    return f"{leg.words[0].upper()}{leg.words[1:]}"
+
+
 def _head(
     name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
 ) -> list[str]:
     title = name.replace("_", " ").capitalize()
-    words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
+    words = "  ".join(f"{_sentence(leg)}." for leg in legs)
     calls = sorted({c for leg in legs for c in re.findall(r"([A-Z]\w+)\(", leg.call)} - FUNCTIONS)
     names = sorted([*calls, "Derivation", "Paper", _way(legs, task), *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]

@@ -265,6 +265,8 @@ class Legs:
         self.loop = loop
         self.turning = ""
         """The body that is the hand, if it may turn."""
+        self.end = "the hand"
+        """What a rod joins a leg to."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
         """Coordinates in the plane of a leg, while the leg of a tripod is written."""
         angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
@@ -374,7 +376,7 @@ class Legs:
             joint,
             f"Slide({joint.name}, {self.bar(rod, length)}, {self.at(end)}, "
             f"{self.at(joint.axis)}{self.tail(place)})",
-            f"{joint.name} moves a slider, which a rod of length {length} joins to the hand",
+            f"{joint.name} moves a slider, which a rod of length {length} joins to {self.end}",
             place,
         )
 
@@ -405,7 +407,7 @@ class Legs:
             f"Crank({name}, {self.bar(body, crank)}, {length}, {self.at(start)}, "
             f"{self.at(along)}, {self.at(across)}{tail})",
             f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
-            f"joins to the hand",
+            f"joins to {self.end}",
             place,
         )
 

@@ -54,8 +54,8 @@ from closedform.lemmas.tangent import Preferred as Preferred
 from closedform.lemmas.tangent import coordinate_within as coordinate_within
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.triangle import Triangle as Triangle
-from closedform.lemmas.tripod import Upright as Upright
 from closedform.lemmas.tripod import tripod as tripod
+from closedform.lemmas.tripod_legs import Upright as Upright
 from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside

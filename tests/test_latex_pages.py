@@ -193,6 +193,15 @@ def test_the_book_explains_a_status_once() -> None:
     assert r"\textsc{unreachable} & the target" not in rest and r"\statuses" in rest
 
 
+def test_a_function_that_an_equation_defines_is_not_listed() -> None:
+    """Its statements are those of a program; the equations of the step say what it computes."""
+    told = context("three_prs")
+    shown = {f["name"].replace("\\", ""): f for f in told["functions"]}
+    for name in ("jacobian_parallel", "jacobian_serial", "jacobian", "determinant"):
+        assert shown[name]["evaluates"].startswith(r"\eqref{") and not shown[name]["lines"]
+    assert not told["singular"]["lines"] and len(told["singular"]["rank"]) == 5
+
+
 TEX = Path(__file__).parents[1] / "generated" / "latex"
 
 

@@ -12,53 +12,34 @@ and no ``fk`` is derived.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.hand import check_order, check_plain, rate_of, square
+from closedform.lemmas.hand import rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
-from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, cross_in_plane, vector
-from closedform.mechanics.frames import rotation
+from closedform.lemmas.legs import Crank, Slide, Stretch, vector
+from closedform.lemmas.tripod_legs import Placed, Tripod, Upright
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import Program, Vanishes, choose, real
 
-TASK = ("z", "tilt_x", "tilt_y")
 DEGREE = 16
 """Of the forward problem of a tripod in general: three circles that carry a triangle."""
+VECTORS = {
+    "a_k": "axis about which entry k of the target tilts the hand",
+    "a_psi": "axis of the twist",
+    "v_ik": "derivative of h_i with respect to entry k of the target",
+    "p_k": "derivative of the position with respect to entry k of the target",
+    "h_i": "from the point of the hand to the corner of leg i",
+    "n_i": "normal of the plane of leg i",
+    "d_i": "horizontal direction in the plane of leg i",
+    "b_i": "near end of rod i, in the plane of the leg",
+    "r_i": "from the near end of rod i to the corner of the hand, in that plane",
+}
+"""In the step on the velocity."""
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
-
-
-@dataclass(frozen=True)
-class Upright:
-    """A leg that stays in an upright plane through the z axis, and carries a corner of the hand.
-
-    The plane contains the z axis and ``heading``, a horizontal unit vector in numbers.  In this
-    plane the ``leg`` is seen with two coordinates: the distance from the z axis along ``heading``,
-    and the height.  ``corner`` is the end of the leg on the hand, as x and y in the frame of the
-    hand.
-    """
-
-    leg: Leg
-    heading: Sequence[Any]
-    corner: Sequence[Any]
-
-    @property
-    def along(self) -> sp.Matrix:
-        return vector(self.heading)
-
-    @property
-    def normal(self) -> sp.Matrix:
-        """The normal of the plane, horizontal."""
-        return sp.Matrix([-self.along[1], self.along[0]])
-
-    def in_space(self, place: sp.Matrix) -> list[sp.Expr]:
-        """A point of the plane: distance from the z axis and height."""
-        return [*(place[0] * self.along), place[1]]
 
 
 def tripod(d: Derivation, legs: Sequence[Upright]) -> None:
@@ -87,177 +68,6 @@ def tripod(d: Derivation, legs: Sequence[Upright]) -> None:
     _velocity(m, loop)
     _draw(m)
     _inverse(m, loop)
-
-
-@dataclass(frozen=True)
-class Placed:
-    """The hand at a target, in the names of a program."""
-
-    program: Program
-    turn: tuple[sp.Expr, sp.Expr]
-    """The cosine and the sine of the twist."""
-    delta: sp.Expr
-    rotation: sp.Matrix
-    position: sp.Matrix
-    arms: tuple[sp.Matrix, ...]
-    """The corners, from the point of the hand, in the base frame."""
-
-    def corner(self, leg: Upright, k: int) -> sp.Matrix:
-        """The corner of a leg, in its plane."""
-        far = self.position + self.arms[k]
-        return sp.Matrix([leg.along.dot(far[:2, 0]), far[2]])
-
-
-@dataclass(frozen=True)
-class Tripod:
-    """The legs of a tripod."""
-
-    d: Derivation
-    legs: tuple[Upright, ...]
-
-    def __post_init__(self) -> None:
-        name = self.d.name
-        if len(self.legs) != 3:
-            raise ShapeError(f"{name}: a tripod has three legs, not {len(self.legs)}")
-        for upright in self.legs:
-            leg = upright.leg
-            if not isinstance(leg, Crank | Slide | Stretch) or not all(
-                len(v) == 2 for v in (upright.heading, upright.corner, leg.base, leg.rate)
-            ):
-                raise ShapeError(
-                    f"{name}: a leg of a tripod is a crank, a slide or a stretching leg in a "
-                    f"plane, so its vectors have 2 entries"
-                )
-            if not square(upright.along).is_number or sp.simplify(square(upright.along) - 1) != 0:
-                raise ShapeError(f"{name}: a heading is a unit vector, in numbers")
-        check_order(self.d, [upright.leg for upright in self.legs])
-        check_plain(self.d, [upright.leg for upright in self.legs])
-        if any(weight == 0 for weight in self.weights):
-            raise ShapeError(f"{name}: two legs are in the same plane")
-        if list(self.d.task) not in ([], list(TASK)):
-            raise ShapeError(f"{name}: the task of a tripod is {', '.join(TASK)}")
-        if not self.side:
-            raise ShapeError(
-                f"{name}: the corners do not say which way the hand is turned at rest; their "
-                f"coordinates need parameters that are positive"
-            )
-        self.d.task = list(TASK)
-
-    @cached_property
-    def target(self) -> tuple[sp.Symbol, ...]:
-        return tuple(map(real, TASK))
-
-    @property
-    def size(self) -> sp.Expr:
-        """The sum of the distances of the corners from the axes of the hand."""
-        return sp.Add(*(sp.Abs(e) for leg in self.legs for e in vector(leg.corner)))
-
-    @cached_property
-    def weights(self) -> tuple[sp.Expr, ...]:
-        """Factors with which the normals of the planes add up to zero."""
-        n = [leg.normal for leg in self.legs]
-        return tuple(sp.simplify(cross_in_plane(n[(k + 1) % 3], n[(k + 2) % 3])) for k in range(3))
-
-    @cached_property
-    def tilted(self) -> sp.Matrix:
-        """The rotation without the twist."""
-        _, a, b = self.target
-        return rotation("y", b) * rotation("x", a)
-
-    def balance(self, turned: bool) -> sp.Expr:
-        """The sum over the legs of weight*n*e, for the corners e as they are, or a right angle on.
-
-        With the twist psi, the first times cos(psi) plus the second times sin(psi) vanishes.
-        """
-        total = sp.S.Zero
-        for weight, leg in zip(self.weights, self.legs, strict=True):
-            x, y = vector(leg.corner)
-            e = sp.Matrix([-y, x, 0] if turned else [x, y, 0])
-            total += weight * leg.normal.dot((self.tilted * e)[:2, 0])
-        return sp.collect(sp.expand(total), [sp.cos(t) for t in self.target])
-
-    @cached_property
-    def side(self) -> int:
-        """The sign of the second sum if the hand is level and not twisted; 0 if it is unknown."""
-        level = sp.simplify(self.balance(turned=True).subs(dict.fromkeys(self.target, 0)))
-        return int(bool(level.is_positive)) - int(bool(level.is_negative))
-
-    @property
-    def numbered(self) -> list[tuple[int, Upright]]:
-        return [*enumerate(self.legs, 1)]
-
-    def placed(self, p: Program, *, guarded: bool = False) -> Placed:
-        """Name in a program what the target says of the hand; ``guarded`` where the twist is free.
-
-        There the hand is not twisted, instead of being nowhere.
-        """
-        side = sp.Integer(self.side)
-        f = p.let("f", side * self.balance(turned=False))
-        g = p.let("g", side * self.balance(turned=True))
-        delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
-        cosine, sine = g / delta, -f / delta
-        if guarded:
-            free = p.vanishes("untwisted", delta, self.size, "the twist of the hand is free")
-            cosine, sine = choose(free, 1, cosine), choose(free, 0, sine)
-        c, s = p.let("c", cosine), p.let("s", sine)
-        first, second, third = (self.tilted.col(k) for k in range(3))
-        columns = [c * first + s * second, c * second - s * first, third]
-        R = p.matrix("R", sp.Matrix.hstack(*columns))
-        arms = []
-        for k, leg in self.numbered:
-            x, y = vector(leg.corner)
-            arm = R.col(0) * x + R.col(1) * y
-            arms.append(sp.Matrix([named_in(p, f"h_{k}{i}", e) for i, e in enumerate(arm, 1)]))
-        n = [leg.normal for leg in self.legs]
-        off = [named_in(p, f"beside_{k + 1}", n[k].dot(arms[k][:2, 0])) for k in range(2)]
-        across = self.weights[2]
-        x = named_in(p, "px", (n[0][1] * off[1] - n[1][1] * off[0]) / across)
-        y = named_in(p, "py", (n[1][0] * off[0] - n[0][0] * off[1]) / across)
-        return Placed(p, (c, s), delta, R, sp.Matrix([x, y, self.target[0]]), tuple(arms))
-
-    @cached_property
-    def posture(self) -> Placed:
-        """The hand in the angles of the target and the twist psi, without a program."""
-        psi = real("psi")
-        turned = self.tilted * rotation("z", psi)
-        arms = tuple(turned * sp.Matrix([*vector(leg.corner), 0]) for leg in self.legs)
-        n = [leg.normal for leg in self.legs]
-        off = [n[k].dot(arms[k][:2, 0]) for k in range(2)]
-        sideways = sp.Matrix([n[0].T, n[1].T]).LUsolve(-sp.Matrix(off))
-        position = sp.Matrix([*sideways, self.target[0]])
-        pair = (sp.cos(psi), sp.sin(psi))
-        return Placed(Program(), pair, sp.S.One, turned, position, arms)
-
-    @property
-    def twisting(self) -> sp.Expr:
-        """What vanishes for the right twist psi."""
-        c, s = self.posture.turn
-        f, g = (self.side * self.balance(turned) for turned in (False, True))
-        return f * c + g * s
-
-    def rows(self, placed: Placed, rods: Sequence[sp.Matrix], delta: sp.Expr) -> list[sp.Matrix]:
-        """The rows of A, from the vectors along the rods; ``delta`` is what divides."""
-        p, at, psi, tilts = placed.program, self.posture, real("psi"), self.target[1:]
-        held = dict(zip(at.turn, placed.turn, strict=True))
-        follows = [
-            named_in(p, f"twist_{t}", -self.twisting.diff(t).xreplace(held) / delta) for t in tilts
-        ]
-        rows = []
-        for k, (leg, rod) in enumerate(zip(self.legs, rods, strict=True)):
-            far, row = at.corner(leg, k), [rod[1]]
-            for t, follow in zip(tilts, follows, strict=True):
-                rate = far.diff(t).xreplace(held) + far.diff(psi).xreplace(held) * follow
-                row.append(named_in(p, f"A_{k + 1}{len(row) + 1}", rod.dot(rate)))
-            rows.append(sp.Matrix([row]))
-        return rows
-
-    def loop(self, placed: Placed) -> tuple[sp.Expr, ...]:
-        """The equations of the loop: each rod keeps its length."""
-        return tuple(
-            square(placed.corner(leg, k) - leg.leg.end())
-            - sp.sympify(leg.leg.rod, strict=True) ** 2
-            for k, leg in enumerate(self.legs)
-        )
 
 
 def _place(m: Tripod) -> Step:
@@ -365,21 +175,23 @@ def _velocity(m: Tripod, loop: Step) -> None:
     d.step(
         "Velocity and singular sets",
         "The derivatives of the loop equations, halved, give A*dx = B*dq for the rates of the "
-        "target and of the joints.  Row i of A is the vector r along rod i times the derivatives "
-        "of its far end.  These take into account that the twist follows the tilts.  F_k is the "
-        "derivative of f*cos(psi) + g*sin(psi) with respect to entry k of the target; that with "
-        "respect to psi is delta.  B is diagonal, because each leg depends "
-        "on its own joint alone.  B is singular if the joint moves the near end of a rod at right "
-        "angles to it (serial: the joint moves and the hand stands still).  A is singular if the "
-        "rods do not hold the hand (parallel), and where tilt_x is a right angle: there "
-        "tilt_y turns the hand about its own axis, as the twist does.  Where delta, the root of "
-        "f^2 + g^2, vanishes, the planes do not hold the twist (constraint).",
-        {
-            r"\frac{\partial\psi}{\partial x_k}": -sp.Symbol("F_k") / sp.Symbol("delta"),
-        },
+        "target and of the joints.  Row i of A is the vector r_i along the rod times the "
+        "derivatives of its far end, the corner.  Entry k of the target, k = 2 or 3, tilts the "
+        "hand about the axis a_k, and the twist turns it about a_psi.  The twist follows the "
+        "tilts: F_k is the derivative of f*cos(psi) + g*sin(psi) with respect to entry k; that "
+        "with respect to psi is delta.  So the corner of leg i moves by v_ik, seen from the "
+        "point of the hand.  The point itself moves by p_k, which is horizontal and keeps the "
+        "corners in their planes.  B is diagonal, because each leg depends on its own joint "
+        "alone.  B is singular if the joint moves the near end of a rod at right angles to it "
+        "(serial: the joint moves and the hand stands still).  A is singular if the rods do not "
+        "hold the hand (parallel), and where tilt_x is a right angle: there tilt_y turns the "
+        "hand about its own axis, as the twist does.  Where delta, the root of f^2 + g^2, "
+        "vanishes, the planes do not hold the twist (constraint).",
+        _velocities(m),
         proves="The derivative of f*cos(psi) + g*sin(psi) with respect to psi is g*cos(psi) - "
         "f*sin(psi), which is delta.  The derivative of each loop equation is twice the row of A "
-        "with respect to the target, and less twice the entry of B with respect to the joint.",
+        "with respect to the target, and less twice the entry of B with respect to the joint.  "
+        "The far end of each rod moves by p_k + v_ik.",
         equal=[
             (
                 turning,
@@ -395,6 +207,7 @@ def _velocity(m: Tripod, loop: Step) -> None:
                 for e, row in zip(m.loop(at), exact_rows, strict=True)
                 for t, entry in zip(m.target, row, strict=True)
             ),
+            *_corners_move(m),
         ],
         uses=[loop],
     )
@@ -402,31 +215,109 @@ def _velocity(m: Tripod, loop: Step) -> None:
     J = A.adjugate() * sp.diag(*driven) / volume
     pole = "Not finite at a parallel singularity."
     upright = [u.leg for u in m.legs]
-    exported: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
-        ("jacobian_parallel", "A of A*dx = B*dq.", {"A": A}, ()),
+    exported: list[tuple[str, str, str, dict[str, Any], tuple[str, ...]]] = [
+        ("jacobian_parallel", "A", "A of A*dx = B*dq.", {"A": A}, ()),
         (
             "jacobian_serial",
+            "B",
             "The diagonal of B of A*dx = B*dq.",
             {"B": driven},
             signs_of_modes(upright),
         ),
         (
             "jacobian_inverse",
+            "K",
             "B^-1*A: joint rates per rate of the target.",
             {"K": sp.Matrix.vstack(*(row / b for row, b in zip(rows, driven, strict=True)))},
             ("Not finite at a serial singularity.",),
         ),
-        ("jacobian", "Derivative of the target with respect to q: A^-1*B.", {"J": J}, (pole,)),
-        ("determinant", "Determinant of the Jacobian.", {"det": sp.Mul(*driven) / volume}, (pole,)),
+        ("jacobian", "J", "Derivative of the target with respect to q: A^-1*B.", {"J": J}, (pole,)),
+        (
+            "determinant",
+            r"\det J",
+            "Determinant of the Jacobian.",
+            {"det": sp.Mul(*driven) / volume},
+            (pole,),
+        ),
         (
             "singularities",
+            r"\Delta",
             "The diagonal of B (serial), the determinant of A (parallel) and delta (constraint).",
             {"factors": [*driven, volume, placed.delta]},
             (),
         ),
     ]
-    for name, summary, outputs, notes in exported:
-        d.function(name, summary, target, outputs, program=p, notes=(TOGETHER, *notes))
+    for name, equation, summary, outputs, notes in exported:
+        d.function(
+            name,
+            summary,
+            target,
+            outputs,
+            program=p,
+            equation=equation,
+            notes=(TOGETHER, *notes),
+        )
+
+
+def _velocities(m: Tripod) -> dict[str, Any]:
+    """What the step on the velocity shows."""
+    d, (a2, a3, w) = m.d, m.axes
+    for name, meaning in VECTORS.items():
+        stem, _, index = name.replace("psi", r"\psi").partition("_")
+        d.write(name, rf"\mathbf{{{stem}}}_{{{index}}}", meaning)
+    d.explain(
+        {
+            r"\mathbf a_2": "axis of tilt_x",
+            r"\mathbf a_3": "axis of tilt_y",
+            "F_k": "derivative of the equation of the twist with respect to entry k of the target",
+            "A_{i1}": "entry of A",
+            "A_{ik}": "entry of A for a tilt, k = 2 or 3",
+            "B_{ii}": "entry of B",
+            "A": "factor of the rates of the target",
+            "B": "factor of the rates of the joints",
+            r"\Delta": "determinant of A",
+            "K": "joint rates per rate of the target",
+            "J": "derivative of the target with respect to the joints",
+        }
+    )
+    twist = r"\frac{\partial\psi}{\partial x_k}"
+    turned = rf"\left(\mathbf a_k + {twist}\,\mathbf a_\psi\right)"
+    moved = r"\mathbf p_k + \mathbf v_{ik}"
+    return {
+        "F_k": r"\frac{\partial f}{\partial x_k}\cos\psi + \frac{\partial g}{\partial x_k}\sin\psi",
+        twist: -sp.Symbol("F_k") / sp.Symbol("delta"),
+        r"\mathbf a_2": a2,
+        r"\mathbf a_3": a3,
+        r"\mathbf a_\psi": w,
+        r"\mathbf v_{ik}": rf"{turned} \times \mathbf h_i",
+        rf"\mathbf n_i^T({moved})": sp.S.Zero,
+        "A_{i1}": "r_{i2}",
+        "A_{ik}": rf"r_{{i1}}\,\mathbf d_i^T({moved}) + r_{{i2}}\,v_{{ik3}}",
+        "B_{ii}": r"\mathbf r_i^T\,\frac{\partial\mathbf b_i}{\partial q_i}",
+        "A": sp.Matrix(3, 3, lambda i, k: sp.Symbol(f"A_{i + 1}{k + 1}")),
+        "B": sp.diag(*(sp.Symbol(f"B_{k}{k}") for k in (1, 2, 3))),
+        r"\Delta": r"\det A",
+        "K": r"B^{-1}A",
+        "J": r"A^{-1}B",
+        r"\det J": r"\frac{B_{11}B_{22}B_{33}}{\Delta}",
+    }
+
+
+def _corners_move(m: Tripod) -> list[tuple[sp.Matrix, sp.Matrix]]:
+    """The derivatives of the corners, and p_k + v_ik in the plane of the leg, for any F_k."""
+    at, psi, follow = m.posture, real("psi"), real("follow")
+    *tilts, w = m.axes
+    normals = sp.Matrix([leg.normal.T for leg in m.legs[:2]])
+    found = []
+    for t, axis in zip(m.target[1:], tilts, strict=True):
+        moved = [(axis + follow * w).cross(arm) for arm in at.arms]
+        aside = [leg.normal.dot(h[:2, 0]) for leg, h in zip(m.legs[:2], moved, strict=False)]
+        p_k = normals.LUsolve(-sp.Matrix(aside))
+        for k, (leg, h) in enumerate(zip(m.legs, moved, strict=True)):
+            far = at.corner(leg, k)
+            end = sp.Matrix([leg.along.dot(p_k + h[:2, 0]), h[2]])
+            found.append((far.diff(t) + follow * far.diff(psi), end))
+    return found
 
 
 def _draw(m: Tripod) -> None:
@@ -533,4 +424,4 @@ def _inverse(m: Tripod, loop: Step) -> None:
     solved.certify([plain.program.explicit(e) for e in m.loop(plain)])
 
 
-__all__ = ["Tripod", "Upright", "tripod"]
+__all__ = ["tripod"]

@@ -173,11 +173,11 @@ class Page(Sheet):
         """What a function without a status computes, line by line, or where its formulas are."""
         if function.has_status or function.name == "singularities":
             return {**BARE, "evaluates": ""}
-        defined, name = self.numbers.defined, canonical(function.equation)
-        outputs = [] if name in defined else self.outputs(function)
+        shown = self.numbers.of(function.equation)
+        outputs = [] if shown else self.outputs(function)
         where = [self.numbers.right.get(right, "") for _, right in outputs]
-        if name in defined or (outputs and all(where) and not function.body):
-            labels = [defined[name]] if name in defined else list(dict.fromkeys(where))
+        if shown or (outputs and all(where) and not function.body):
+            labels = [shown] if shown else list(dict.fromkeys(where))
             return {**BARE, "evaluates": reference(labels)}
         if not function.body:
             return {**BARE, "blocks": blocks(self.numbers.number(runs(outputs))), "evaluates": ""}
@@ -224,7 +224,8 @@ class Page(Sheet):
             return {}
         names = derivation.singularities or ("factor",)
         entries = list(enumerate(e for a in found.outputs for e in a.entries))
-        algorithm = self.algorithm(found) if found.body else None
+        told = not found.body or self.numbers.of(found.equation)
+        algorithm = None if told else self.algorithm(found)
         rows = {
             kind: [
                 (self.named_set(names[k % len(names)]), formulas([self.vanishing(e, algorithm)]))
@@ -234,7 +235,7 @@ class Page(Sheet):
             for kind, poles in (("rank", False), ("poles", True))
         }
         arguments = ", ".join(escape(a.name) for a in found.inputs)
-        listing = self.listing(found) if found.body else BARE
+        listing = BARE if told else self.listing(found)
         return {**rows, **listing, "name": found.name, "arguments": arguments}
 
     def named_set(self, name: str) -> str:

@@ -92,6 +92,12 @@ class Numbers:
         """The label of this very equation if it stands in the document, or nothing."""
         return self.values.get(self._content(run), "")
 
+    def of(self, left: str) -> str:
+        """The label of the equation that defines a name, or has this left-hand side, or nothing."""
+        name = canonical(left)
+        lefts = {own: label for (own, _), label in reversed(self.values.items())}
+        return (self.defined.get(name) or lefts.get(name, "")) if name else ""
+
     def _content(self, run: Sequence[Line]) -> tuple[str, str]:
         return canonical(run[0][0]), " ".join(right for _, right in run)
 

@@ -53,12 +53,24 @@ def reject_text(value: Any, where: str) -> None:
 
 def reject_floats(expr: sp.Basic, where: str) -> None:
     """Raise ``TypeError`` if ``expr`` contains a floating-point number."""
-    floats = sorted(expr.atoms(sp.Float), key=str)
+    floats = [e for e in _parts(expr) if isinstance(e, sp.Float)]
     if floats:
         raise TypeError(
-            f"{where}: the float {floats[0]} occurs in an exact expression; "
+            f"{where}: the float {min(map(str, floats))} occurs in an exact expression; "
             f"write an integer or sympy.Rational instead"
         )
+
+
+def _parts(expr: sp.Basic) -> Iterator[sp.Basic]:
+    """The parts of an expression; one that occurs in several places is visited once."""
+    seen: set[int] = set()
+    pending = [expr]
+    while pending:
+        e = pending.pop()
+        if id(e) not in seen:
+            seen.add(id(e))
+            yield e
+            pending += e.args
 
 
 @dataclass(frozen=True)

@@ -217,7 +217,7 @@ class Plane(NamedTuple):
 
 
 def turn(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
-    return sp.expand(sp.Matrix.hstack(a, b).det())
+    return sp.expand(a[0] * b[1] - a[1] * b[0])  # det() would first try to cancel every product
 
 
 def square(v: sp.Matrix) -> sp.Expr:

@@ -176,7 +176,10 @@ class Equal(Check):
         return Verdict(PROVED)
 
     def _on(self, side: Exact) -> Exact:
-        return side.subs(self.on, simultaneous=True) if self.on else side
+        if not self.on:
+            return side
+        values = {symbol: sp.sympify(value, strict=True) for symbol, value in self.on.items()}
+        return sp.sympify(side, strict=True).xreplace(values)
 
     def _compare(self, first: Exact, name: str, side: Exact, text: str) -> Verdict:
         if not isinstance(first, sp.MatrixBase) and isinstance(side, sp.MatrixBase):

@@ -472,6 +472,14 @@ check_function(const cf_function *f)
 static int
 module_exec(PyObject *module)
 {
+#ifdef CLOSEDFORM_PROCESSOR
+    if (!__builtin_cpu_supports(CLOSEDFORM_PROCESSOR)) {
+        PyErr_SetString(PyExc_ImportError, "the compiled modules are for processors of the level "
+                        CLOSEDFORM_PROCESSOR ", which this one is not: run make here, or build "
+                        "them for all processors with CLOSEDFORM_DISPATCH=1");
+        return -1;
+    }
+#endif
     import_array1(-1);
     for (size_t k = 0; k < cf_function_count; k++) {
         if (check_function(&cf_functions[k]) < 0) {

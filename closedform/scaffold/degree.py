@@ -84,19 +84,23 @@ class Numeric:
 
     def pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The poses of the tool, and the twists (v; omega) of the joints in the base frame."""
-        T = np.broadcast_to(self.lead, (len(q), 4, 4))
-        twists = np.zeros((len(q), 6, q.shape[1]), complex)
-        for k, sense in enumerate(self.senses):
-            w, move = sense * T[:, :3, 2], np.zeros((len(q), 4, 4), complex)
-            move[:] = np.eye(4)
-            if self.slides[k]:
-                twists[:, :3, k], move[:, 2, 3] = w, sense * q[:, k]
-            else:
-                twists[:, :3, k], twists[:, 3:, k] = np.cross(T[:, :3, 3], w), w
-                c, s = np.cos(q[:, k]), sense * np.sin(q[:, k])
-                move[:, 0, 0], move[:, 0, 1], move[:, 1, 0], move[:, 1, 1] = c, -s, s, c
-            T = T @ move @ self.motions[k]
-        return T, twists
+        moves = np.zeros((*q.shape, 4, 4), complex)
+        moves[:] = np.eye(4)
+        turns, slides = ~self.slides, self.slides
+        c, s = np.cos(q[:, turns]), self.senses[turns] * np.sin(q[:, turns])
+        moves[:, turns, 0, 0], moves[:, turns, 0, 1] = c, -s
+        moves[:, turns, 1, 0], moves[:, turns, 1, 1] = s, c
+        moves[:, slides, 2, 3] = (self.senses * q)[:, slides]
+        frames = [np.broadcast_to(self.lead, (len(q), 4, 4))]
+        for move in np.moveaxis(moves @ self.motions, 1, 0):
+            frames.append(frames[-1] @ move)
+        before = np.stack(frames[:-1], axis=1)
+        axes, points = self.senses[:, None] * before[..., :3, 2], before[..., :3, 3]
+        ahead, behind = np.roll(axes, -1, axis=-1), np.roll(points, -1, axis=-1)
+        moments = np.roll(points * ahead - behind * axes, -1, axis=-1)  # np.cross takes longer
+        is_slide = slides[:, None]
+        twists = [np.where(is_slide, axes, moments), np.where(is_slide, 0, axes)]
+        return frames[-1], np.concatenate(twists, axis=-1).swapaxes(1, 2)
 
     @cached_property
     def reach(self) -> float:

@@ -28,8 +28,8 @@ PACKAGES = [
 FOLDERS = (Path("closedform/runtime/extension"), Path("generated/c"))
 SOURCES = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.c"))
 HEADERS = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.h"))
-# A wheel is for AVX-512, AVX2 and the baseline. What is built in place is for the processor at hand,
-# which takes a third of the time. CLOSEDFORM_DISPATCH=1 builds for all, 0 for the baseline alone.
+# A wheel is for AVX-512, AVX2 and the baseline. What is built in place is for the processor at
+# hand, in a third of the time. CLOSEDFORM_DISPATCH=1 builds for all, 0 for the baseline alone.
 DISPATCH = os.environ.get("CLOSEDFORM_DISPATCH", "")
 LEVELS = {
     "x86-64-v4": "AVX512F AVX512BW AVX512CD AVX512DQ AVX512VL AVX2 BMI2 FMA MOVBE",
@@ -47,7 +47,7 @@ def headers_of(source):
 
 def read_by(source):
     """The files that decide whether a source has to be compiled again."""
-    return [source, "setup.py", *(map(str, headers_of(source)) or HEADERS)]
+    return [source, "setup.py", *map(str, headers_of(source) or HEADERS)]
 
 
 def processor(compiler):

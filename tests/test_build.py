@@ -10,6 +10,7 @@ import sysconfig
 import time
 from pathlib import Path
 
+import libraries
 import pytest
 
 from closedform.cli.commands import main
@@ -40,6 +41,7 @@ for argument; do
     before=$argument
 done
 echo "$target" >> LOG
+echo "$*" >> FLAGS
 case "$*" in *-shared*) kind=link ;; *) kind=compile ;; esac
 if [ -e "kill-$kind" ]; then
     printf half > "$target"
@@ -144,6 +146,31 @@ def test_only_what_changed_is_compiled(toy: Path) -> None:
 
 
 @needs_cc
+@pytest.mark.parametrize(
+    ("dispatch", "marched", "cloned"), [("", True, False), ("1", False, True), ("0", False, False)]
+)
+def test_what_is_built_in_place_is_for_this_processor(
+    toy: Path, monkeypatch: pytest.MonkeyPatch, dispatch: str, marched: bool, cloned: bool
+) -> None:
+    """The rest of the module, which says whether it can be loaded, is for any processor."""
+    if not (libraries.compiles() and libraries.runs()):
+        pytest.skip("gcc does not build clones for this processor")
+    for name in ("answer", "closedform"):
+        (toy / "generated" / "c" / f"{name}.h").write_text("")
+    monkeypatch.setenv("CLOSEDFORM_DISPATCH", dispatch)
+    build(toy)
+    assert answer(toy) == "42\n"
+    lines = (toy / "FLAGS").read_text().splitlines()
+    (robot,), (module,) = (
+        [line for line in lines if f"/{name}.c" in line] for name in ("answer", "module")
+    )
+    assert ("-march=x86-64-v" in robot) == marched
+    assert ("-DCLOSEDFORM_DISPATCH" in robot) == cloned
+    assert "-march" not in module
+    assert ("-DCLOSEDFORM_PROCESSOR=" in module) == marched
+
+
+@needs_cc
 def test_two_builds_at_once(toy: Path) -> None:
     for process in [start(toy), start(toy)]:
         output, _ = process.communicate(timeout=60)
@@ -231,6 +258,25 @@ def test_two_makes_take_turns(tree: Path) -> None:
     assert (tree / "build" / "derived.txt").read_text() == "robot\n"
     log = (tree / "LOG").read_text().split()
     assert log in (["begin", "end"], ["begin", "end", "begin", "end"])
+
+
+@needs_make
+def test_the_c_that_is_there_is_compiled_while_robots_are_proved(tree: Path) -> None:
+    """Whether that succeeds does not matter: what was printed meanwhile is compiled afterwards."""
+    assert make(tree, ".venv/make.stamp").returncode == 0
+    waiting = "for k in $(seq 50); do [ -e {} ] && touch {} && break; sleep 0.1; done"
+    compiling = f"touch compiling; {waiting.format('deriving', 'together')}; exit 1"
+    programs = {
+        "python": f'case "$*" in *build_ext*) {compiling} ;; esac',
+        "closedform": f"{waiting.format('compiling', 'deriving')}; echo robot",
+    }
+    for name, text in programs.items():
+        program = tree / ".venv" / "bin" / name
+        program.write_text(f"#!/bin/sh\n{text}\n")
+        program.chmod(0o755)
+    assert make(tree, "build/derived.txt").returncode == 0
+    assert (tree / "together").exists()
+    assert (tree / "build" / "derived.txt").read_text() == "robot\n"
 
 
 @needs_make

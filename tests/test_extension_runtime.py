@@ -8,6 +8,7 @@ bit (except sines and cosines).
 from __future__ import annotations
 
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from extension_toy.build import INCLUDES, ROOT, RUNTIME, SANITIZED, TOY, function
+from extension_toy.build import (
+    INCLUDES,
+    ROOT,
+    RUNTIME,
+    SANITIZED,
+    TOY,
+    compile_toy,
+    function,
+    loaded,
+)
 from extension_toy.toy import LAYOUTS, ROWS, STRIDED, Two, chain, check, polar, two, values
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -248,6 +258,22 @@ def test_sources_compile_without_a_warning(compiler: str) -> None:
     sources = sorted(map(str, RUNTIME.glob("*.c")))
     subprocess.run([*command, *INCLUDES, *sources], check=True)
     subprocess.run([*command, "-pedantic", f"-I{RUNTIME}", *python_free], check=True)
+
+
+@pytest.mark.skipif(bool(SANITIZED), reason="needs no second run")
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="the levels are those of x86-64")
+@pytest.mark.parametrize(("level", "here"), [("sse2", True), ("avx5124fmaps", False)])
+def test_a_module_for_another_processor_is_not_loaded(
+    level: str, here: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No processor that was sold with 64 bits lacks the first, and two of Intel's have the last."""
+    monkeypatch.delitem(sys.modules, "toy_native", raising=False)
+    compile_toy(tmp_path, "-O0", f'-DCLOSEDFORM_PROCESSOR="{level}"')
+    if here:
+        assert function(loaded(tmp_path), "polar")
+    else:
+        with pytest.raises(ImportError, match=rf"the level {level}, .* run make here"):
+            loaded(tmp_path)
 
 
 @pytest.mark.skipif(bool(SANITIZED), reason="is the sanitized run")

@@ -36,8 +36,8 @@ def _target(folder: Path) -> Path:
     return folder / ("toy_native" + sysconfig.get_config_var("EXT_SUFFIX"))
 
 
-def compile_toy(folder: Path) -> None:
-    command = [os.environ.get("CC", "cc"), "-std=c99", "-O2", "-fPIC", "-shared"]
+def compile_toy(folder: Path, *flags: str) -> None:
+    command = [os.environ.get("CC", "cc"), "-std=c99", "-O2", "-fPIC", "-shared", *flags]
     command += ["-fno-math-errno", "-fno-trapping-math", "-DCF_MODULE_NAME=toy_native"]
     command += SANITIZERS[SANITIZED]
     command += [*INCLUDES, *map(str, sorted(RUNTIME.glob("*.c"))), str(TOY), "-lm"]

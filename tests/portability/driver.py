@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import os
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -199,13 +199,15 @@ def compile_driver(
     single: bool = False,
     runner: Sequence[str] = (),
     link: Sequence[str] = (),
+    made: Mapping[str, Path] | None = None,
 ) -> Program:
-    """Builds the driver by ``command``, a compiler and its flags."""
+    """Builds the driver by ``command``, a compiler and its flags; ``made`` robots have objects."""
+    made = made or {}
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "calls.h").write_text(calls_header(robots), "utf-8")
     define = ["-DCLOSEDFORM_FLOAT"] if single else []
     start = [*command, *define, f"-I{SOURCES}", f"-I{folder}"]
-    sources = [DRIVER, *(SOURCES / f"{robot}.c" for robot in robots)]
+    sources = [DRIVER, *(SOURCES / f"{robot}.c" for robot in robots if robot not in made)]
     objects = [folder / f"{source.stem}.o" for source in sources]
 
     def one(pair: tuple[Path, Path]) -> None:
@@ -218,7 +220,7 @@ def compile_driver(
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(one, zip(sources, objects, strict=True)))
     program = folder / "driver"
-    linked = [*command, *map(str, objects), "-o", str(program), *link, "-lm"]
+    linked = [*command, *map(str, [*objects, *made.values()]), "-o", str(program), *link, "-lm"]
     done = subprocess.run(linked, capture_output=True, text=True, check=False)
     if done.returncode:
         raise _reason(linked, done.stderr)

@@ -6,8 +6,9 @@ from chains import arm
 from sympy import pi
 from sympy.combinatorics import Permutation, PermutationGroup
 
+from closedform.scaffold import degree
 from closedform.scaffold.chainlinks import singles
-from closedform.scaffold.degree import solutions, steps
+from closedform.scaffold.degree import Solutions, solutions, steps
 
 H = sp.Rational(1, 2)
 COUNTED = {
@@ -22,6 +23,11 @@ COUNTED = {
     "six joints at random": (
         [(1, pi / 2, 0), (2, pi / 3, 1), (1, pi / 4, 2), (3, pi / 2, 1), (1, pi / 3, 0),
          (2, pi / 5, 1)],
+        16, (16,), False,
+    ),
+    "a hollow wrist": (
+        [(3, -pi / 2, 6), (10, 0, 0), (1, -pi / 2, 0), (0, 2 * pi / 5, 12), (0, -2 * pi / 5, 1),
+         (0, 0, 2)],
         16, (16,), False,
     ),
     "a slide": (
@@ -39,6 +45,27 @@ def test_the_solutions_of_a_pose_are_counted(name: str) -> None:
     found = solutions(singles(arm(rows)[1]))
     assert found is not None
     assert (found.number, sorted(found.steps), found.solvable) == (number, [*degrees], solvable)
+
+
+def test_one_count_may_miss_solutions_but_two_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first count of these is a lower bound; the others outvote it."""
+    rows, number, *_ = COUNTED["six joints at random"]
+    whole = singles(arm(rows)[1])
+    counts = iter([8, number, 12, number])
+
+    def once(*_: object) -> Solutions:
+        n = next(counts)
+        return Solutions(n, (n,), False)
+
+    monkeypatch.setattr(degree, "counted_once", once)
+    assert solutions(whole) is None
+    counts = iter([8, number, number])
+    found = solutions(whole)
+    assert found is not None and found.number == number
+
+
+def test_an_arm_that_cannot_move_its_tool_in_six_ways_is_not_counted() -> None:
+    assert solutions(singles(arm([(1, 0, 0)] * 6)[1])) is None
 
 
 def test_the_steps_of_a_group_are_those_of_its_blocks() -> None:

@@ -196,7 +196,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
         (
             "t1 t2 t3 t4 t5",
             [(a, pi / 2, b, x) for x in T[:5]],
-            "its 5 joints do not fit any task",
+            "its last 3 axes do not meet in a point",
         ),
     ],
 )

@@ -1,11 +1,13 @@
 """Chains of subproblems: axes in any direction, seven joints, and fewer than six."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
-from chains import arm, solved
+from arms import OK, misses
+from chains import arm, printed, solved
 from sympy import cos, pi, sin
 
 from closedform.check.truth import Solutions
@@ -77,6 +79,69 @@ def test_a_degree_is_named() -> None:
     with pytest.raises(NoChainError, match="there is no closed form: degree 16") as e:
         propose(arm(rows)[1])
     assert e.value.degree == 16 and "ssik" in e.value.needed
+
+
+def test_seven_joints_without_a_chain_have_a_degree_too() -> None:
+    """Those of a Baxter: with the joint given that is tried first, and with one that is chosen."""
+    rows = [
+        (sp.Rational(69, 1000), -pi / 2, 1),
+        (0, pi / 2, 0),
+        (ROOM, -pi / 2, 2),
+        (0, pi / 2, 0),
+        (sp.Rational(1, 50), -pi / 2, 2),
+        (0, pi / 2, 0),
+        (0, 0, 1),
+    ]
+    serial = arm(rows)[1]
+    with pytest.raises(NoChainError, match="none of its seven joints") as e:
+        propose(serial)
+    assert e.value.degree == 16 and "with t3 given there is no closed form" in e.value.found
+    assert "ssik" in e.value.needed and "--given" in e.value.needed
+    with pytest.raises(NoChainError, match="with t5 given there is no closed form"):
+        propose(serial, "t5")
+
+
+def test_eight_joints_are_told_what_to_do() -> None:
+    rows = [(1, pi / 2, 1)] * 8
+    with pytest.raises(NoChainError, match="it has 8 joints, and a pose determines six") as e:
+        propose(arm(rows, "t1 t2 t3 t4 t5 t6 t7 t8")[1])
+    assert "Give values to 1 of them, or to 2" in e.value.needed
+    assert "'# t1 = 0.1 rad: held'" in e.value.needed
+
+
+RAILS = {
+    "spherical wrist, axes 3 and 4 parallel, with d1 given": [
+        (0, -pi / 2, None, 0), (ROOM, -pi / 2, 1), (2, 0, 0), (ROOM, -pi / 2, 0),
+        (0, pi / 2, 2), (0, -pi / 2, 0), (0, 0, 1),
+    ],
+    "axes 3, 4 and 5 parallel, 6 and 7 meet, with d1 given": [
+        (0, -pi / 2, None, 0), (0, pi / 2, 1), (-2, 0, 0), (-1, 0, 0), (0, pi / 2, ROOM),
+        (0, -pi / 2, ROOM), (0, 0, 1),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("structure", RAILS)
+def test_an_arm_on_a_rail_takes_the_place_on_it(structure: str, tmp_path: Path) -> None:
+    """The rail is an input of the inverse, as far from the origin as it may be."""
+    d, serial = arm(RAILS[structure], "d1 t2 t3 t4 t5 t6 t7")
+    found = propose(serial)
+    assert found.structure == structure
+    ik = solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == 8
+    assert [a.name for a in d["ik"].inputs] == ["T", "d1"] and "d1" not in ik.angles
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    q = np.random.default_rng(5).uniform(-3, 3, (300, 7))
+    q[:, 0] *= 3
+    T = robot.pose(q)
+    answers, status = robot.ik(T, q[:, 0])
+    assert (answers[status == OK][:, 0] == np.repeat(q[:, 0], (status == OK).sum(axis=1))).all()
+    assert max(misses(robot.pose(answers), T, status)) < 1e-12 * 10
+    off = np.abs(np.exp(1j * (answers - q[:, None])) - 1).max(axis=-1)
+    assert (np.nanmin(off, axis=1) < 1e-8).all()
+    at_zero, _ = robot.ik(T, 0 * q[:, 0])
+    assert np.isnan(at_zero).any() and (at_zero[np.isfinite(at_zero[..., 0])][:, 0] == 0).all()
 
 
 def test_it_says_what_it_recognised() -> None:

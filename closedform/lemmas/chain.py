@@ -23,8 +23,8 @@ from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.corrected import Corrected, Correction
+from closedform.lemmas.given import given_slide, given_turn
 from closedform.lemmas.pairs import direction
-from closedform.lemmas.registry import theorem
 from closedform.mechanics.frames import pose_symbols, require_pose
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
@@ -45,16 +45,6 @@ from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 
 Choice = Mapping[int, str]
-
-theorem(
-    "given joint",
-    statement=r"""Let $\theta_{\text{given}}$ be an angle.  In $(-\pi, \pi]$ exactly one $\theta$
-equals it up to whole turns, $\theta = \operatorname{atan2}(\sin\theta_{\text{given}},
-\cos\theta_{\text{given}})$.""",
-    proof=r"""Angles with the same sine and cosine differ by whole turns, and one of them is in
-$(-\pi, \pi]$.""",
-)
-
 
 AMPLIFIED = (
     "OK answers hold to 1e-12 of the size of the arm, the sum of its lengths, or to 3.5e-14 of it "
@@ -129,25 +119,20 @@ class Chain:
         places = self.forward[:3, 3] if self.is_pose else self.forward
         return sp.Add(*sized) + max(map(lengths_in_numbers, places))
 
-    def given(self, joint: sp.Symbol) -> Pair:
-        """Take a joint as an input of the inverse, beside the pose; returns its pair."""
-        if any(j.symbol == joint and j.kind != "revolute" for j in self.d.joints):
-            raise ShapeError(f"{self.d.name}: only a joint that turns can be given")
-        symbol = self.given_angle(joint.name, joint)
+    def given(self, joint: sp.Symbol) -> Any:
+        """Take a joint as an input of the inverse, beside the pose.
+
+        Returns its pair, or its value if it slides.
+        """
+        slides = any(j.symbol == joint and j.kind == "prismatic" for j in self.d.joints)
+        symbol = (self._given if slides else self.given_angle)(joint.name, joint)
 
         def given(chain: Chain) -> Applied:
-            pair = Pair(sp.sin(symbol), sp.cos(symbol)).known_as(chain.program, f"_{joint.name}")
-            lemma = Lemma(
-                "given joint",
-                r"\theta = \theta_{\text{given}}",
-                (sp.cos(joint) - sp.cos(symbol), sp.sin(joint) - sp.sin(symbol)),
-                {joint: pair.angle},
-                1,
+            return (
+                given_slide(joint, symbol) if slides else given_turn(chain.program, joint, symbol)
             )
-            return Applied(lemma, pair, {pair.s: sp.sin(joint), pair.c: sp.cos(joint)})
 
-        found: Pair = self.solve(given)
-        return found
+        return self.solve(given)
 
     def given_angle(self, name: str, image: sp.Expr, weight: sp.Expr = sp.S.One) -> sp.Symbol:
         """Take an angle of the posture as an input of the inverse, beside the pose.
@@ -155,14 +140,18 @@ class Chain:
         ``image`` is the angle as a function of the joints.  It may be undefined at some postures;
         near them, answers keep it only as well as the ``weight`` allows, which vanishes there.
         """
-        if not self.is_pose:
-            raise ShapeError(f"{self.d.name}: an angle can only be given beside a pose")
-        symbol = real(f"x_{name}")
-        self.inputs[name] = symbol
-        self.targets, self.images = (*self.targets, symbol), (*self.images, image)
+        symbol = self._given(name, image)
         self.angles = (*self.angles, name)
         if weight != 1:
             self.weights[symbol] = weight
+        return symbol
+
+    def _given(self, name: str, image: sp.Expr) -> sp.Symbol:
+        if not self.is_pose:
+            raise ShapeError(f"{self.d.name}: a joint or an angle can only be given beside a pose")
+        symbol = real(f"x_{name}")
+        self.inputs[name] = symbol
+        self.targets, self.images = (*self.targets, symbol), (*self.images, image)
         return symbol
 
     def reached(self, rest: sp.Matrix | None = None) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.mechanics.arm import Serial
-from closedform.mechanics.frames import homogeneous, inverse
+from closedform.mechanics.frames import homogeneous, inverse, rotation
 from closedform.scaffold.maker import Z
 
 
@@ -27,8 +27,8 @@ class Single:
 
     @property
     def sense(self) -> int:
-        """Whether a slide moves along its axis (1), or against it (-1)."""
-        return int(self.shift[2].diff(self.joint))
+        """Whether a joint moves along or about its axis (1), or against it (-1)."""
+        return int((self.shift[2] if self.slides else self.turn).diff(self.joint))
 
 
 def slid(single: Single) -> sp.Expr:
@@ -69,10 +69,12 @@ class Singles:
             )
         return Singles(tuple(joints), after[-1], not self.inverted)
 
-    def with_given(self, number: int, turned: sp.Matrix) -> Singles:
-        """The arm with a joint that is ``turned`` by a known rotation about z."""
+    def with_given(self, number: int, value: sp.Symbol) -> Singles:
+        """The arm with a joint that has a known ``value``."""
         k = next(i for i, s in enumerate(self.joints) if s.number == number)
-        fixed = sp.diag(turned, 1) * _motion(self.joints[k])
+        known = {self.joints[k].joint: value}
+        turned = rotation("z", self.joints[k].turn.xreplace(known)).applyfunc(sp.expand_trig)
+        fixed = sp.diag(turned, 1) * _motion(self.joints[k]).xreplace(known)
         others = [*self.joints[:k], *self.joints[k + 1 :]]
         if k == 0:
             return Singles(tuple(others), _simplified(self.lead * fixed), self.inverted)

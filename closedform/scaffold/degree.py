@@ -9,7 +9,6 @@ size of the largest primitive step is the degree of the equation that no smaller
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,15 +18,21 @@ from sympy.combinatorics import Permutation, PermutationGroup
 
 from closedform.scaffold.chainlinks import Singles
 
-SEED = 20
-LOOPS, IDLE = 30, 4
-"""How many loops are tried at most, and how many that find nothing new end the search."""
+SEEDS = (20, 21, 22)
+LOOPS, ROUNDS, ENOUGH = 6, 6, 5
+"""Loops that are followed at a time, how often, and how many must have found nothing new."""
 WORK = 600_000
 """Newton's corrections, of one solution each, after which the search is given up."""
-CLOSE, MET = 1e-6, 1e-4
+CLOSE, MET = 1e-5, 1e-4
 """The correction that ends Newton's method, whose error is its square; and what is one solution."""
+SINGULAR = 1e9
+"""The condition of the Jacobian of an arm that does not move its tool in six ways."""
 SHORTEST = 1e-7
 """The smallest step along a loop of length 1."""
+IMAGINARY = np.array([0.5, 0.5, 0.5, 1, 1, 1])
+"""The sizes of the imaginary parts of the coordinates of targets."""
+AFTER, BEFORE = [1, 2, 0], [2, 0, 1]
+"""The coordinates of a cross product."""
 SMALL, CONTRACTS = 0.2, 0.1
 """The largest step of a joint, and by how much the second correction must be smaller."""
 
@@ -78,46 +83,50 @@ class Numeric:
         for k, joint in enumerate(arm.joints):
             motions[k, :3, :3] = numbers(joint.end)
             motions[k, :3, 3] = numbers(joint.shift)[:, 0]
-        senses = [s.sense if s.slides else int(s.turn.diff(s.joint)) for s in arm.joints]
+        senses = [s.sense for s in arm.joints]
         slides = np.array([s.slides for s in arm.joints])
         return cls(numbers(arm.lead), motions, np.array(senses), slides)
 
     def pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The poses of the tool, and the twists (v; omega) of the joints in the base frame."""
-        moves = np.zeros((*q.shape, 4, 4), complex)
-        moves[:] = np.eye(4)
-        turns, slides = ~self.slides, self.slides
-        c, s = np.cos(q[:, turns]), self.senses[turns] * np.sin(q[:, turns])
-        moves[:, turns, 0, 0], moves[:, turns, 0, 1] = c, -s
-        moves[:, turns, 1, 0], moves[:, turns, 1, 1] = s, c
-        moves[:, slides, 2, 3] = (self.senses * q)[:, slides]
-        frames = [np.broadcast_to(self.lead, (len(q), 4, 4))]
-        for move in np.moveaxis(moves @ self.motions, 1, 0):
-            frames.append(frames[-1] @ move)
-        before = np.stack(frames[:-1], axis=1)
-        axes, points = self.senses[:, None] * before[..., :3, 2], before[..., :3, 3]
-        ahead, behind = np.roll(axes, -1, axis=-1), np.roll(points, -1, axis=-1)
-        moments = np.roll(points * ahead - behind * axes, -1, axis=-1)  # np.cross takes longer
-        is_slide = slides[:, None]
-        twists = [np.where(is_slide, axes, moments), np.where(is_slide, 0, axes)]
-        return frames[-1], np.concatenate(twists, axis=-1).swapaxes(1, 2)
+        T = np.repeat(self.lead[None, :3], len(q), axis=0)
+        twists = np.zeros((len(q), 6, q.shape[1]), complex)
+        cosines, sines = np.cos(q), self.senses * np.sin(q)
+        for k, sense in enumerate(self.senses):
+            x, y, w, p = (T[:, :, i].copy() for i in range(4))
+            if self.slides[k]:
+                twists[:, :3, k] = sense * w
+                T[:, :, 3] += sense * q[:, k, None] * w
+            else:
+                twists[:, 3:, k] = sense * w
+                twists[:, :3, k] = sense * (p[:, AFTER] * w[:, BEFORE] - p[:, BEFORE] * w[:, AFTER])
+                c, s = cosines[:, k, None], sines[:, k, None]
+                T[:, :, 0], T[:, :, 1] = c * x + s * y, c * y - s * x
+            T = (T.reshape(-1, 4) @ self.motions[k]).reshape(T.shape)
+        return T, twists
 
     @cached_property
     def reach(self) -> float:
         return float(np.abs(self.motions[:, :3, 3]).sum())
 
 
-def target(x: np.ndarray) -> np.ndarray:
-    """The pose at coordinates: those of a rotation by Cayley, and a position."""
-    a, b, c = x[:3]
-    S, X = np.array([[0, -c, b], [c, 0, -a], [-b, a, 0]]), np.eye(4, dtype=complex)
-    X[:3, :3], X[:3, 3] = np.linalg.solve(np.eye(3) - S, np.eye(3) + S), x[3:]
+def targets(x: np.ndarray) -> np.ndarray:
+    """The poses at coordinates: those of a rotation by Cayley, and a position."""
+    c, X = x[:, :3], np.zeros((len(x), 3, 4), complex)
+    square = (c * c).sum(axis=1)
+    X[:, :, :3] = 2 * c[:, :, None] * c[:, None, :]
+    for i, j, k in ((2, 1, 0), (0, 2, 1), (1, 0, 2)):
+        X[:, i, j] += 2 * c[:, k]
+        X[:, j, i] -= 2 * c[:, k]
+        X[:, k, k] += 1 - square
+    X /= (1 + square)[:, None, None]
+    X[:, :, 3] = x[:, 3:]
     return X
 
 
 def coordinates(T: np.ndarray) -> np.ndarray:
-    S = np.linalg.solve((T[:3, :3] + np.eye(3)).T, (T[:3, :3] - np.eye(3)).T).T
-    return np.array([S[2, 1], S[0, 2], S[1, 0], *T[:3, 3]])
+    S = np.linalg.solve((T[:, :3] + np.eye(3)).T, (T[:, :3] - np.eye(3)).T).T
+    return np.array([S[2, 1], S[0, 2], S[1, 0], *T[:, 3]])
 
 
 @dataclass
@@ -132,71 +141,89 @@ class Fibre:
     work: int = WORK
 
     def correction(self, q: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """A step of Newton's method to the target."""
+        """A step of Newton's method to the targets; not a number at a singular posture."""
         self.work -= len(q)
         T, twists = self.arm.pose(q)
-        X = target(x)
-        away = X @ np.linalg.inv(T) - np.eye(4)
-        error = [away[:, i, j] - away[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
-        step = np.stack([*away[:, :3, 3].T, *(e / 2 for e in error)], axis=1)
-        found: np.ndarray = np.linalg.solve(twists, step[..., None])[..., 0]
+        X = targets(x)
+        R = np.einsum("nik,njk->nij", X[:, :, :3], T[:, :, :3])
+        shift = X[:, :, 3] - np.einsum("nij,nj->ni", R, T[:, :, 3])
+        error = [R[:, i, j] - R[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
+        step = np.stack([*shift.T, *(e / 2 for e in error)], axis=1)
+        try:
+            found: np.ndarray = np.linalg.solve(twists, step[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            twists[np.linalg.det(twists) == 0] = np.nan
+            found = np.linalg.solve(twists, step[..., None])[..., 0]
         return found
 
-    def corrected(self, q: np.ndarray, x: np.ndarray) -> np.ndarray | None:
-        """The solutions nearest to the given ones; None if they may be those of another path."""
-        sizes: list[np.ndarray] = []
-        for _ in range(7):
-            try:
-                step = self.correction(q, x)
-            except np.linalg.LinAlgError:  # a singular posture
-                return None
-            q, size = q + step, np.abs(step).max(axis=1)
-            if not np.isfinite(size).all() or size.max() > SMALL:
-                return None
-            if len(sizes) == 1 and (size > CONTRACTS * sizes[0] + CLOSE).any():
-                return None
-            if size.max() < CLOSE:
-                return q
-            sizes.append(size)
-        return None
+    def corrected(self, q: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The solutions nearest to the given ones, and which of them are not of another path."""
+        q, good, moving = q.copy(), np.zeros(len(q), bool), np.arange(len(q))
+        first = np.zeros(len(q))
+        for k in range(7):
+            step = self.correction(q[moving], x[moving])
+            q[moving] += step
+            size = np.abs(step).max(axis=1)
+            if k == 0:
+                first = size
+            held = size <= (
+                SMALL if k != 1 else np.minimum(SMALL, CONTRACTS * first[moving] + CLOSE)
+            )
+            good[moving] = held & (size < CLOSE)
+            moving = moving[held & (size >= CLOSE)]
+            if not len(moving):
+                break
+        return q, good
 
-    def followed(self, q: np.ndarray, loop: Sequence[np.ndarray]) -> np.ndarray | None:
-        """Where the solutions are after a loop; None if they were lost."""
-        for start, end in zip([self.base, *loop], [*loop, self.base], strict=True):
-            at, step = 0.0, 1 / 32
-            while at < 1:
-                step = min(step, 1 - at)
-                there = self.corrected(q, start + (at + step) * (end - start))
-                if there is None:
-                    step /= 2
-                    if step < SHORTEST or self.work < 0:
-                        return None
-                    continue
-                q, at, step = there, at + step, 1.5 * step
+    def followed(self, q: np.ndarray, loops: np.ndarray) -> np.ndarray:
+        """Where each solution is after its loop; not a number if it was lost."""
+        corners = np.concatenate([loops, np.broadcast_to(self.base, (len(q), 1, 6))], axis=1)
+        start = np.broadcast_to(self.base, (len(q), 6))
+        for end in np.moveaxis(corners, 1, 0):
+            q = self._along(q, start, end)
+            start = end
         return q
 
-    def place(self, q: np.ndarray) -> int | None:
-        """Which of the known solutions this is."""
+    def _along(self, q: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """The solutions at the ends of straight lines between targets, each at its own pace."""
+        q, at, step = q.copy(), np.zeros(len(q)), np.full(len(q), 1 / 32)
+        rate = np.zeros_like(q)
+        while len(moving := np.flatnonzero((at < 1) & np.isfinite(q[:, 0]))):
+            if self.work < 0:
+                q[moving] = np.nan
+                break
+            ahead = np.minimum(step[moving], 1 - at[moving])[:, None]
+            x = start[moving] + (at[moving, None] + ahead) * (end - start)[moving]
+            there, good = self.corrected(q[moving] + ahead * rate[moving], x)
+            done, slower = moving[good], moving[~good]
+            rate[done] = ((there - q[moving]) / ahead)[good]
+            q[done], at[done] = there[good], at[done] + ahead[good, 0]
+            at[done[at[done] > 1 - SHORTEST]] = 1
+            step[done] *= 1.5
+            step[slower] /= 2
+            q[slower[step[slower] < SHORTEST]] = np.nan
+        return q
+
+    def place(self, q: np.ndarray) -> int:
+        """Which of the known solutions this is, or the new one that it is."""
         away = np.where(self.arm.slides, self.found - q, np.exp(1j * (self.found - q)) - 1)
         sizes = np.abs(away).max(axis=1)
-        return int(sizes.argmin()) if sizes.min() < MET else None
+        if sizes.min() < MET:
+            return int(sizes.argmin())
+        self.found = np.vstack([self.found, q])
+        return len(self.found) - 1
 
-    def go_around(self, loop: list[np.ndarray]) -> bool:
-        """Whether all solutions could be followed along a loop, also those that it finds."""
-        images: list[int] = []
-        while len(images) < len(self.found):
-            ends = self.followed(self.found[len(images) :], loop)
-            if ends is None:
-                return False
-            for q in ends:
-                k = self.place(q)
-                if k is None:
-                    k, self.found = len(self.found), np.vstack([self.found, q])
-                images.append(k)
-        if sorted(images) != list(range(len(images))):
-            return False
-        self.images.append(images)
-        return True
+    def go_around(self, loops: np.ndarray) -> None:
+        """Follow all solutions along loops, also those that are found."""
+        images: list[list[int]] = [[] for _ in loops]
+        while (known := len(images[0])) < len(self.found) and self.work > 0:
+            starts = self.found[known:]
+            ends = self.followed(
+                np.tile(starts, (len(loops), 1)), np.repeat(loops, len(starts), axis=0)
+            )
+            for k, q in enumerate(ends):
+                images[k // len(starts)].append(self.place(q) if np.isfinite(q).all() else -1)
+        self.images += [p for p in images if sorted(p) == list(range(len(self.found)))]
 
     @property
     def group(self) -> PermutationGroup:
@@ -206,52 +233,81 @@ class Fibre:
         return PermutationGroup([Permutation(n - 1), *known])
 
     def closed(self) -> bool:
-        """Whether loops that find nothing new have ended the search."""
-        idle = 0
-        for _ in range(LOOPS):
-            before = len(self.found)
-            followed = self.go_around([self.random() for _ in range(2)])
-            idle = 0 if len(self.found) > before else idle + followed
-            if idle >= IDLE and self.group.is_transitive():
+        """Whether enough loops take the solutions to each other, and to no others."""
+        for _ in range(ROUNDS):
+            self.go_around(np.array([[self.random() for _ in range(2)] for _ in range(LOOPS)]))
+            enough = sum(len(p) == len(self.found) for p in self.images) >= ENOUGH
+            if enough and self.group.is_transitive():
                 return True
             if self.work < 0:
                 return False
         return False
 
     def random(self) -> np.ndarray:
-        """A target at random."""
-        x: np.ndarray = self.rng.normal(size=6) + 1j * self.rng.normal(size=6)
+        """A target at random; coordinates with small imaginary parts are those of a rotation."""
+        x: np.ndarray = self.rng.normal(size=6) + 1j * self.rng.normal(size=6) * IMAGINARY
         x[3:] *= self.arm.reach / 2
         return x
 
 
 def solutions(arm: Singles) -> Solutions | None:
-    """The solutions for a pose at random, counted; None if they could not be followed."""
-    rng = np.random.default_rng(SEED)
+    """The solutions for a pose at random, as two counts find them; None if no two agree.
+
+    A count follows the solutions along loops of its own, for another pose and other parameters, and
+    may miss some.  What it finds is a lower bound, also of the group, which is not solvable if that
+    of fewer loops is not.
+    """
+    counted: list[Solutions] = []
+    for seed in SEEDS:
+        found = counted_once(arm, seed)
+        if found is not None and found in counted:
+            return found
+        counted += [found] if found is not None else []
+    return None
+
+
+def counted_once(arm: Singles, seed: int) -> Solutions | None:
+    """The solutions that loops find; None if they could not be followed."""
+    rng = np.random.default_rng(seed)
     numeric = Numeric.of(arm, rng)
-    q = rng.normal(size=(1, 6)) + 0.5j * rng.normal(size=(1, 6))
-    T, _ = numeric.pose(q)
+    q = rng.normal(size=(1, 6)) + 0.3j * rng.normal(size=(1, 6))
+    T, twists = numeric.pose(q)
+    if np.linalg.cond(twists[0]) > SINGULAR:
+        return None
     fibre = Fibre(numeric, rng, coordinates(T[0]), q)
     if not fibre.closed():
         return None
-    return Solutions(len(fibre.found), steps(fibre.group), fibre.group.is_solvable)
+    return Solutions(len(fibre.found), steps(fibre.group), solvable(fibre.group))
 
 
 def steps(group: PermutationGroup) -> tuple[int, ...]:
     """The sizes of the blocks of a transitive group, from the smallest blocks to those of them."""
+    return tuple(size for size, _ in actions(group))
+
+
+def actions(group: PermutationGroup) -> list[tuple[int, PermutationGroup]]:
+    """The sizes of the blocks, each with the group that the blocks of this size are parts of."""
     n = group.degree
     if n == 1:
-        return (1,)
+        return [(1, group)]
     systems = [group.minimal_block([0, k]) for k in range(1, n)]
     blocks = max(systems, key=lambda s: len(set(s)))
     names = sorted(set(blocks))
     if len(names) == 1:
-        return (n,)
+        return [(n, group)]
     onto = [
         Permutation([names.index(blocks[g(blocks.index(name))]) for name in names])
         for g in group.generators
     ]
-    return (n // len(names), *steps(PermutationGroup(onto)))
+    return [(n // len(names), group), *actions(PermutationGroup(onto))]
+
+
+def solvable(group: PermutationGroup) -> bool:
+    """Whether a transitive group is solvable; groups of up to four elements always are."""
+    (last, onto), *_ = reversed(levels := actions(group))
+    if all(size <= 4 for size, _ in levels):
+        return True
+    return not (last > 4 and onto.is_alt_sym()) and bool(group.is_solvable)
 
 
 __all__ = ["Solutions", "solutions", "steps"]

@@ -30,15 +30,8 @@ class KnownMaker(Maker):
 
     def whole(self) -> str:
         groups, task = [_plain(group) for group in self.arm.groups], self.arm.coordinates()
-        if task is None and len(self.arm.joints) == 6:
-            return self._pose(groups)
         if task is None:
-            joints = len(self.arm.joints)
-            raise NoChainError(
-                f"its {joints} joints do not fit any task",
-                "Fewer joints may move only x, y and z of the tool and turn it about z; or up to "
-                "three come before others whose axes meet in a point.",
-            )
+            return self._pose(groups)
         if "yaw" in task.names:
             return self._level(groups, task.names)
         if task.names == ("x", "y"):

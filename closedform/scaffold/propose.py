@@ -10,12 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import NamedTuple
-
-import sympy as sp
+from typing import Any, NamedTuple
 
 from closedform.mechanics.arm import Serial
-from closedform.mechanics.frames import rotation
 from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
@@ -40,6 +37,7 @@ def propose(
     Of an arm of seven joints one is ``given``, by default one that makes the chain short, or
     ``arm_angle``.
     """
+    _require_few(arm)
     tried: list[Tried] = [*refused]
     never = {t.name for t in refused}
     names = {ARM_ANGLE, *(j.name for j in arm.joints)}
@@ -50,6 +48,8 @@ def propose(
         )
     for degree in (2, 4):
         left = {t.name for t in tried if t.error.degree == degree}
+        if degree > 2 and not left:
+            break
         for name, maker, write in _candidates(arm, given):
             if name in never or (degree > 2 and name not in left):
                 continue
@@ -63,43 +63,71 @@ def propose(
             tried = [t for t in tried if t.name != name]
             lemmas = tuple(dict.fromkeys(maker.used))
             return Proposal(name, found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
-    raise refused[0].error.after(tried) if refused else _refusal(arm, tried, progress)
+    raise refused[0].error.after(tried) if refused else _refusal(arm, given, tried, progress)
 
 
-def _refusal(arm: Serial, tried: Sequence[Tried], progress: Callable[[str], None]) -> NoChainError:
-    """Why no chain is known, with the degree of what is left if that is known or can be counted."""
-    if len(arm.joints) == 7 and len(tried) > 2:
-        return NoChainError(
-            "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and "
-            "two neighbours among the rest that are parallel or meet",
-            "Use ssik for a numeric inverse, or write a chain of your own.",
-            tried=tried,
+def _require_few(arm: Serial) -> None:
+    """Refuse an arm whose pose leaves more than one joint free."""
+    names = [joint.name for joint in arm.joints]
+    if (more := len(names) - 6) > 1:
+        raise NoChainError(
+            f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
+            f"one of them given",
+            f"Give values to {more - 1} of them, or to {more}: in a DH table, a line such as "
+            f"'# {names[0]} = 0.1 rad: held' makes a joint a parameter, an input of all printed "
+            f"functions.  Of a URDF file take the part between two links, with --base and --tool.  "
+            f"Otherwise use a numeric inverse, such as that of Pinocchio.",
         )
+
+
+def _refusal(
+    arm: Serial, given: str, tried: Sequence[Tried], progress: Callable[[str], None]
+) -> NoChainError:
+    """Why no chain is known, with the degree of what is left if that is known or can be counted."""
+    n, whole = len(arm.joints), singles(arm)
     error = next((t.error for t in tried if t.error.degree), tried[0].error)
-    if not error.degree and len(arm.joints) == 6:
+    if n == 7 and given != ARM_ANGLE:
+        single, *others = _to_give(whole, given)
+        if others:
+            other = f"Choose another joint with --given to count its solutions.  {NUMERIC}"
+            error = NoChainError(NEITHER, other)
+        progress(f"counting the solutions with {single.joint} given")
+        with_it = f"with {single.joint} given "
+        error = _counted(error, solutions(whole.with_given(single.number, GIVEN)), with_it)
+    elif n == 6 and not error.degree:
         progress("counting the solutions")
-        error = _counted(error, solutions(singles(arm)))
+        error = _counted(error, solutions(whole))
     return error.after(tried)
 
 
 NUMERIC = "Use ssik for a numeric inverse."
+NEITHER = (
+    "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and two "
+    "neighbours among the rest that are parallel or meet"
+)
 
 
-def _counted(error: NoChainError, counted: Solutions | None) -> NoChainError:
+def _counted(error: NoChainError, counted: Solutions | None, given: str = "") -> NoChainError:
     """The error with the degree of the equations for a pose, if their solutions were counted."""
+    needed = error.needed if NUMERIC in error.needed else f"{error.needed}  {NUMERIC}"
     if counted is None:
-        return NoChainError(error.found, f"{error.needed}  {NUMERIC}")
+        return NoChainError(error.found, needed)
     *few, last = (str(n) for n in reversed(counted.steps))
     degrees = f"equations of degree {', '.join(few)} and {last}" if few else "one equation"
     told = (
-        f"A pose has {counted.number} solutions in complex numbers, counted numerically, which "
-        f"{degrees} {'give' if few else 'gives'}"
+        f"Two numerical counts agree that {given}a pose has {counted.number} solutions in complex "
+        f"numbers, at least, which {degrees} {'give' if few else 'gives'}"
     )
     if counted.solvable:
-        chain = f"{told}; so a chain of your own may solve them.  {NUMERIC}"
-        return NoChainError(error.found, f"{error.needed}  {chain}")
-    found = f"{error.found}, and there is no closed form: degree {counted.degree}"
-    return NoChainError(found, f"{told}; roots do not solve them.  {NUMERIC}", counted.degree)
+        return NoChainError(
+            error.found, f"{told}; so a chain of your own may solve them.  {needed}"
+        )
+    found = f"{error.found}, and {given}there is no closed form: degree {counted.degree}"
+    return NoChainError(found, f"{told}; roots do not solve them.  {needed}", counted.degree)
+
+
+_Solve = Callable[[Any, Singles], str]
+"""A method of a maker that solves an arm, and says what was recognised."""
 
 
 class _Candidate(NamedTuple):
@@ -113,22 +141,19 @@ class _Candidate(NamedTuple):
 def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
     """The chains to try, the cheapest first."""
     n, task = len(arm.joints), arm.coordinates()
-    slides = any(row.slides for group in arm.groups for row in group.rows)
-    if n != 7 or slides:
+    if task is not None or n == 6:
         known = KnownMaker(arm)
         yield _Candidate("a known structure", known, known.whole)
-    if slides and n > 6:
-        return
     whole = singles(arm)
     if n == 7:
         yield from _seven(arm, whole, given)
     elif n == 6:
-        yield from _six(arm, _Left(whole))
+        yield from _six(arm, whole)
     elif task is not None:
         yield from _with_coordinates(arm, whole, task.names)
     else:
         yield from _fewer_than_six(arm, whole)
-    if slides and task is None:
+    if task is None and n <= 6 and any(joint.slides for joint in whole.joints):
         for seen, view in (("", whole), (", from the tool", whole.reversed())):
             decoupled = DecoupledMaker(arm)
             write = partial(decoupled.decoupled, view)
@@ -141,9 +166,14 @@ def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:
         maker = ArmAngleMaker(arm)
         yield _Candidate("the arm angle", maker, partial(maker.solved_by_arm_angle, whole))
         return
-    for single in (whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)):
-        if given in ("", single.joint.name):
-            yield from _six(arm, _Left(whole, single))
+    for single in _to_give(whole, given):
+        yield from _six(arm, whole, single)
+
+
+def _to_give(whole: Singles, given: str = "") -> list[Single]:
+    """The joints of seven that may be ``given``: slides, then those that most arms repeat."""
+    joints = sorted((whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)), key=lambda j: not j.slides)
+    return [j for j in joints if given in ("", j.joint.name)]
 
 
 def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> Iterator[_Candidate]:
@@ -192,52 +222,34 @@ def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
     return f"{structure}, and {joints} the tool"
 
 
-class _Left(NamedTuple):
-    """The six joints of an arm that are not ``given``, seen from the base or from the tool."""
-
-    whole: Singles
-    given: Single | None = None
-    inverted: bool = False
-
-    @property
-    def more(self) -> str:
-        """What the names of structures add."""
-        return f", with {self.given.joint} given" if self.given else ""
-
-    def joints(self, maker: SubproblemMaker) -> Singles:
-        whole, given = self.whole, self.given
-        if given is not None:
-            maker.give(given)
-            turned = rotation("z", given.turn.xreplace({given.joint: GIVEN}))
-            whole = whole.with_given(given.number, turned.applyfunc(sp.expand_trig))
-        return whole.reversed() if self.inverted else whole
-
-
-def _six(arm: Serial, left: _Left) -> Iterator[_Candidate]:
+def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_Candidate]:
     """An arm of six joints that are not given, from its base and from its tool."""
-    views = [left, left._replace(inverted=True)]
+    left = whole if given is None else whole.with_given(given.number, GIVEN)
+    more = "" if given is None else f", with {given.joint} given"
+    views = (left, left.reversed())
+
+    def candidate(name: str, maker: SubproblemMaker, solve: _Solve, view: Singles) -> _Candidate:
+        def write() -> str:
+            if given is not None:
+                maker.give(given)
+            return solve(maker, view) + more
+
+        return _Candidate(f"{name}{more}", maker, write)
+
     for view, wrist in zip(views, ("spherical wrist", "spherical shoulder"), strict=True):
-        maker = SubproblemMaker(arm)
-        yield _Candidate(f"{wrist}{left.more}", maker, partial(_with_wrist, maker, view))
-    if any(joint.slides for joint in left.whole.joints):
+        yield candidate(wrist, SubproblemMaker(arm), _with_wrist, view)
+    if any(joint.slides for joint in left.joints):
         return
     for name, solve in (
         ("three parallel axes in the middle", SixMaker.parallel_middle),
         ("three parallel axes at the end", SixMaker.parallel_first),
         ("three axes in the middle that meet", SixMaker.meeting_middle),
     ):
-        for view in views:
-            six = SixMaker(arm)
-            seen = ", from the tool" if view.inverted else ""
-            yield _Candidate(f"{name}{seen}{left.more}", six, partial(_in_six, six, solve, view))
+        for view, seen in zip(views, ("", ", from the tool"), strict=True):
+            yield candidate(f"{name}{seen}", SixMaker(arm), solve, view)
 
 
-def _in_six(maker: SixMaker, solve: Callable[[SixMaker, Singles], str], left: _Left) -> str:
-    return solve(maker, left.joints(maker)) + left.more
-
-
-def _with_wrist(maker: SubproblemMaker, left: _Left) -> str:
-    whole = left.joints(maker)
+def _with_wrist(maker: SubproblemMaker, whole: Singles) -> str:
     ends = [s.number for s in whole.joints[3:]]
     found = whole.met(3, 3)
     if found is None:
@@ -246,8 +258,7 @@ def _with_wrist(maker: SubproblemMaker, left: _Left) -> str:
             "A spherical wrist or shoulder needs three axes that meet.",
         )
     structure = maker.solved(_met(found, ((0, 2), (1, 2))), 3)
-    name = "shoulder" if left.inverted else "wrist"
-    return f"spherical {name}, {structure}{left.more}"
+    return f"spherical {'shoulder' if whole.inverted else 'wrist'}, {structure}"
 
 
 __all__ = ["NoChainError", "Proposal", "propose"]

@@ -34,6 +34,30 @@ def forward(rows: list, q: np.ndarray) -> np.ndarray:
     return T
 
 
+def test_a_slide_may_be_normal_to_the_turn_after_it(tmp_path: Path) -> None:
+    """A lift whose arm swings in a plane with it, as that of a Toyota HSR, with a wrist."""
+    rows = [(H, -pi / 2, None, 0), (sp.Rational(1, 8), pi / 2, H), (0, -pi / 2, 2),
+            (0, pi / 2, 0), (0, 0, H)]  # fmt: skip
+    d, serial = arm(rows, "d1 t2 t3 t4 t5")
+    found = propose(serial)
+    assert found.structure == "a slide and a turret, and 3 joints that turn the tool"
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == 4
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    q = np.random.default_rng(6).uniform(-3, 3, (400, 5))
+    q[:100, 1:] = np.round(q[:100, 1:])
+    q[100:200, 3] = 0
+    T = forward([[float(e) if e is not None else e for e in row] for row in rows], q)
+    answers, status = robot.ik(T)
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    assert max(misses(robot.pose(answers), T, status)) < 1e-12 * 4
+    off = np.abs(np.exp(1j * (answers - q[:, None])) - 1).max(axis=-1)
+    assert (np.nanmin(off, axis=1)[200:] < 1e-8).all()
+    T[:, 1, 3] += 1  # out of the plane of the lift and the swing
+    assert (robot.ik(T).status == UNREACHABLE).all()
+
+
 @pytest.mark.parametrize("name", APART)
 def test_the_joints_that_turn_come_from_the_rotation_alone(name: str, tmp_path: Path) -> None:
     rows, joints = APART[name]

@@ -63,17 +63,20 @@ class Slides:
         return Solved("a turret and a slide", [(pair, one.end), ("", two.end)], rest)
 
     def _pr(self, one: Single, two: Single) -> Solved:
-        a = one.end.T * Z
+        a, u = _simple(one.end.T * Z), two.shift
         self._vector("q", times(one.end.T, f"(p - {source(one.shift)})"))
-        self.maker.require(
-            _simple(a)[2] != 0,
-            "its slide is at right angles to the axis after it",
-            "A slide and a turn must not leave a plane together.",
-        )
-        self._slide(one, (point("q")[2] - two.shift[2]) / a[2])
-        self._vector("q", f"q - {one.joint}_*{source(self.sense[one.number] * a)}", "q2")
-        pair = self._rotate(two, source(two.shift[:2, 0]), "q")
-        rest = f"turned({pair}).T * q - {source(two.shift)}"
+        q = point("q")
+        if a[2] != 0:
+            self._slide(one, (q[2] - u[2]) / a[2])
+            self._less_slid(one, a)
+            pair = self._rotate(two, source(u[:2, 0]), "q")
+        else:
+            m = Z.cross(a)
+            pair = self._turned_by(two, u, m, m.dot(q))
+            self._vector("to_end", f"turned({pair}) * {source(u)}")
+            self._slide(one, a.dot(q - point("to_end")))
+            self._less_slid(one, a)
+        rest = f"turned({pair}).T * q - {source(u)}"
         return Solved("a slide and a turret", [("", one.end), (pair, two.end)], rest)
 
     # Three joints
@@ -114,7 +117,7 @@ class Slides:
         q = point("q")
         if b[2] == 0 and a[2] != 0:
             self._slide(one, (q[2] - t[2]) / a[2])
-            self._vector("q", f"q - {one.joint}_*{source(self.sense[one.number] * a)}", "q2")
+            self._less_slid(one, a)
             m = Z.cross(b)
             pair = self._turn(two, m, "q", m.dot(t))
             self._vector("q", f"turned({pair}).T * q", "q3")
@@ -240,6 +243,11 @@ class Slides:
         value = sp.simplify(self.sense[joint.number] * value)
         self.maker.add(f"{joint.joint}_ = ik.let('{joint.joint}_', {source(value)})")
         self.maker.solve("slide", f"{joint.joint}, {joint.joint}_")
+
+    def _less_slid(self, joint: Single, a: sp.Matrix, label: str = "q2") -> None:
+        """Take away from the point ``q`` what a slide along ``a`` does."""
+        along = source(self.sense[joint.number] * a)
+        self._vector("q", f"q - {joint.joint}_*{along}", label)
 
     def _root(self, joint: Single, e: Any, r: str, h: str) -> None:
         e = sp.simplify(self.sense[joint.number] * e)

@@ -38,6 +38,18 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
             "u is the joint of an earlier row; if motors drive both, through a belt or a "
             "parallelogram, give this joint a new name and write -u + v in a column motors",
         ),
+        ("a, alpha, d, theta\n0, 90 deg, 0, t\n", "in radians, as multiples of pi; write pi/2"),
+        ("a, alpha, d, theta\n0, 90°, 0, t\n", "in radians, as multiples of pi; write pi/2"),
+        ("a, alpha, d, theta\n0, radians(90), 0, t\n", "angles are in radians"),
+        ("a, alpha, d, theta\n0, π/2, 0, t\n", "write pi for the number"),
+        ("a, alpha, d, theta\n0, np.pi/2, 0, t\n", "write pi for the number"),
+        ("a, alpha, d, theta\n0, PI/2, 0, t\n", "alpha: write pi for the number, instead of PI"),
+        ("a, alpha, d, theta\n0, \u2212pi/2, 0, t\n", "write - for a minus"),
+        ("a, alpha, d, theta\nL^2, 0, 0, t\n", "write ** for a power"),
+        ("a, alpha, d, theta\n400 mm, 0, 0, t\n", "write all lengths in the same one"),
+        ("a, alpha, d, theta\n0, 0, 0, 2t\n", "write * for a product"),
+        ("a, alpha, d, theta\n0, 0, 0, θ1\n", "names have Latin letters"),
+        ("a, alpha, d, theta\n0, 0, , t\n", "column d: cannot read ''; the cell is empty; write 0"),
         ("a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
         ("# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L is not used"),
         ("", "the table is empty"),
@@ -69,6 +81,14 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
         ("# L = 1 m: x\n# L = 2 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "line 2: the parameter L"),
         ("# L = nan m: x\na, alpha, d, theta\nL, 0, 0, t\n", "line 1: the value of L is 'nan'"),
         ("# L = pi/2 rad: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is 'pi/2'"),
+        (
+            "# L = 400 mm: x\n# M = 0.3 m: x\na, alpha, d, theta\nL, 0, M, t\n",
+            "L is in mm and M in m; write all lengths in the same unit",
+        ),
+        (
+            "# b = 90 deg: x\na, alpha, d, theta\n0, b, 1, t\n",
+            "write b = 1.570796326794897 rad, or a multiple of pi in its place in the table",
+        ),
         ("# L = 1e400 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1e400'"),
     ],
 )

@@ -31,6 +31,7 @@ from closedform.scaffold.proposal import Tried
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
 from closedform.scaffold.source import file_name, literal, source
+from closedform.scaffold.spelling import mistaken_units
 from closedform.scaffold.tables import (
     AUTHOR,
     CHAIN,
@@ -147,6 +148,8 @@ def new(
     else:
         table = read_screws(path)
     check_names(table, path.name)
+    if mistaken := mistaken_units(table.parameters):
+        raise TableError(f"{path.name}: {mistaken}")
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:

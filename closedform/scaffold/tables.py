@@ -31,6 +31,7 @@ from closedform.model.functions import real
 from closedform.model.names import check_symbol
 from closedform.scaffold import exact
 from closedform.scaffold.source import source
+from closedform.scaffold.spelling import PI, instead
 
 COLUMNS = ("a", "alpha", "d", "theta")
 LARGEST = 64_000
@@ -558,11 +559,15 @@ def expression(text: Any, where: str) -> Any:
         raise TableError(f"{where}: {shown(text)} is not a number or formula")
     try:
         return formula(_plain(text), lambda name: _symbol(name, where))
-    except FormulaError as error:
-        raise TableError(f"{where}: {error}") from error
+    except (FormulaError, TableError) as error:
+        if what := instead(_plain(text)):
+            raise TableError(f"{where}: cannot read {shown(text)}; {what}") from error
+        raise TableError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from error
 
 
 def _symbol(name: str, where: str) -> Any:
+    if PI.fullmatch(name):
+        raise TableError(f"{where}: write pi for the number, instead of {name}")
     check_table_name(name, where)
     return real(name)
 

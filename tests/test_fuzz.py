@@ -1,6 +1,10 @@
 """The attacks of ``make fuzz``: saved failures stay mended, and a fault is found."""
 
+import importlib
 import json
+import multiprocessing
+import os
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,6 +17,7 @@ from fuzz.outcome import CASES
 from fuzz.robots import Robot, robot
 
 SEED = 20
+TABLE = {"kind": "dh", "name": "arm", "text": "", "modified": False}
 QUICK = ("planar_2r", "puma560", "rpr_planar", "scara", "spherical_wrist", "stanford_arm", "ur_arm")
 """Mechanisms whose derivations are loaded in a few seconds."""
 
@@ -98,8 +103,37 @@ def test_a_crash_is_a_finding() -> None:
 
 
 def test_a_table_that_acts_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
-    import os
-
     monkeypatch.setattr(tables, "new", lambda *_a, **_k: os.system("true"))
-    (problem,) = tables.replay({"kind": "dh", "name": "arm", "text": "", "modified": False})
+    (problem,) = tables.replay(TABLE)
     assert "os.system" in problem
+
+
+@pytest.mark.parametrize("write", [os.open, open], ids=["os.open", "open"])
+def test_a_table_that_writes_in_another_process_is_a_finding(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, write
+) -> None:
+    """An exception there ends the process; the reader would only say that it took too long."""
+    mode = os.O_WRONLY | os.O_CREAT if write is os.open else "w"
+
+    def writes(*_a, **_k) -> None:
+        process = multiprocessing.get_context("fork").Process(target=write, args=(made, mode))
+        process.start()
+        process.join()
+        raise ValueError("it took too long")
+
+    made = tmp_path / "made"
+    monkeypatch.setattr(tables, "new", writes)
+    (problem,) = tables.replay(TABLE)
+    assert "open" in problem
+    assert not made.exists()
+
+
+def test_bytecode_that_python_keeps_is_not_a_finding(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "imported_late.py").write_text("text = 'd = 1'\n", "utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(tables, "new", lambda *_a, **_k: importlib.import_module("imported_late"))
+    assert tables.replay(TABLE) == []
+    assert not sys.dont_write_bytecode

@@ -7,6 +7,8 @@ is a finding, and so are an exception other than the documented one and a long s
 from __future__ import annotations
 
 import ast
+import mmap
+import os
 import signal
 import sys
 import tempfile
@@ -137,18 +139,43 @@ class AttackSucceededError(BaseException):
     """A table made the reader do more than read data."""
 
 
+WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _watched = False
+_seen = mmap.mmap(-1, 512)
+"""What was reported, also by a process that the reader has started: those share this memory."""
 
 
 def _watch(event: str, arguments: tuple[Any, ...]) -> None:
-    if not _watched:
-        return
-    writes = event == "open" and isinstance(arguments[1], str) and set(arguments[1]) & set("wax+")
-    if event in FORBIDDEN or writes:
-        raise AttackSucceededError(f"{event} {arguments[:2]}")
+    if _watched and (event in FORBIDDEN or (event == "open" and _writes(*arguments))):
+        problem = f"{event} {arguments[:2]}"
+        _seen[:] = problem.encode("utf-8", "replace")[: len(_seen)].ljust(len(_seen), b"\0")
+        raise AttackSucceededError(problem)
+
+
+def _writes(_path: Any, mode: str | None, flags: int) -> bool:
+    """Whether a file is opened to be changed; ``os.open`` has no mode."""
+    return bool(set(mode or "") & set("wax+")) or bool(flags & WRITING)
 
 
 sys.addaudithook(_watch)
+
+
+@contextmanager
+def _guarded() -> Iterator[None]:
+    """Watch what happens.
+
+    Python itself writes the bytecode of a module that is imported late, which no table can
+    cause or prevent; so it keeps none meanwhile.
+    """
+    global _watched
+    before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    _seen[:] = bytes(len(_seen))
+    _watched = True
+    try:
+        yield
+    finally:
+        _watched = False
+        sys.dont_write_bytecode = before
 
 
 def round(rng: np.random.Generator) -> Outcome:
@@ -211,21 +238,22 @@ def _bounded(seconds: int) -> Iterator[None]:
 
 def _read(case: Mapping[str, Any]) -> tuple[str, str]:
     """``read`` or ``refused``, and what is wrong, if anything is."""
-    global _watched
+    result, problem = _outcome(case)
+    seen = _seen[:].rstrip(b"\0").decode("utf-8", "replace")
+    return ("failed", problem or seen) if seen else (result, problem)
+
+
+def _outcome(case: Mapping[str, Any]) -> tuple[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "table"
         path.write_text(case["text"], "utf-8", errors="surrogatepass")
         start = time.monotonic()
         try:
-            with _bounded(PATIENCE):
-                _watched = True
+            with _bounded(PATIENCE), _guarded():
                 text = new(case["name"], case["kind"], path, modified=_modified(case)).text
-                _watched = False
         except (ValueError, TypeError) as error:
-            _watched = False
             return "refused", _complaint(str(error))
         except BaseException as error:
-            _watched = False
             if isinstance(error, KeyboardInterrupt):
                 raise
             passed = time.monotonic() - start

@@ -23,6 +23,8 @@ FACTORED = (
     "spherical wrist, axes 1 and 2 parallel",
     "axes 2, 3 and 4 meet in a point, 5 and 6 meet",
     "axes 2, 3 and 4 meet in a point, 5 and 6 are parallel",
+    "axes 6, 5 and 4 parallel, 3 and 2 meet",
+    "axes 5, 4 and 3 parallel, 2 and 1 meet",
 )
 """Structures whose singular set has a factor for each joint that can reach the end of its range."""
 FRANKA = "spherical shoulder, axes 6 and 5 meet, with t7 given"

@@ -21,6 +21,27 @@ from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
 
 
+@dataclass(frozen=True)
+class Carried:
+    """A wrist that turns the vector ``w`` at the end of two ``links``."""
+
+    wrist: Sequence[Single]
+    w: sp.Matrix
+    links: tuple[sp.Matrix, sp.Matrix]
+
+    @property
+    def numbers(self) -> tuple[str, str, str]:
+        """The lengths of the links, that of ``w``, and how far it is ahead of the first axis."""
+        e = self.wrist[0].end * Z
+        if e[1].is_negative:
+            e = -e
+        length = norm(self.w[:2, 0])
+        angle = (heading(self.w) if length != 0 else sp.S.Zero) - heading(e)
+        sine, cosine = sine_cosine(angle + sp.pi / 2)
+        lengths = ", ".join(source(norm(x[:2, 0])) for x in self.links)
+        return lengths, source(length), f"Pair({source(sine)}, {source(cosine)})"
+
+
 @dataclass
 class SixMaker(SubproblemMaker):
     """Writes the lines for six joints that have no spherical wrist and no spherical shoulder."""
@@ -38,12 +59,17 @@ class SixMaker(SubproblemMaker):
         )
         R = self.centre(arm)
         w = four.shift
-        q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
-        inside = f"(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})"
-        self.add(f"left1 = ik.matrix('left1', {times(one.end.T, inside)})")
-        M = self.without_tool(arm.tool[:3, :3], "left1")
         lift = replace(four, turn=two.turn + three.turn + four.turn)
-        self._reach([lift, five, six], w, [q, pair], two.shift, three.shift)
+        carried = Carried([lift, five, six], w, (two.shift, three.shift))
+        left = times(one.end.T, f"(turned({{}}).T * {times(arm.lead[:3, :3].T, R)})")
+        place = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
+        axis = self.last_axis(arm, left.format("pair"))
+        links = self._links_and_wrist(carried, place, axis)
+        beside = two.shift[2] + three.shift[2] + w[2]
+        q, pair = self._seen_in_plane(one, beside, links)
+        self.add(f"left1 = ik.matrix('left1', {left.format(pair)})")
+        M = self.without_tool(arm.tool[:3, :3], "left1")
+        self._reach(carried, q, pair)
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         u, v = two.shift, three.shift
@@ -87,12 +113,15 @@ class SixMaker(SubproblemMaker):
             t = five.end.T * five.shift
             u = sp.Matrix([sp.Symbol(f"M[2, {i}]") for i in range(3)])
             a, b = turning(u, t)
-            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]))
-            self.vector("p", f"p - M * turned({sixth}).T * {source(t)}", "p3")
+            carried = Carried([lift, four, five], three.shift, (one.shift, two.shift))
+            place = f"p - M * turned({{}}).T * {source(t)}"
+            axis = f"M * turned(pair).T * {source(five.end.T * Z)}"
+            links = self._links_and_wrist(carried, place.format("pair"), axis)
+            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]), links)
+            self.vector("p", place.format(sixth), "p3")
             left = followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
-            links = one.shift, two.shift
-            self._reach([lift, four, five], three.shift, ["p", sixth], *links)
+            self._reach(carried, "p", sixth)
             self.orientation([lift, four, five], "left1")
             self.vector("to_end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * to_end")
@@ -170,33 +199,28 @@ class SixMaker(SubproblemMaker):
         middle = times(one.end.T, f"(turned({first}).T * M)")
         return followed(f"{middle} * {both}", four.end.T)
 
-    def _reach(
-        self,
-        wrist: Sequence[Single],
-        w: sp.Matrix,
-        names: Sequence[str],
-        u: sp.Matrix,
-        v: sp.Matrix,
-    ) -> None:
-        """Keep a wrist within reach of the links ``u`` and ``v`` where it is free.
+    def _links_and_wrist(self, carried: Carried, place: str, axis: str) -> str:
+        """The goal of a turn before the wrist, which moves the ``place`` that it ends at.
 
-        It turns the vector ``w``; ``names`` are those of the point and of the pair before.
+        Its last axis turns along.
         """
-        first = wrist[0]
-        if not self.is_normal(wrist):
-            return
-        q, pair = names
-        e = first.end * Z
-        if e[1].is_negative:
-            e = -e
-        length = norm(w[:2, 0])
-        angle = (heading(w) if length != 0 else sp.S.Zero) - heading(e)
-        sine, cosine = sine_cosine(angle + sp.pi / 2)
-        ahead = f"Pair({source(sine)}, {source(cosine)})"
-        w, u, v = (source(norm(x[:2, 0])) for x in (w, u, v))
-        turned = f"offset={w}, ahead={ahead}, lever={pair}.lever"
-        self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({u}, {v}), {turned})")
-        self.more = ", reaching=reaching"
+        if not self.is_normal(carried.wrist):
+            return ""
+        lengths, offset, ahead = carried.numbers
+        arguments = f"lambda pair: {place}, {lengths}, lambda pair: {axis}, {offset}, {ahead}"
+        self.add(f"links = LinksAndWrist({arguments})")
+        return "links"
+
+    def _reach(self, carried: Carried, q: str, pair: str) -> None:
+        """Keep a wrist within reach of links where it is free.
+
+        ``q`` and ``pair`` are the names of the point and of the pair before.
+        """
+        if self.is_normal(carried.wrist):
+            lengths, offset, ahead = carried.numbers
+            turned = f"offset={offset}, ahead={ahead}, lever={pair}.lever"
+            self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {turned})")
+            self.more = ", reaching=reaching"
 
     def _seen_from_tool(self, found: Singles) -> None:
         """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""

@@ -150,6 +150,10 @@ class SubproblemMaker(WristMaker):
         self.add(f"left = ik.matrix('left', {M} * {source(after.T)})")
         return "left"
 
+    def last_axis(self, arm: Singles, M: str) -> str:
+        """The direction of the last axis, seen from where ``M`` leads to the tool."""
+        return f"{M} * {source((arm.tool[:3, :3].T * Z).applyfunc(sp.simplify))}"
+
     def centre(self, arm: Singles) -> str:
         """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
         R, p = ("ik.R", "ik.p")
@@ -177,8 +181,7 @@ class SubproblemMaker(WristMaker):
         middle = arm.joints[1:-1]
         few = len(arm.joints) <= 5 and not any(j.slides for j in arm.joints)
         if few and middle and all(parallel(j) for j in middle[:-1]):
-            axis = (arm.tool[:3, :3].T * Z).applyfunc(sp.simplify)
-            self.tool = times(arm.lead[:3, :3].T, f"{R} * {source(axis)}")
+            self.tool = times(arm.lead[:3, :3].T, self.last_axis(arm, R))
             self.along = sp.simplify(sp.prod([j.end[2, 2] for j in middle]))
 
     # The joints that carry a point

@@ -34,6 +34,8 @@ from closedform.lemmas.links import turn as turn
 from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.loop import parallel as parallel
+from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWrist
+from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.platform import platform as platform

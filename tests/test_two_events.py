@@ -12,19 +12,31 @@ import numpy as np
 import pytest
 from chains import arm, printed, solved
 from loop_files import newton
+from sympy import pi
 from test_six import CHAINS as SIX
+from test_six import H
 from test_subproblems import CHAINS as SUBPROBLEMS
 
 from closedform.scaffold.propose import propose
 
-TABLES = {**SUBPROBLEMS, **SIX}
+OBLIQUE = {
+    "three parallel axes, oblique wrist whose outer axes can be aligned": [
+        (H, pi / 2, 1), (2, 0, 0), (1, 0, 0), (H, pi / 3, H), (0, pi / 3, 1), (0, 0, H),
+    ],
+    "oblique wrist, three parallel axes": [
+        (0, -pi / 3, 1), (1, pi / 2, 0), (2, 0, 0), (1, 0, H), (H, -pi / 2, 0), (0, 0, 1),
+    ],
+}  # fmt: skip
+TABLES = {**{name: rows for name, (rows, _) in (SUBPROBLEMS | SIX).items()}, **OBLIQUE}
 FACTORED = (
     "spherical wrist, axes 1 and 2 meet",
     "spherical wrist, axes 1 and 2 parallel",
     "axes 2, 3 and 4 meet in a point, 5 and 6 meet",
     "axes 2, 3 and 4 meet in a point, 5 and 6 are parallel",
+    "axes 1, 2 and 3 parallel, 5 and 6 meet",
     "axes 6, 5 and 4 parallel, 3 and 2 meet",
     "axes 5, 4 and 3 parallel, 2 and 1 meet",
+    *OBLIQUE,
 )
 """Structures whose singular set has a factor for each joint that can reach the end of its range."""
 FRANKA = "spherical shoulder, axes 6 and 5 meet, with t7 given"
@@ -52,7 +64,7 @@ def check(robot: ModuleType, q: np.ndarray, *given: np.ndarray) -> None:
 
 @pytest.mark.parametrize("structure", FACTORED)
 def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_path: Path) -> None:
-    d, serial = arm(TABLES[structure][0])
+    d, serial = arm(TABLES[structure])
     serial.export(d)
     solved(d, serial, propose(serial).source)
     robot, rng, tried = printed(d, tmp_path), np.random.default_rng(2), 0
@@ -70,7 +82,7 @@ def test_no_posture_is_lost_where_an_elbow_with_an_offset_is_stretched_and_axis_
     tmp_path: Path,
 ) -> None:
     """At t5 = +-pi/2, axis 6 is as far from the shoulder as the elbow allows."""
-    d, serial = arm(TABLES[FRANKA][0])
+    d, serial = arm(TABLES[FRANKA])
     serial.export(d)
     solved(d, serial, propose(serial, "t7").source)
     robot, rng = printed(d, tmp_path), np.random.default_rng(2)

@@ -12,7 +12,8 @@ from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.model.inverse import Relation
+from closedform.lemmas.zyz import Reaching, within_reach
+from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma, label
 
 Because = Mapping[sp.Symbol, sp.Expr | Sequence[sp.Expr]]
@@ -41,6 +42,7 @@ def rotate(
     *,
     because: Because | None = None,
     scale: sp.Expr | None = None,
+    reaching: Reaching | None = None,
     name: str = "",
 ) -> Applied:
     """``Rz(x) w = v`` for vectors of the plane of equal length: one solution.
@@ -60,6 +62,8 @@ def rotate(
         these unknowns, each times the factor given
     scale
         that of the vectors, by default the size of the arm
+    reaching
+        what the rest of the arm has to reach, if the turn decides on it
     name
         what the names end in, by default the number of the joint
     """
@@ -78,7 +82,13 @@ def rotate(
         flag = p.vanishes(
             f"on_axis_{tag}", shorter, size, f"the axis of {x.name} is met", free=(x,)
         )
-    pair, means = named(chain, x, direction(sine, cosine, length, flag))
+    found, near = direction(sine, cosine, length, flag), ()
+    unit: dict[sp.Expr, sp.Expr] = {}
+    if reaching is not None:
+        unit_vector = cosine / length, sine / length
+        span = p.let(f"span_{tag}", shorter, nonnegative=True)
+        found, near, unit = within_reach(reaching, unit_vector, span, x, flag)
+    pair, means = named(chain, x, found)
     lemma = Lemma(
         "rotation of a vector",
         r"R(\theta)\,w = v,\ |w| = |v| \;\Rightarrow\; \theta = "
@@ -94,8 +104,12 @@ def rotate(
     turn = any_pair("tau")
     s, c = turn.s, turn.c
     given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
-    meaning = f"the axis of {x} is met; {x} is free, 0 is returned."
-    cases = degenerate(flag, [vanishing(w1, w2, v1, v2)], x, meaning)
+    locus = vanishing(w1, w2, v1, v2)
+    returned = "0 is returned." if reaching is None else "one within reach is returned."
+    meaning = f"the axis of {x} is met; {x} is free, {returned}"
+    cases = degenerate(flag, [locus and locus | unit], x, meaning)
+    if near and locus is not None:
+        cases += (Degenerate(near, locus | unit, None, meaning),)
     relations = (
         Relation(relation, terms(because), f"that {_shown(w)} and {_shown(v)} are equally long"),
     )

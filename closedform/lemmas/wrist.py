@@ -7,12 +7,14 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
+from closedform.lemmas.links import ANYWHERE, degenerate, differs_from_zero, named, vanishing
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
+from closedform.lemmas.tangent import ROUNDING, Goal, Tangency
 from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
@@ -41,6 +43,7 @@ def tilt(
     choice: Choice,
     *,
     sense: int = 1,
+    toward: Goal = ANYWHERE,
     name: str = "",
 ) -> Applied:
     """``k (1 - cos x) = 1 - sense v3`` for a column v of a rotation: both solutions.
@@ -63,6 +66,8 @@ def tilt(
         the names of the two solutions
     sense
         -1 if the axes are opposite where they are aligned
+    toward
+        what later joints have to reach; near a tangent, x is turned such that they do
     name
         the name of the sign and what other names end in, by default the number of the joint
     """
@@ -79,8 +84,11 @@ def tilt(
     flag: Any = sp.false
     if not differs_from_zero(chain, k, sp.S.One):
         flag = p.vanishes(f"level{tag}", width, 1, "the axes of the wrist are parallel", free=(x,))
-    sine = 2 * sigma * sp.sqrt(below) * sp.sqrt(above)
-    pair, means = named(chain, x, direction(sine, above - below, width, flag))
+    cosine = p.let(f"level_at{tag}", (above - below) / 2)
+    at = Amplitude(x, sp.S.Zero, k, cosine, sigma, k, below, above)
+    root = p.let(f"root{tag}", at.root, nonnegative=True)
+    found = toward.reached(Tangency(chain, at, root, width, 2 * ROUNDING, tag, flag))
+    pair, means = named(chain, x, found.pair)
     lemma = Lemma(
         "tilt of a wrist",
         r"k(1 - \cos\theta) = 1 - v_3 \;\Rightarrow\; (\cos\theta, \sin\theta) = "

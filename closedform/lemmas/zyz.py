@@ -271,7 +271,7 @@ def zyz(
             f"aligned_{name}", h, _ROUNDINGS, "the first and the last axis are parallel", (free,)
         )
         u = sigma * R[0, 2] / h, sigma * R[1, 2] / h
-        found, near, unit = _within_reach(reaching, u, h, first, aligned)
+        found, near, unit = within_reach(reaching, u, h, first, aligned)
         pair, means = named(chain, first, found)
         lemma, _ = zyz_lemma(R, unknowns, pair)
         halves[middle] = _tilt(R, pair, sp.S.One), sp.S.Zero
@@ -294,7 +294,7 @@ def _tilt(R: sp.Matrix, first: Pair, side: sp.Expr) -> Pair:
     return Pair(side * (first.c * R[0, 2] + first.s * R[1, 2]), R[2, 2])
 
 
-def _within_reach(
+def within_reach(
     reaching: Reaching,
     u: tuple[sp.Expr, sp.Expr],
     h: sp.Symbol,
@@ -335,4 +335,4 @@ def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
     )
 
 
-__all__ = ["Reaching", "Zyz", "zyz", "zyz_angles", "zyz_lemma"]
+__all__ = ["Reaching", "Zyz", "within_reach", "zyz", "zyz_angles", "zyz_lemma"]

@@ -11,7 +11,7 @@ from closedform.scaffold.chainlinks import Single, Singles
 from closedform.scaffold.maker import followed, heading, norm, times
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
-from closedform.scaffold.wrists import ELBOW
+from closedform.scaffold.wrists import ELBOW, is_normal
 
 NAME = "arm_angle"
 SIDES = "{+1: 'front', -1: 'back'}"
@@ -82,7 +82,7 @@ class ArmAngleMaker(SubproblemMaker):
     def require_right_angles(self, joints: Sequence[Single]) -> None:
         numbers = [j.number for j in joints]
         self.require(
-            self.is_normal(joints),
+            is_normal(joints),
             "axes {}, {} and {} are not at right angles".format(*numbers),
             "An arm angle needs neighbours at right angles in its shoulder and its wrist.",
         )

@@ -19,27 +19,47 @@ from closedform.scaffold.maker import Z, followed, heading, norm, point, sine_co
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
+from closedform.scaffold.wrists import Carried, is_normal
 
 
 @dataclass(frozen=True)
-class Carried:
-    """A wrist that turns the vector ``w`` at the end of two ``links``."""
+class Ahead:
+    """What a turn has to leave within reach of two ``links``: a wrist, and what it turns.
+
+    That is, as it is written with ``{}`` for the pair of the turn, the ``point`` that the wrist
+    carries, the direction ``axis`` of its last axis, the rotation ``onward`` from its first joint
+    to its second, and the ``offset`` from the end of the links to the point, which is ``constant``
+    or follows from the turn.
+    """
 
     wrist: Sequence[Single]
-    w: sp.Matrix
     links: tuple[sp.Matrix, sp.Matrix]
+    point: str
+    axis: str
+    offset: str = ""
+    onward: str = ""
+    constant: sp.Matrix | None = None
 
     @property
-    def numbers(self) -> tuple[str, str, str]:
-        """The lengths of the links, that of ``w``, and how far it is ahead of the first axis."""
-        e = self.wrist[0].end * Z
+    def lengths(self) -> tuple[str, ...]:
+        return tuple(source(norm(x[:2, 0])) for x in self.links)
+
+    @property
+    def is_normal(self) -> bool:
+        """Whether neighbours among the axes of the wrist are at right angles, whatever the turn."""
+        return self.constant is not None and is_normal(self.wrist)
+
+    @property
+    def numbers(self) -> tuple[str, str]:
+        """The length of the offset of such a wrist, and how far it is ahead of the first axis."""
+        assert self.constant is not None
+        e, w = self.wrist[0].end * Z, self.constant
         if e[1].is_negative:
             e = -e
-        length = norm(self.w[:2, 0])
-        angle = (heading(self.w) if length != 0 else sp.S.Zero) - heading(e)
+        length = norm(w[:2, 0])
+        angle = (heading(w) if length != 0 else sp.S.Zero) - heading(e)
         sine, cosine = sine_cosine(angle + sp.pi / 2)
-        lengths = ", ".join(source(norm(x[:2, 0])) for x in self.links)
-        return lengths, source(length), f"Pair({source(sine)}, {source(cosine)})"
+        return source(length), f"Pair({source(sine)}, {source(cosine)})"
 
 
 @dataclass
@@ -60,16 +80,21 @@ class SixMaker(SubproblemMaker):
         R = self.centre(arm)
         w = four.shift
         lift = replace(four, turn=two.turn + three.turn + four.turn)
-        carried = Carried([lift, five, six], w, (two.shift, three.shift))
         left = times(one.end.T, f"(turned({{}}).T * {times(arm.lead[:3, :3].T, R)})")
-        place = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
-        axis = self.last_axis(arm, left.format("pair"))
-        links = self._links_and_wrist(carried, place, axis)
+        place = times(one.end.T, f"(turned({{}}).T * p - {source(one.shift)})")
+        ahead = Ahead(
+            [lift, five, six],
+            (two.shift, three.shift),
+            place,
+            self.last_axis(arm, left),
+            constant=w,
+        )
+        links = self._goal(ahead)
         beside = two.shift[2] + three.shift[2] + w[2]
         q, pair = self._seen_in_plane(one, beside, links)
         self.add(f"left1 = ik.matrix('left1', {left.format(pair)})")
         M = self.without_tool(arm.tool[:3, :3], "left1")
-        self._reach(carried, q, pair)
+        self._reach(ahead, q, pair)
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         u, v = two.shift, three.shift
@@ -104,24 +129,40 @@ class SixMaker(SubproblemMaker):
         if at_end is not None:
             s, g = four.shift, three.end.T * Z
             a, b = turning(s, g)
-            fourth = self._turn(four, (a, b, p[2] - height - g[2] * s[2]))
-            self.add(f"R_before = {times(three.end, f'turned({fourth})')}")
+            before = times(three.end, "turned({})")
+            offset = f"{source(three.shift)} + {{}} * {source(s)}"
+            ahead = Ahead(
+                [lift, five, six],
+                (one.shift, two.shift),
+                "p",
+                f"({M})[:, 2]",
+                offset.format(before),
+                followed(before, four.end),
+            )
+            sides = a, b, p[2] - height - g[2] * s[2]
+            fourth = self._turn(four, sides, self._goal(ahead))
+            self.add(f"R_before = {before.format(fourth)}")
+            self.vector("to_end", offset.format("R_before"))
+            self._reach(ahead, "p", fourth)
             self.wrist_about(lift, five, six, M, followed("R_before", four.end))
-            self.vector("to_end", f"{source(three.shift)} + R_before * {source(s)}")
         else:
             self.add(f"M = ik.matrix('M', {M})")
             t = five.end.T * five.shift
             u = sp.Matrix([sp.Symbol(f"M[2, {i}]") for i in range(3)])
             a, b = turning(u, t)
-            carried = Carried([lift, four, five], three.shift, (one.shift, two.shift))
             place = f"p - M * turned({{}}).T * {source(t)}"
-            axis = f"M * turned(pair).T * {source(five.end.T * Z)}"
-            links = self._links_and_wrist(carried, place.format("pair"), axis)
-            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]), links)
+            ahead = Ahead(
+                [lift, four, five],
+                (one.shift, two.shift),
+                place,
+                f"M * turned({{}}).T * {source(five.end.T * Z)}",
+                constant=three.shift,
+            )
+            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]), self._goal(ahead))
             self.vector("p", place.format(sixth), "p3")
             left = followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
-            self._reach(carried, "p", sixth)
+            self._reach(ahead, "p", sixth)
             self.orientation([lift, four, five], "left1")
             self.vector("to_end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * to_end")
@@ -199,28 +240,40 @@ class SixMaker(SubproblemMaker):
         middle = times(one.end.T, f"(turned({first}).T * M)")
         return followed(f"{middle} * {both}", four.end.T)
 
-    def _links_and_wrist(self, carried: Carried, place: str, axis: str) -> str:
-        """The goal of a turn before the wrist, which moves the ``place`` that it ends at.
-
-        Its last axis turns along.
-        """
-        if not self.is_normal(carried.wrist):
-            return ""
-        lengths, offset, ahead = carried.numbers
-        arguments = f"lambda pair: {place}, {lengths}, lambda pair: {axis}, {offset}, {ahead}"
-        self.add(f"links = LinksAndWrist({arguments})")
+    def _goal(self, ahead: Ahead) -> str:
+        """The name of the goal of a turn before a wrist."""
+        parts = [ahead.point, ahead.axis, ahead.onward, ahead.offset]
+        if ahead.constant is not None:
+            parts[2:] = source(ahead.wrist[0].end), source(ahead.constant)
+        point, axis, onward, offset = (f"lambda pair: {e.format('pair')}" for e in parts)
+        lengths = ", ".join(ahead.lengths)
+        if ahead.is_normal:
+            length, turned = ahead.numbers
+            arguments = f"{point}, {lengths}, {axis}, {length}, {turned}"
+            self.add(f"links = LinksAndWrist({arguments})")
+            return "links"
+        first, middle, _ = ahead.wrist
+        x, sense = self.middle(first, middle, ahead.onward)
+        arguments = f"{point}, {lengths}, {axis}, {onward}, {source(middle.end * Z)}, {offset}, {x}"
+        more = ", sense=-1" if sense < 0 else ""
+        self.add(f"links = LinksAndObliqueWrist({arguments}{more})")
         return "links"
 
-    def _reach(self, carried: Carried, q: str, pair: str) -> None:
-        """Keep a wrist within reach of links where it is free.
+    def _reach(self, ahead: Ahead, q: str, pair: str) -> None:
+        """Keep a wrist within reach of links where it is free or tangent.
 
         ``q`` and ``pair`` are the names of the point and of the pair before.
         """
-        if self.is_normal(carried.wrist):
-            lengths, offset, ahead = carried.numbers
-            turned = f"offset={offset}, ahead={ahead}, lever={pair}.lever"
-            self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {turned})")
-            self.more = ", reaching=reaching"
+        if not ahead.is_normal:
+            entries = point("to_end") if ahead.constant is None else ahead.constant
+            offset = "to_end" if ahead.constant is None else source(entries)
+            self.carried = Carried(q, offset, ahead.lengths, entries)
+            return
+        length, turned = ahead.numbers
+        lengths = ", ".join(ahead.lengths)
+        arguments = f"offset={length}, ahead={turned}, lever={pair}.lever"
+        self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {arguments})")
+        self.more = ", reaching=reaching"
 
     def _seen_from_tool(self, found: Singles) -> None:
         """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""

@@ -23,7 +23,7 @@ from closedform.scaffold.maker import Solved, Z, followed, heading, norm, point,
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
-from closedform.scaffold.wrists import SIDE, WristMaker
+from closedform.scaffold.wrists import SIDE, WristMaker, is_normal
 
 
 @dataclass
@@ -52,7 +52,7 @@ class SubproblemMaker(WristMaker):
         self._see_the_last_axis(arm, R)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
-        if wrist == 3 and not self.is_normal(ends):
+        if wrist == 3 and not is_normal(ends):
             tool = followed(M, arm.tool[:3, :3].T)
             self._within_tilt(before, ends, tool)
         for k, (pair, end) in enumerate(solved.turned, 1):

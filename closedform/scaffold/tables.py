@@ -47,7 +47,10 @@ CHAIN = (
     "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
-LINKED = ("Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair")
+LINKED = (
+    "Links", "LinksAndObliqueWrist", "LinksAndWrist", "LinksAtHeight", "LinksPastTurn", "OnCircle",
+    "Pair",
+)  # fmt: skip
 AUTHOR = (
     "Chain",
     "Derivation",
@@ -65,7 +68,7 @@ LINES = {
     "both_links", "on_ellipse",
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "radius_to_target", "radius_to_end", "lever",
+    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "offset",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

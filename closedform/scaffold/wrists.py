@@ -15,12 +15,26 @@ import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
 from closedform.scaffold.chainlinks import Single, parallel
-from closedform.scaffold.maker import FLIP, Maker, Z, times, turning
+from closedform.scaffold.maker import FLIP, Maker, Z, norm, times, turning
 from closedform.scaffold.source import source
 
 SIDE = "{+1: 'left', -1: 'right'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
 """A branch of a joint that a distance determines is an elbow."""
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Two links of some ``lengths`` reach a ``point`` less an ``offset``, which a wrist turns.
+
+    They are as they are written.
+    """
+
+    point: str
+    offset: str
+    lengths: Sequence[str]
+    offset_at: sp.Matrix
+    """The entries of the offset."""
 
 
 @dataclass
@@ -32,6 +46,10 @@ class WristMaker(Maker):
     """The pair of the first joint of a wrist."""
     more: str = ""
     """Further arguments of the lemma of a wrist, besides its angles."""
+    carried: Carried | None = None
+    """What a wrist of any angles carries, if two links have to reach it."""
+    tilted: dict[int, tuple[str, sp.Expr]] = field(default_factory=dict)
+    """Of the middle joint of a wrist of equal angles: the unknown, and what it is ahead of it."""
     levers: list[str] = field(default_factory=list)
     """Numbers that vanish where the joints that were solved are singular."""
 
@@ -73,9 +91,11 @@ class WristMaker(Maker):
         reach = sp.sqrt(sp.Mul(*map(sp.simplify, lengths)))
         self.within_reach(vector, tilt * w[2], source(reach))
 
-    def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
+    def _rotate(
+        self, joint: Single, w: str, v: str, because: str = "", *, scale: str = "", more: str = ""
+    ) -> str:
         name, pair = self.unknown(joint), f"pair{joint.number}"
-        more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
+        more += (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
         self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
         self.levers.append(f"sqrt(({v})[0]**2 + ({v})[1]**2)/ik.size")
         return pair
@@ -109,7 +129,7 @@ class WristMaker(Maker):
 
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
         first, middle, last = joints
-        if self.is_normal(joints):
+        if is_normal(joints):
             self.normal_wrist(joints, M, self.more)
             return
         self.wrist_about(first, middle, last, M, "")
@@ -127,10 +147,6 @@ class WristMaker(Maker):
         )
         self.lifted = self._less_by_angle(pair, epsilon)
 
-    def is_normal(self, wrist: Sequence[Single]) -> bool:
-        """Whether the neighbours among three axes are at right angles."""
-        return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
-
     def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
         """The pair of an angle without the constant that was added to it."""
         if epsilon == 0:
@@ -145,25 +161,24 @@ class WristMaker(Maker):
 
         ``onward`` is the rotation after the first joint, if it is not a constant.
         """
-        w = middle.end * Z
         self.add(f"M = ik.matrix('M_wrist', {M})")
         if onward:
             self.add(f"R_between = ik.matrix('R_between', {onward})")
-            g = sp.Matrix([sp.Symbol(f"R_between[2, {i}]") for i in range(3)])
-            between = "R_between"
-        else:
-            g, between = first.end.T * Z, source(first.end)
-        sense = 0 if onward else self._can_align(g, w)
+        between = "R_between" if onward else source(first.end)
+        w, (x, sense) = middle.end * Z, self.middle(first, middle, onward)
+        past = self._past_turn(f"{between} * turned({{}}) * {source(w)}", middle, sense)
         if sense:
-            x, pair = self._tilt(middle, g, w, sense)
+            pair = self._tilt(first, middle, past)
         else:
+            row = [sp.Symbol(f"R_between[2, {i}]") for i in range(3)]
+            g = sp.Matrix(row) if onward else first.end.T * Z
             a, b = (sp.expand(e) for e in turning(w, g))
             c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
-            x, pair = self.unknown(middle), self._turn(middle, (a, b, c), scale="1", choice=FLIP)
+            pair = self._turn(middle, (a, b, c), past, scale="1", choice=FLIP)
         self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
         of = "" if sense > 0 else "-"
         because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
-        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
+        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16", more=self._free())
         self.add(f"R_last = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
         self.add("R_rest = ik.matrix('R_rest', R_last.T * M)")
         up = "" if sense > 0 else "-"
@@ -172,31 +187,76 @@ class WristMaker(Maker):
         self.solve("spin", f"{self.unknown(last)}, R_rest, [{each}]", f"pair{last.number}")
         self.lifted = lifted
 
-    def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:
-        """Whether the first and the last axis can point the same way (1), or opposite ways (-1)."""
-        if sp.simplify(g[2] - w[2]) == 0:
-            return 1
-        return -1 if sp.simplify(g[2] + w[2]) == 0 else 0
+    def _past_turn(self, last: str, middle: Single, sense: int) -> str:
+        """The goal of the middle turn, which moves the ``last`` axis, if links are reached after.
 
-    def _tilt(self, joint: Single, g: sp.Matrix, w: sp.Matrix, sense: int) -> tuple[str, str]:
-        """Solve the middle joint of a wrist of equal angles; its unknown is zero at alignment."""
-        a, b = (sp.simplify(e) for e in turning(w, g))
-        k = sp.simplify(1 - g[2] ** 2)
-        if a == 0 and sp.simplify(b - k) == 0:
-            offset = sp.S.Zero
-        elif a == 0 and sp.simplify(b + k) == 0:
-            offset = sp.pi
-        else:
-            offset = sp.atan2(a, b)
-        x = self.angle(joint.turn - offset + (sp.pi if sense < 0 else 0))
-        name = f"tilted{joint.number}"
-        more = ", sense=-1" if sense < 0 else ""
+        The target of the axis is that of ``M``.
+        """
+        if self.carried is None:
+            return ""
+        pair = "pair"
+        if sense:
+            _, offset = self.tilted[middle.number]
+            pair = self._less_by_angle(pair, offset)
+        moved = f"offset={self.carried.offset}, last=lambda pair: {last.format(pair)}"
+        point, lengths = self.carried.point, ", ".join(self.carried.lengths)
+        self.add(f"past = LinksPastTurn(lambda _: {point}, {lengths}, axis=M[:, 2], {moved})")
+        return "past"
+
+    def _free(self) -> str:
+        """The argument that keeps the first turn within reach where the target leaves it free."""
+        if self.carried is None:
+            return ""
+        (x, y, _), q = self.carried.offset_at, self.carried.point
+        if x == y == 0:
+            return ""
+        self.add(f"offset = ik.let('offset', {source(norm(sp.Matrix([x, y])))})")
+        ahead = f"Pair({source(y)}/offset, {source(x)}/offset)"
+        more = f"offset=offset, ahead={ahead}, lever=ik.size"
+        lengths = ", ".join(self.carried.lengths)
+        self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {more})")
+        return ", reaching=reaching"
+
+    def middle(self, first: Single, middle: Single, onward: str = "") -> tuple[str, int]:
+        """The unknown of the middle joint of a wrist, and its sense.
+
+        If the first and the last axis can point the same way (1) or opposite ways (-1), it is zero
+        there.  In general (0) it is the angle of the joint.
+        """
+        g, w = first.end.T * Z, middle.end * Z
+        sense = 0
+        if not onward:
+            sense = next((k for k in (1, -1) if sp.simplify(g[2] - k * w[2]) == 0), 0)
+        if not sense:
+            return self.unknown(middle), 0
+        if middle.number not in self.tilted:
+            a, b = (sp.simplify(e) for e in turning(w, g))
+            k = sp.simplify(1 - g[2] ** 2)
+            if a == 0 and sp.simplify(b - k) == 0:
+                ahead = sp.S.Zero
+            elif a == 0 and sp.simplify(b + k) == 0:
+                ahead = sp.pi
+            else:
+                ahead = sp.atan2(a, b)
+            ahead -= sp.pi if sense < 0 else 0
+            self.tilted[middle.number] = self.angle(middle.turn - ahead), -ahead
+        return self.tilted[middle.number][0], sense
+
+    def _tilt(self, first: Single, middle: Single, past: str) -> str:
+        """Solve the middle joint of a wrist of equal angles."""
+        x, sense = self.middle(first, middle)
+        _, back = self.tilted[middle.number]
+        name, pair = f"tilted{middle.number}", f"pair{middle.number}"
+        more = (", sense=-1" if sense < 0 else "") + (f", toward={past}" if past else "")
+        k = sp.simplify(1 - (first.end.T * Z)[2] ** 2)
         self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
-        back = offset - (sp.pi if sense < 0 else 0)
-        pair = f"pair{joint.number}"
-        turned = self._less_by_angle(name, -back)
-        self.add(f"{pair} = {turned}")
-        return x, pair
+        self.add(f"{pair} = {self._less_by_angle(name, back)}")
+        return pair
 
 
-__all__ = ["ELBOW", "SIDE", "WristMaker"]
+def is_normal(wrist: Sequence[Single]) -> bool:
+    """Whether the neighbours among three axes are at right angles."""
+    return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
+
+
+__all__ = ["ELBOW", "SIDE", "Carried", "WristMaker", "is_normal"]

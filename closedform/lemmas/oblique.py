@@ -1,0 +1,232 @@
+"""Turns near a tangent, before and in a wrist whose axes meet at any angles.
+
+Two links have to reach a point less an offset, which the wrist turns about their axis; and the
+wrist has to tilt as far as the target says.  See :mod:`closedform.lemmas.tangent`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import sympy as sp
+
+from closedform.lemmas.tangent import LAST, Links, Offset, Turn, Within
+from closedform.model.functions import real, sign_of
+from closedform.model.lemma import label
+from closedform.model.pair import Pair
+
+STEPS = 3
+"""How often a turn is improved: each step leaves what is of the order of its square."""
+
+
+@dataclass(frozen=True)
+class LinksAndObliqueWrist(Links):
+    """Two links that reach q minus an ``offset``, which a wrist turns about their common axis z.
+
+    The wrist turns by z, then follows ``onward``, a turn about z again, and the constant vector
+    ``last``, which has to point along ``axis``.  All but it may be linear in the pair.  ``middle``
+    is the angle of the second turn; ``sense`` is -1 if it is zero where the axes are opposite.
+    """
+
+    axis: Callable[[Pair], sp.Matrix]
+    onward: Callable[[Pair], sp.Matrix]
+    last: sp.Matrix
+    offset: Callable[[Pair], sp.Matrix]
+    middle: sp.Symbol
+    sense: int = 1
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with the rest within reach."""
+        best = _Wrist(self, turn)
+        for k in range(2, 2 * STEPS + 2, 2):
+            tilted = best.moved(turn.renamed(best.turn.least(best.tilt), f"{turn.name}_{k}"))
+            near = tilted.turn.least(tilted.reach)
+            other = tilted.moved(turn.renamed(near, f"{turn.name}_{k + 1}"))
+            best = best.unless(other, f"{turn.name}_{k}b")
+        return best.turn.pair
+
+
+@dataclass(frozen=True)
+class _Wrist:
+    """A wrist, and the links before it, where a turn has brought them."""
+
+    goal: LinksAndObliqueWrist
+    turn: Turn
+
+    def moved(self, turn: Turn) -> _Wrist:
+        return _Wrist(self.goal, turn)
+
+    def unless(self, other: _Wrist, name: str) -> _Wrist:
+        """This, or the other if less is missed there."""
+        better = other.miss < self.miss
+        s, c = (
+            sp.Piecewise((there, better), (here, True))
+            for there, here in zip(_both(other.turn.pair), _both(self.turn.pair), strict=True)
+        )
+        return self.moved(self.turn.renamed(Pair(s, c), name))
+
+    @cached_property
+    def miss(self) -> sp.Symbol:
+        return self.turn.let("missed", self.tilt.miss + self.reach.miss)
+
+    def along(
+        self, name: str, value: Callable[[Pair], sp.Matrix]
+    ) -> tuple[list[sp.Expr], list[sp.Expr]]:
+        """The coordinates of what is linear in the pair, and their rates."""
+        s, c = sp.Dummy("s"), sp.Dummy("c")
+        pair = self.turn.pair
+        here = {s: pair.s, c: pair.c}
+        entries = list(value(Pair(s, c)))
+        rates = [e.diff(s) * pair.c - e.diff(c) * pair.s for e in entries]
+        return (
+            [self._named(f"{name}{i}", e.xreplace(here)) for i, e in enumerate(entries)],
+            [self._named(f"d{name}{i}", e) for i, e in enumerate(rates)],
+        )
+
+    def _named(self, name: str, value: sp.Expr) -> sp.Expr:
+        return value if value.is_number else self.turn.let(name, value)
+
+    @cached_property
+    def axis(self) -> tuple[list[sp.Expr], list[sp.Expr]]:
+        return self.along("axis", self.goal.axis)
+
+    @cached_property
+    def onward(self) -> tuple[sp.Matrix, sp.Matrix]:
+        value, rate = self.along("onward", self.goal.onward)
+        return sp.Matrix(3, 3, value), sp.Matrix(3, 3, rate)
+
+    @cached_property
+    def tilt(self) -> Within:
+        """How far the wrist tilts: a triangle on the sphere, of the axes and the direction.
+
+        One of its sides changes with the turn.  It is compared on the scale of lengths.
+        """
+        (*_, az), (*_, daz) = self.axis
+        B, dB = self.onward
+        w, size, turn = self.goal.last, self.turn.chain.size, self.turn
+        z, dz, other = (az, daz, B[2, 2]) if dB.is_zero_matrix else (B[2, 2], dB[2, 2], az)
+        level = turn.let("level", other * w[2])
+        square = (1 - other) * (1 + other)
+        reach = turn.let("tilting", sp.sqrt(w[0] ** 2 + w[1] ** 2) * sp.sqrt(sp.Max(0, square)))
+        zero = sp.S.Zero
+        point = (turn.let("tilted", size * (z - level)), zero)
+        rate = (turn.let("dtilted", size * dz), zero)
+        return Within(point, rate, rate[0] ** 2, zero, turn.let("most", size * reach))
+
+    @cached_property
+    def reach(self) -> Within:
+        """The end of the links, where the wrist has the tilt that is nearest to the wanted one."""
+        let, goal = self.turn.let, self.goal
+        (qx, qy, *_), (dqx, dqy, *_) = self.along("q", goal.q)
+        (ox, oy, *_), (dox, doy, *_) = self.along("o", goal.offset)
+        (us, uc), spin = self._lift
+        ex, ey = let("ex", uc * ox - us * oy), let("ey", us * ox + uc * oy)
+        dx = let("dx", dqx - uc * dox + us * doy + spin * ey)
+        dy = let("dy", dqy - us * dox - uc * doy - spin * ex)
+        least, most = let("fold", sp.Abs(goal.l1 - goal.l2)), let("full", goal.l1 + goal.l2)
+        bend = let("bends", dx**2 + dy**2)
+        return Within((let("x", qx - ex), let("y", qy - ey)), (dx, dy), bend, least, most)
+
+    @cached_property
+    def _lift(self) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+        """Sine and cosine of the first turn of the wrist, and its rate."""
+        let, w = self.turn.let, self.goal.last
+        (ax, ay, az), (dax, day, daz) = self.axis
+        B, dB = self.onward
+        a, b = let("a", w[0] * B[2, 1] - w[1] * B[2, 0]), let("b", w[0] * B[2, 0] + w[1] * B[2, 1])
+        c = let("right", az - B[2, 2] * w[2])
+        h = let("h", sp.sqrt(a**2 + b**2))
+        rest = let("rest", sp.sqrt(sp.Max(0, (h - c) * (h + c))))
+        held = let("held", sp.Max(-h, sp.Min(c, h)))
+        side = self.goal.sense * real(f"sigma_{label(self.goal.middle)}")
+        whole = let("square_h", sp.Max(h**2, LAST**2))
+        s2 = let("s2", (a * held + side * b * rest) / whole)
+        c2 = let("c2", (b * held - side * a * rest) / whole)
+        v = sp.Matrix([c2 * w[0] - s2 * w[1], s2 * w[0] + c2 * w[1], w[2]])
+        across = sp.Matrix([-v[1], v[0], 0])
+        x, y, _ = B * v
+        moved, turned = dB * v, B * across
+        by = let("by", -side * (daz - moved[2]) / sp.Max(rest, LAST))
+        x, y = let("lastx", x), let("lasty", y)
+        dx, dy = let("dlastx", moved[0] + by * turned[0]), let("dlasty", moved[1] + by * turned[1])
+        seen = let("seen", sp.Max(ax**2 + ay**2, LAST**2))
+        there = let("there", sp.Max(x**2 + y**2, LAST**2))
+        spin = let("spin", (ax * day - ay * dax) / seen - (x * dy - y * dx) / there)
+        both = let("both", sp.sqrt(seen) * sp.sqrt(there))
+        us, uc = let("us", (ay * x - ax * y) / both), let("uc", (ax * x + ay * y) / both)
+        return (us, uc), spin
+
+
+@dataclass(frozen=True)
+class LinksPastTurn(Links):
+    """Two links that reach q minus an ``offset``, after the middle turn of such a wrist.
+
+    The turn moves ``last``, which the first turn of the wrist brings to the direction ``axis``;
+    the latter two and q depend on no pair.
+    """
+
+    axis: sp.Matrix
+    offset: sp.Matrix
+    last: Callable[[Pair], sp.Matrix]
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with q within reach.
+
+        Near alignment the component of ``last`` along the first axis of the wrist says little of
+        the component across it, which has to be that of ``axis``.
+        """
+        across = turn.let("aside", sp.sqrt(self.axis[0] ** 2 + self.axis[1] ** 2))
+        turn = turn.renamed(self._as_far(turn, across), f"{turn.name}_2")
+        turn = replace(turn, play=turn.let("play", turn.play * across))
+        for k in range(3, STEPS + 3):
+            turn = turn.renamed(self._closer(turn), f"{turn.name}_{k}")
+        return turn.pair
+
+    def _as_far(self, turn: Turn, across: sp.Symbol) -> Pair:
+        """Turned so that the component across the first axis of the wrist is as wanted."""
+        size = turn.chain.size
+        x, y = turn.linear("far", lambda pair: size * self.last(pair))
+        goal = turn.let("goal", size * across)
+        return turn.least(Within(x, y, y[0] ** 2 + y[1] ** 2, goal, goal))
+
+    def _closer(self, turn: Turn) -> Pair:
+        """Turned so that the offset is where the links reach, by the rates at this turn.
+
+        If the axis of the turn is parallel to that of the links, this is exact.
+        """
+        let, chain = turn.let, turn.chain
+        (x, y), (dx, dy) = turn.linear("last", self.last)
+        qx, qy = list(self.q(turn.pair))[:2]
+        there = let("there", sp.Max(x**2 + y**2, LAST**2))
+        both = let("both", sp.sqrt(self.axis[0] ** 2 + self.axis[1] ** 2) * sp.sqrt(there))
+        both = let("lengths", sp.Max(both, LAST**2))
+        us = let("us", (self.axis[1] * x - self.axis[0] * y) / both)
+        uc = let("uc", (self.axis[0] * x + self.axis[1] * y) / both)
+        spin = let("spin", (y * dx - x * dy) / there)
+        ox, oy, *_ = self.offset
+        ex, ey = let("ex", uc * ox - us * oy), let("ey", us * ox + uc * oy)
+        r, e = let("r", sp.sqrt(qx**2 + qy**2)), let("e", sp.sqrt(ox**2 + oy**2))
+        here = let("here", sp.sqrt((qx - ex) ** 2 + (qy - ey) ** 2))
+        wanted = let("goal", sp.Min(sp.Max(here, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2))
+        side = let("side", sign_of(qx * ey - qy * ex))
+        v, _ = Offset((qx, qy), r, e).leaving(chain, wanted, side, f"past_{turn.name}")
+        vs, vc = let("vs", v.s), let("vc", v.c)
+        sine, cosine = let("dots", vs * ex - vc * ey), let("dotc", e + vc * ex + vs * ey)
+        half = let("half", sine / sp.Max(cosine, LAST * e) / spin)
+        total = let("total", 1 + half**2)
+        found = turn.by(let("by_s", 2 * half / total), let("by_c", (1 - half**2) / total))
+        still = sp.Or(sp.Eq(wanted, here), sp.Eq(e, 0), sp.Eq(spin, 0))
+        s, c = (
+            sp.Piecewise((now, still), (then, True))
+            for now, then in zip(_both(turn.pair), _both(found), strict=True)
+        )
+        return Pair(s, c)
+
+
+def _both(pair: Pair) -> tuple[sp.Expr, sp.Expr]:
+    return pair.s, pair.c
+
+
+__all__ = ["LinksAndObliqueWrist", "LinksPastTurn"]

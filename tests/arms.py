@@ -65,3 +65,17 @@ def check_jacobians(robot, pose, q: np.ndarray) -> None:
     J = robot.jacobian(q)
     np.testing.assert_allclose(J[:, :3], np.stack([r[:, :3, 3] for r in rates], -1), atol=1e-8)
     np.testing.assert_allclose(J[:, 3:], space[:, 3:], atol=1e-8)
+
+
+def by_screws(axes: list[tuple], home: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """The pose by a product of exponentials: a unit vector and a point of each axis at zero."""
+    T = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))
+    for (axis, point), angle in zip(axes, np.moveaxis(q, -1, 0), strict=True):
+        K = np.cross(axis, np.eye(3)).T
+        s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
+        R = np.eye(3) + s * K + (1 - c) * K @ K
+        step = np.zeros((*np.shape(angle), 4, 4))
+        step[..., :3, :3], step[..., 3, 3] = R, 1
+        step[..., :3, 3] = np.asarray(point) - R @ np.asarray(point)
+        T = T @ step
+    return T @ home

@@ -31,6 +31,14 @@ def six(*fields: str, third: str = "theta3", **more: tuple[int, ...]) -> dict[st
     }
 
 
+def seven(*fields: str, **more: tuple[int, ...]) -> dict[str, Any]:
+    """An arm of seven joints, whose inverse takes one more input than the pose."""
+    arm = six(*fields, **more)
+    jacobians = {name: (6, 7) for name in arm["shapes"] if name.startswith("jacobian")}
+    arm["shapes"] |= {"singularities": (4,), **jacobians}
+    return {**arm, "joints": tuple(f"theta{i}" for i in range(1, 8))}
+
+
 def legs(n: int) -> dict[str, tuple[int, ...]]:
     """The shapes of a hand on ``n`` legs."""
     return {
@@ -96,6 +104,8 @@ ROBOTS = {
         "a1", "d1", "a2", "a3", "d4", "d6", motors_from_joints=(6,), joints_from_motors=(6,)
     ),
     "opw_arm": six("a1", "a2", "b", "c1", "c2", "c3", "c4"),
+    "srs_arm": seven("d_bs", "d_se", "d_ew", "d_wf", self_motion=(7,), arm_angle=()),
+    "franka_arm": seven("d1", "d3", "a4", "a5", "d5", "a7", "d7"),
     "stanford_arm": six("d2", third="d3"),
     "hybrid_five_bar": {
         "fields": ("L0", "L1", "L2"),

@@ -21,6 +21,7 @@ from closedform.generated.array import hybrid_five_bar, planar_2r, spherical_wri
 from closedform.generated.numpy import planar_2r as reference
 from sizes import LENGTHS, lengths
 from test_array_gradients import ROBOTS, modules, postures, targets
+from test_array_gradients import given as beside
 
 from closedform.emit import sines
 from closedform.emit.backends import array as backend
@@ -87,8 +88,8 @@ def test_the_strict_library_goes_in_and_comes_out(robot: str) -> None:
 @all_robots
 def test_statuses_are_those_of_numpy(robot: str) -> None:
     array, numpy = modules(robot)
-    x = targets(robot)
-    found, expected = array.ik(x), numpy.ik(x)
+    inputs = targets(robot), *beside(robot)
+    found, expected = array.ik(*inputs), numpy.ik(*inputs)
     np.testing.assert_array_equal(found.status, expected.status)
     np.testing.assert_array_equal(np.isnan(found.q), np.isnan(expected.q))
     assert found.status.dtype == np.uint8
@@ -100,7 +101,8 @@ def test_single_precision_stays(robot: str) -> None:
     q = strict.asarray(postures(robot)[:20], dtype=strict.float32)
     if hasattr(array, "fk"):
         assert parts(array.fk(q))[0].dtype == strict.float32
-    found = array.ik(strict.asarray(targets(robot)[:20], dtype=strict.float32))
+    inputs = [v[:20] for v in (targets(robot), *beside(robot))]
+    found = array.ik(*(strict.asarray(v, dtype=strict.float32) for v in inputs))
     assert found.q.dtype == strict.float32 and found.status.dtype == strict.uint8
 
 

@@ -19,6 +19,7 @@ import pytest
 import tape
 from closedform.generated.array import _runtime
 from exact_derivatives import along as exact_along
+from given import beside
 
 from closedform.check.runners.python import module
 from closedform.emit.backend import Mechanism
@@ -74,6 +75,38 @@ def targets(robot: str) -> np.ndarray:
     return np.concatenate([x, x[:4] * 1e3, x[:4] * 0, x[:4] * 1e-12, far, lost])
 
 
+@cache
+def given(robot: str) -> tuple[np.ndarray, ...]:
+    """What the inverse takes beside these targets, by its value at the posture of each."""
+    _, numpy = modules(robot)
+    if not hasattr(numpy, "fk"):
+        return ()
+    values = beside(numpy, postures(robot))
+    return tuple(np.concatenate([v, v[:4], v[:4], v[:4], v[:2], v[:2]]) for v in values)
+
+
+def image(numpy: ModuleType, q: np.ndarray, *params: Any) -> np.ndarray:
+    """The target of postures without assembly modes, and what is given beside it, in a row."""
+    more = [value[..., None] for value in beside(numpy, q, *params)]
+    return np.concatenate([numpy.fk(q, *params).reshape(*q.shape[:-1], -1), *more], axis=-1)
+
+
+def beside_rates(numpy: ModuleType, q: np.ndarray) -> np.ndarray:
+    """The derivatives of what is given beside a target, by joints, by differences: one a row."""
+    steps = 1e-3 * np.eye(q.shape[-1])
+
+    def central(times: int) -> np.ndarray:
+        ends = [
+            np.stack([*beside(numpy, q + s * times * step), 0 * q[..., 0]], axis=-1)
+            for step in steps
+            for s in (1, -1)
+        ]
+        gap = np.angle(np.exp(1j * (np.stack(ends[::2]) - np.stack(ends[1::2]))))
+        return np.asarray(gap / (2e-3 * times))
+
+    return np.asarray((4 * central(1) - central(2)) / 3)[..., :-1]
+
+
 def symbolic(numpy: ModuleType, q: np.ndarray, x: np.ndarray) -> np.ndarray:
     """The derivative of the forward map by each joint, which stands first: from the Jacobians."""
     if x.shape[-1] == len(numpy.TASK) and hasattr(numpy, "jacobian"):
@@ -125,23 +158,23 @@ def test_the_forward_map_has_the_symbolic_jacobian(robot: str) -> None:
 def test_an_inverse_has_the_inverse_of_the_symbolic_jacobian(robot: str) -> None:
     """Along the forward derivative by a joint, that joint changes by one, and no other."""
     array, numpy = modules(robot)
-    x = targets(robot)[:20]
-    solved = numpy.ik(x)
+    x, more = targets(robot)[:20], [value[:20] for value in given(robot)]
+    solved = numpy.ik(x, *more)
     branches, n = solved.q.shape[1:]
     along = np.stack([symbolic(numpy, solved.q[:, b], x) for b in range(branches)])
-    columns = along.reshape(branches, n, len(x), -1)
+    rates = np.stack([beside_rates(numpy, solved.q[:, b]) for b in range(branches)])
+    columns = np.concatenate([along.reshape(branches, n, len(x), -1), rates], axis=-1)
     usable = (solved.status.T == 0) & np.isfinite(columns).all((1, 3))
     conditions = np.linalg.cond(np.where(usable[..., None, None], np.moveaxis(columns, 1, 2), 1.0))
     usable &= conditions < CONDITION
     assert usable.any(axis=1).sum() > branches // 2
-    tiled = tape.asarray(np.broadcast_to(x, (branches, *x.shape)))
+    tiled = [tape.asarray(np.broadcast_to(v, (branches, *v.shape))) for v in (x, *more)]
     weights = np.random.default_rng(2).normal(size=(branches, len(x), n)) * usable[..., None]
     own = np.zeros((branches, len(x), branches, n))
     own[np.arange(branches), :, np.arange(branches)] = weights
-    (found,) = tape.gradients(array.ik(tiled).q, own, [tiled])
-    moved = np.where(
-        usable[:, None], (found.reshape(branches, 1, len(x), -1) * columns).sum(-1), 0.0
-    )
+    found = tape.gradients(array.ik(*tiled).q, own, tiled)
+    rows = np.concatenate([np.reshape(f, (branches, 1, len(x), -1)) for f in found], axis=-1)
+    moved = np.where(usable[:, None], (rows * columns).sum(-1), 0.0)
     np.testing.assert_allclose(np.moveaxis(moved, 1, -1), weights, rtol=1e-6, atol=1e-7)
 
 
@@ -152,24 +185,28 @@ def test_derivatives_of_an_inverse_by_dimensions(robot: str) -> None:
     They cannot undo where the dimension moves the hand and no joint does, such as off a sphere.
     """
     array, numpy = modules(robot)
-    x = targets(robot)[:20]
-    solved = numpy.ik(x)
+    x, more = targets(robot)[:20], [value[:20] for value in given(robot)]
+    solved = numpy.ik(x, *more)
     along = np.moveaxis(symbolic(numpy, solved.q[:, 0], x), 0, 1).reshape(*solved.q[:, 0].shape, -1)
+    if more:
+        rates = np.moveaxis(beside_rates(numpy, solved.q[:, 0]), 0, 1)
+        along = np.concatenate([along, rates], axis=-1)
     usable = (solved.status[:, 0] == 0) & np.isfinite(along).all((1, 2))
     x, q, along = x[usable], solved.q[usable, 0], along[usable]
+    more = [value[usable] for value in more]
     count, n = q.shape
     dimensions = np.array([float(v) for v in numpy.Parameters()])
     # for each joint a copy of the targets, with dimensions of its own
-    copies = tape.asarray(np.broadcast_to(x, (n, *x.shape)))
+    copies = [tape.asarray(np.broadcast_to(v, (n, *v.shape))) for v in (x, *more)]
     fields = [tape.asarray(np.full((n, count), v)) for v in dimensions]
     weights = np.zeros((n, count, *solved.q.shape[1:]))
     weights[np.arange(n), :, 0, np.arange(n)] = 1.0
-    rates = tape.gradients(array.ik(copies, fields).q, weights, fields)
+    rates = tape.gradients(array.ik(*copies, fields).q, weights, fields)
 
     def reached(lengths: np.ndarray) -> np.ndarray:
-        found = numpy.fk(q, tuple(lengths))
         if not numpy.ASSEMBLY_MODES:
-            return found.reshape(count, -1)
+            return image(numpy, q, tuple(lengths))
+        found = numpy.fk(q, tuple(lengths))
         mode = np.nanargmin(abs(numpy.fk(q).p - x[:, None]).sum(-1), -1)
         return found.p[np.arange(count), mode]
 
@@ -187,13 +224,14 @@ def test_derivatives_of_an_inverse_by_dimensions(robot: str) -> None:
 def test_derivatives_are_finite_wherever_the_status_is_ok(robot: str) -> None:
     """Also by dimensions that all targets share, those that are not OK among them."""
     array, numpy = modules(robot)
-    x = tape.asarray(targets(robot))
+    inputs = [tape.asarray(v) for v in (targets(robot), *given(robot))]
     fields = [tape.asarray(float(v)) for v in numpy.Parameters()]
-    solved = array.ik(x, fields)
+    solved = array.ik(*inputs, fields)
     ok = solved.status.value == 0
-    np.testing.assert_array_equal(solved.status.value, numpy.ik(x.value).status)
+    expected = numpy.ik(*(v.value for v in inputs)).status
+    np.testing.assert_array_equal(solved.status.value, expected)
     assert 0 < ok.sum() < ok.size
-    for found in tape.gradients(solved.q, np.where(ok[..., None], 1.0, 0.0), [x, *fields]):
+    for found in tape.gradients(solved.q, np.where(ok[..., None], 1.0, 0.0), [*inputs, *fields]):
         assert np.isfinite(found).all()
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from contract import ROBOTS, WITHOUT_FORWARD_MAP
+from given import beside
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -91,7 +92,7 @@ def test_names_and_shapes(robot: str, backend: str) -> None:
             hand = expected.get("hand", (len(module.TASK),))
             assert p.shape == (*lead, modes, *hand) and status.shape == (*lead, modes)
             assert status.dtype == np.uint8
-        q_all, status = module.ik(image(module, q))
+        q_all, status = module.ik(image(module, q), *beside(module, q))
         assert q_all.shape == (*lead, expected["branches"], n)
         assert status.shape == (*lead, expected["branches"])
         assert status.dtype == np.uint8
@@ -162,8 +163,8 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
                     u, v = (np.where(np.isfinite(e), e, np.nan) for e in (u, v))
                 size = 1 + np.abs(q).max(initial=0) + np.nanmax(np.abs(u), initial=0) ** 2
                 np.testing.assert_allclose(u, v, rtol=0, atol=1e-13 * size)
-    x = image(numpy, q)
-    a, b = numpy.ik(x), c.ik(x)
+    x, more = image(numpy, q), beside(numpy, q)
+    a, b = numpy.ik(x, *more), c.ik(x, *more)
     # At a singular posture rounding decides whether a joint is free; both answers are right.
     factors = numpy.singularities(q)
     near = np.abs(factors).min(axis=tuple(range(len(lead), factors.ndim)), initial=1) < 1e-9
@@ -364,7 +365,8 @@ def test_angles_lie_in_the_half_open_interval(robot: str, backend: str) -> None:
     q = np.stack(np.meshgrid(*[corners] * len(module.JOINTS), indexing="ij"), axis=-1)
     for noise in (0.0, 1e-16, 1e-9):
         angles = [name.startswith("theta") for name in module.JOINTS]
-        found = module.ik(image(module, q + noise)).q[..., angles]
+        at = q + noise
+        found = module.ik(image(module, at), *beside(module, at)).q[..., angles]
         found = found[np.isfinite(found)]
         assert (found > -np.pi).all() and (found <= np.pi).all()
 

@@ -30,6 +30,7 @@ ROBOTS = (
     "delta",
     "five_bar",
     "four_bar",
+    "franka_arm",
     "h6ar",
     "h6ar_loop_closed",
     "hybrid_five_bar",
@@ -45,6 +46,7 @@ ROBOTS = (
     "slider_crank",
     "spherical_five_bar",
     "spherical_wrist",
+    "srs_arm",
     "stanford_arm",
     "ur_arm",
 )

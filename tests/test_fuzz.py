@@ -80,7 +80,8 @@ def careless(x, params):
 )
 def test_faults_are_found(monkeypatch: pytest.MonkeyPatch, ik, kind: str) -> None:
     planar = robot("planar_2r")
-    broken = SimpleNamespace(fk=planar_2r.fk, singularities=planar_2r.singularities, ik=ik)
+    kept = {name: getattr(planar_2r, name) for name in ("JOINTS", "fk", "singularities")}
+    broken = SimpleNamespace(**kept, ik=ik)
     monkeypatch.setattr(Robot, "module", lambda _self, _backend: broken)
     rng = np.random.default_rng(0)
     lengths = np.tile(planar.defaults, (100, 1))

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from given import beside
 
 from closedform.check.runners.node import Node
 from closedform.pipeline.run import generated
@@ -101,10 +102,11 @@ def test_statuses_are_those_of_numpy(robot: str) -> None:
     statuses: Counter[int] = Counter()
     with Node(MODULES / f"{robot}.js") as js:
 
-        def compare(name: str, x: np.ndarray, parameters: Any) -> Any:
-            (given,) = functions(module)[name].inputs
-            expected = getattr(module, name)(x, parameters)
-            found = js.batch(name, [planes(x, given.size)], parameters._asdict())
+        def compare(name: str, parameters: Any, *inputs: np.ndarray) -> Any:
+            sizes = [given.size for given in functions(module)[name].inputs]
+            expected = getattr(module, name)(*inputs, parameters)
+            taken = [planes(x, size) for x, size in zip(inputs, sizes, strict=True)]
+            found = js.batch(name, taken, parameters._asdict())
             results = expected if isinstance(expected, tuple) else (expected,)
             for mine, theirs in zip(found, results, strict=True):
                 shaped = mine.T.reshape(theirs.shape)
@@ -121,23 +123,26 @@ def test_statuses_are_those_of_numpy(robot: str) -> None:
             parameters = module.Parameters(*(factor * length for length in lengths))
             q = possible(robot, postures(rng, len(module.JOINTS)), factor, max(lengths))
             if "fk" in functions(module):
-                targets = compare("fk", q, parameters)
+                targets = compare("fk", parameters, q)
             else:  # its task has as many coordinates as there are joints
                 scales = [factor * max(lengths) if n in "xyz" else 1.0 for n in module.TASK]
                 targets = np.tanh(q) / 2 * scales
             if "ik" not in functions(module):
                 continue
-            (target,) = functions(module)["ik"].inputs
+            target, *_ = functions(module)["ik"].inputs
+            more = beside(module, q, parameters)
             if len(module.TASK) != target.size:  # a pose, whatever coordinates fk gives
                 targets = (module.fk if robot == "spherical_wrist" else module.pose)(q, parameters)
             targets = targets.reshape(-1, *target.shape)
-            targets = targets[np.isfinite(targets.reshape(len(targets), -1)).all(axis=1)]
-            compare("ik", targets, parameters)
+            finite = np.isfinite(targets.reshape(len(targets), -1)).all(axis=1)
+            targets, more = targets[finite], tuple(value[finite] for value in more)
+            compare("ik", parameters, targets, *more)
             for step in (1e-15, 1e-9, 1e-2, 3.0):
                 signs = rng.choice([-1.0, 1.0], targets.shape)
-                compare("ik", targets * (1 + step * signs), parameters)
+                compare("ik", parameters, targets * (1 + step * signs), *more)
             corners = rng.choice([0.0, 1e-17, np.pi / 2, np.pi], targets.shape)
-            compare("ik", np.where(rng.random(targets.shape) < 0.4, corners, targets), parameters)
+            mixed = np.where(rng.random(targets.shape) < 0.4, corners, targets)
+            compare("ik", parameters, mixed, *more)
     assert statuses.keys() >= EXPECTED.get(robot, {OK, UNREACHABLE, SINGULAR})
 
 

@@ -10,7 +10,10 @@ from closedform.lower.degrees import degrees
 from closedform.lower.graph import Graph
 from closedform.model.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
 
-ROBOTS = [*LENGTHS, "four_bar", "irb2400", "opw_arm", "puma560", "ur_arm", "spherical_wrist"]
+ROBOTS = [
+    *LENGTHS, "four_bar", "irb2400", "opw_arm", "puma560", "ur_arm", "srs_arm", "franka_arm",
+    "spherical_wrist",
+]  # fmt: skip
 ANGLES = ("alpha", "beta", "gamma")
 """How the names of parameters begin that are angles."""
 EXPONENTS = (-900, -700, -300, -100, 8, 100, 300, 700, 1000)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from given import beside
 
 POSTURES = 20_000
 
@@ -45,6 +46,8 @@ THRESHOLDS = {
     "hybrid_five_bar": [near(1, (0.0, np.pi)), near(2, (0.0, np.pi))],
     "irb2400": [near(4, (0.0, np.pi)), near(2, (np.arctan2(0.755, 0.135) - np.pi,))],
     "agile_wrist": [near(1, (-np.pi / 2, np.pi / 2))],
+    "srs_arm": [near(3, (0.0, np.pi)), near(1, (0.0, np.pi)), near(5, (0.0, np.pi))],
+    "franka_arm": [near(1, (0.0, np.pi)), near(4, (np.pi / 2, -np.pi / 2))],
     "opw_arm": [near(4, (0.0, np.pi)), near(2, (-np.arctan2(-0.035, 0.365),))],
 }
 
@@ -59,9 +62,10 @@ def test_statuses_at_thresholds(robot: str) -> None:
         to_threshold(q, random)
         x = source.fk(q)
         x = x.p[:, 0] if source.ASSEMBLY_MODES else x
-        expected = source.ik(x).status
-        np.testing.assert_array_equal(compiled.ik(x).status, expected)
-        single = np.array([compiled.ik(row).status for row in x])
+        more = beside(source, q)
+        expected = source.ik(x, *more).status
+        np.testing.assert_array_equal(compiled.ik(x, *more).status, expected)
+        single = np.array([compiled.ik(*row).status for row in zip(x, *more, strict=True)])
         np.testing.assert_array_equal(single, expected)
 
 

@@ -6,14 +6,18 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import degenerate, differs_from_zero, named
 from closedform.lemmas.registry import chain_lemma, theorem
+from closedform.lemmas.tangent import ROUNDING, Anywhere, Goal, Tangency
 from closedform.lemmas.triangle import Triangle
 from closedform.model.functions import choose
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
+
+ANYWHERE = Anywhere()
 
 theorem(
     "law of cosines",
@@ -45,6 +49,7 @@ def law_of_cosines(
     r: sp.Expr,
     choice: Choice,
     *,
+    toward: Goal = ANYWHERE,
     name: str = "elbow",
 ) -> Applied:
     """The elbow of two links whose ends are r apart: two solutions.
@@ -63,6 +68,9 @@ def law_of_cosines(
         the distance of the ends
     choice
         the names of the two elbows, by the sign of sin(x)
+    toward
+        what later joints have to reach; near a stretched or folded elbow, x is turned such that
+        they do
     name
         the name of the sign, and what other names end in
     """
@@ -82,6 +90,9 @@ def law_of_cosines(
     twice = p.let(f"area_{name}", 2 * triangle.root, nonnegative=True)
     whole = p.let(f"sum_{name}", triangle.whole, nonnegative=True)
     bent = triangle.elbow_pair(twice, whole)
+    if toward is not ANYWHERE:
+        turn = _tangency(chain, x, triangle, (twice, whole, r), name)
+        bent = toward.reached(turn).pair
     pair, means = named(chain, x, Pair(choose(flag, 0, bent.s), choose(flag, 1, bent.c)))
     lemma = Lemma(
         "law of cosines",
@@ -98,6 +109,27 @@ def law_of_cosines(
     loci = [{gone: sp.S.Zero, r: other} for gone, other in ((l1, l2), (l2, l1)) if gone.is_Symbol]
     cases = degenerate(flag, loci, x, f"a link without length: {x} is free; 0.")
     return Applied(lemma, pair, means, {}, cases)
+
+
+def _tangency(
+    chain: Chain,
+    x: sp.Symbol,
+    triangle: Triangle,
+    names: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
+    name: str,
+) -> Tangency:
+    """The elbow as the turn ``h cos x = c`` with ``h = l1 l2 / size``, in units of a length.
+
+    The names are those of twice the area, of ``4 l1 l2`` and of the distance of the ends.
+    """
+    p, size, (twice, whole, r) = chain.program, chain.size, names
+    lever = p.let(f"lever_{name}", twice / (4 * size), nonnegative=True)
+    span = p.let(f"span_{name}", whole / (2 * size), nonnegative=True)
+    h = p.let(f"h_{name}", span / 2, nonnegative=True)
+    below, above = triangle.N / (2 * size), triangle.M / (2 * size)
+    at = Amplitude(x, sp.S.Zero, h, h - below, triangle.sigma, h, below, above)
+    play = (r + size * ROUNDING) * ROUNDING
+    return Tangency(chain, at, lever, span, play, f"_{name}", sp.false)
 
 
 __all__ = ["law_of_cosines"]

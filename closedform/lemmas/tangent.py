@@ -209,14 +209,22 @@ class LinksAtHeight:
     preferred: Sequence[Preferred] = ()
     rounding: sp.Expr = ROUNDING
     """What rounding changes the right side of the equation by, in units of its scale."""
+    slack: sp.Expr = sp.S.Zero
+    """How far beyond the links a point still counts as within reach, in units of the scale.
+
+    The reach itself is known no better, and a root that it allows should stay as it was computed.
+    """
 
     def square_in_reach(
         self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
     ) -> sp.Symbol:
         """The square of the root, brought within reach if rounding puts it out of reach."""
         square = at.below * at.above
-        farthest = (self.l1 + self.l2) ** 2 - self.height**2
-        nearest = (self.l1 - self.l2) ** 2 - self.height**2
+        apart = self.l1 - self.l2
+        if self.slack != 0:
+            apart = sp.Max(0, sp.Abs(apart) - self.slack * scale)
+        farthest = (self.l1 + self.l2 + self.slack * scale) ** 2 - self.height**2
+        nearest = apart**2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
         rounding = 2 * at.h * scale * self.rounding
         result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))

@@ -106,13 +106,6 @@ class Serial:
         """The groups of links between the base and the tool, joints with parallel axes together."""
         return linkwise.links_of(self.groups, self.joints, self.lead, self.last)
 
-    def determinant(self) -> sp.Expr:
-        """The factored determinant of either Jacobian of an arm of six joints.
-
-        A change of frame does not change it, so it is taken where the twists are shortest.
-        """
-        return factored_determinant(self.middle)
-
     def require_regular(self, name: str) -> None:
         """Raise ``SingularEverywhereError`` if no posture is regular."""
         task, n = self.coordinates(), len(self.joints)
@@ -156,11 +149,18 @@ class Serial:
             sp.atan2(home[1, 0], home[0, 0]),
         )
 
-    def export(self, d: Derivation, singular: Mapping[str, sp.Expr] | None = None) -> Any:
+    def export(
+        self,
+        d: Derivation,
+        singular: Mapping[str, sp.Expr] | None = None,
+        *,
+        given: sp.Symbol | None = None,
+    ) -> Any:
         """Record pose, Jacobians and determinant as proved steps, and export them as functions.
 
         ``singular`` names the factors of the determinant that hold a joint, in the form in which
-        they shall be printed; by default it is factored.  Returns the forward map that an inverse
+        they shall be printed; by default it is factored.  Of seven joints one may be ``given``: the
+        determinant is that of the columns of the others.  Returns the forward map that an inverse
         must solve: the task coordinates in the joints where the arm has as many (see
         :meth:`coordinates`), else the pose.
         """
@@ -217,7 +217,8 @@ class Serial:
             ],
         )
         if task is None:
-            self._export_pose_task(d, pose, geometric, singular)
+            self._export_pose_task(d, pose, geometric)
+            self._export_pose_determinant(d, singular, given)
         else:
             self._export_coordinates(d, task, pose, geometric, singular)
         for frame, name, found, equation in (
@@ -228,9 +229,7 @@ class Serial:
             _export(d, (name, summary), q, {"J": found}, equation=equation)
         return self.pose if task is None else task.values
 
-    def _export_pose_task(
-        self, d: Derivation, pose: Named, geometric: Named, singular: Mapping[str, sp.Expr] | None
-    ) -> None:
+    def _export_pose_task(self, d: Derivation, pose: Named, geometric: Named) -> None:
         q = self.joints
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
@@ -244,8 +243,22 @@ class Serial:
             "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
             equation="J",
         )
-        if len(q) == 6:
-            self._export_determinant(d, {r"\det J": self.determinant()}, (), singular)
+
+    def _export_pose_determinant(
+        self, d: Derivation, singular: Mapping[str, sp.Expr] | None, given: sp.Symbol | None
+    ) -> None:
+        others = [k for k, joint in enumerate(self.joints) if joint != given]
+        if len(others) != 6:
+            return
+        # a change of frame does not change it, so it is taken where the twists are shortest
+        det = factored_determinant(self.middle[:, others])
+        if given is None:
+            self._export_determinant(d, {r"\det J": det}, (), singular)
+            return
+        name = rf"J_{{\hat{{{self.joints.index(given) + 1}}}}}"
+        d.explain({name: f"J without the column of {given}"})
+        without = f" without the column of {given}, which is given"
+        self._export_determinant(d, {rf"\det {name}": det}, (), singular, without)
 
     def _export_coordinates(
         self,
@@ -297,6 +310,7 @@ class Serial:
         shown: Mapping[str, Any],
         equal: Sequence[tuple[Any, Any]],
         singular: Mapping[str, sp.Expr] | None,
+        without: str = "",
     ) -> None:
         q, (*others, (name, det)) = self.joints, shown.items()
         factors = joint_factors(det, q)
@@ -309,7 +323,8 @@ class Serial:
         d.step(
             "Determinant and singular set",
             "The arm is singular exactly where a factor that holds a joint vanishes (for links "
-            "that have a length): the joints then cannot move the tool in some direction.",
+            f"that have a length): the joints{without and ', but that which is given,'} then "
+            "cannot move the tool in some direction.",
             {**dict(others), name: det},
             proves=(
                 "The determinant is the stated product, and what it holds besides the factors "
@@ -318,7 +333,11 @@ class Serial:
             equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
         )
         d.function(
-            "determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det}, equation=name
+            "determinant",
+            f"Determinant of the Jacobian{without}.",
+            {"q": q},
+            {"det": det},
+            equation=name,
         )
         summary = "The factors of the determinant that hold a joint."
         d.function("singularities", summary, {"q": q}, {"factors": factors})

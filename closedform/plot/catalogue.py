@@ -61,6 +61,8 @@ class View:
     plane: tuple[str, str] | None = None
     at: Sequence[float] | None = None
     """A target, for the other coordinates of the section."""
+    given: float | None = None
+    """What the inverse takes beside a target, if it is not that of a regular posture."""
     limits: Limits | None = None
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""
@@ -82,14 +84,16 @@ def standard(view: View) -> list[Figure]:
         Figure(
             "branches",
             "All postures that reach one target, one for each branch of the inverse.",
-            lambda robot: branches(robot, faint=view.faint, about=view.about),
+            lambda robot: branches(
+                robot, faint=view.faint, about=view.about, given=view.given
+            ),
         ),
         Figure(
             "workspace",
             "How many branches reach each point of a section of the workspace, and where branches "
             "are singular.",
             lambda robot: workspace(
-                robot, view.plane, at=view.at, limits=view.limits, unit=view.unit
+                robot, view.plane, at=view.at, limits=view.limits, unit=view.unit, given=view.given
             ),
         ),
         Figure(
@@ -98,7 +102,7 @@ def standard(view: View) -> list[Figure]:
             "where the mechanism is singular.",
             lambda robot: field_map(
                 robot, "condition", view.measured or view.plane, at=view.at,
-                limits=None if view.measured else view.limits, unit=view.unit,
+                limits=None if view.measured else view.limits, unit=view.unit, given=view.given,
             ),
         ),
     ]  # fmt: skip

@@ -45,6 +45,7 @@ def workspace(
     *,
     at: ArrayLike | None = None,
     params: Any = None,
+    given: float | None = None,
     limits: Limits | None = None,
     unit: str = "",
     resolution: int = 400,
@@ -69,10 +70,12 @@ def workspace(
         points along each side
     singular
         whether a line shows where a branch is singular
+    given
+        as in :func:`closedform.plot.branches`
     params, ax
         as in :func:`closedform.plot.mechanism`
     """
-    r = Robot.of(robot, params)
+    r = Robot.of(robot, params, given)
     grid = _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
@@ -191,6 +194,7 @@ def field(
     at: ArrayLike | None = None,
     branch: int | str = 0,
     params: Any = None,
+    given: float | None = None,
     limits: Limits | None = None,
     unit: str = "",
     resolution: int = 400,
@@ -211,10 +215,10 @@ def field(
     branch
         over the task: the branch whose postures are measured, each in the assembly mode that
         reaches the target; over two joints, the first assembly mode is
-    at, limits, unit, resolution, params, ax
+    at, limits, unit, resolution, params, given, ax
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
-    r = Robot.of(robot, params)
+    r = Robot.of(robot, params, given)
     grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     first = np.zeros(q.shape[:-1], dtype=np.intp)
@@ -238,6 +242,7 @@ def singularities(
     *,
     at: ArrayLike | None = None,
     params: Any = None,
+    given: float | None = None,
     limits: Limits | None = None,
     unit: str = "",
     resolution: int = 400,
@@ -250,10 +255,10 @@ def singularities(
 
     Parameters
     ----------
-    robot, plane, at, params, limits, unit, resolution, ax
+    robot, plane, at, params, given, limits, unit, resolution, ax
         as in :func:`field`
     """
-    r = Robot.of(robot, params)
+    r = Robot.of(robot, params, given)
     grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     ax = new_axes(False) if ax is None else ax
     drawn: dict[str, Any] = {}
@@ -364,8 +369,16 @@ def _task_plane(
     flat[..., places[chosen[1]]] = sides[1][:, None]
     targets = flat.reshape(resolution, resolution, *target.shape)
     others = [n for n in places if n not in chosen]
-    section = ", ".join(_coordinate(n, flat[0, 0, places[n]], unit) for n in others)
+    section = ", ".join(
+        [_coordinate(n, flat[0, 0, places[n]], unit) for n in others]
+        + [f"{_spoken(r, name)} {value:.3g} rad" for name, value in r.beside.items()]
+    )
     return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section, unit)
+
+
+def _spoken(r: Robot, name: str) -> str:
+    """A joint as in formulas, and any other angle in words."""
+    return f"{symbol(name)} =" if name in r.module.JOINTS else spoken(name)
 
 
 def _coordinate(name: str, value: float, unit: str) -> str:

@@ -22,6 +22,7 @@ def path(
     branch: int | str | None = None,
     start: ArrayLike | None = None,
     params: Any = None,
+    given: float | None = None,
     ax: Any = None,
 ) -> Any:
     """Draw the joints along a path, in one branch.
@@ -39,11 +40,13 @@ def path(
         joints near those at the beginning
     params, ax
         as in :func:`closedform.plot.mechanism`
+    given
+        as in :func:`closedform.plot.branches`
 
     Angles are continued over half a turn.  Where the branch does not reach the path, the curves
     have a gap.
     """
-    r = Robot.of(robot, params)
+    r = Robot.of(robot, params, given)
     targets = np.asarray(xs, dtype=float)
     q, status = r.branches(targets)
     if q.ndim != 3:

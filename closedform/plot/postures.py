@@ -146,6 +146,7 @@ def branches(
     x: ArrayLike | None = None,
     *,
     params: Any = None,
+    given: float | None = None,
     ax: Any = None,
     faint: Collection[str] = (),
     about: str = "",
@@ -160,11 +161,14 @@ def branches(
         the target, as ``ik`` takes it; by default one that most branches reach
     params, faint, about
         as in :func:`mechanism`
+    given
+        the joint or the arm angle that an arm of seven joints takes beside the target; by default
+        that of a regular posture
     ax
         the axes to draw all branches on; by default more than two are drawn side by side, with
         the others behind each in grey, and the axes of the first are returned
     """
-    r = Robot.of(robot, params)
+    r = Robot.of(robot, params, given)
     r.require("ik")
     if x is None:
         x = regular_target(r)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from closedform.robots.mechanism import given_of
 
 Array = NDArray[np.float64]
 TRIALS = 400
@@ -37,14 +40,18 @@ class Robot:
     params: Any
     target: Any = None
     """The pose of the hand, if no forward map gives it."""
+    given: float | None = None
+    """What an arm of seven joints takes beside a target; None: its value at `posture`."""
 
     @classmethod
-    def of(cls, module: ModuleType | Robot, params: Any = None) -> Robot:
+    def of(
+        cls, module: ModuleType | Robot, params: Any = None, given: float | None = None
+    ) -> Robot:
         if isinstance(module, Robot):
             return module
         if not hasattr(module, "JOINTS") or not hasattr(module, "Parameters"):
             raise TypeError(f"{module!r} is not a generated module, such as closedform.planar_2r")
-        return cls(module, module.Parameters() if params is None else params)
+        return cls(module, module.Parameters() if params is None else params, None, given)
 
     @property
     def name(self) -> str:
@@ -159,8 +166,20 @@ class Robot:
 
     def branches(self, x: ArrayLike) -> tuple[Array, NDArray[np.uint8]]:
         """All postures for a target, and their status."""
-        found = self.call("ik", np.asarray(x, dtype=float))
+        found = self.call("ik", np.asarray(x, dtype=float), *self.beside.values())
         return np.asarray(found.q), np.asarray(found.status)
+
+    @cached_property
+    def beside(self) -> dict[str, float]:
+        """What the inverse takes beside a target, by name."""
+        name = given_of(self.module)
+        if name is None:
+            return {}
+        if self.given is not None:
+            return {name: self.given}
+        q = self.posture()
+        joints = dict(zip(self.module.JOINTS, q, strict=True))
+        return {name: float(joints[name] if name in joints else self.call(name, q))}
 
     def mode_that_reaches(self, q: Array, x: ArrayLike) -> NDArray[np.intp]:
         """The assembly mode of each posture that is nearest to its target."""

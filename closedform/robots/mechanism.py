@@ -80,7 +80,7 @@ class Mechanism:
         self.revolute = np.array([kinds[name].kind == "revolute" for name in self.joints])
         self.base, self.tool = rigid(base, "base"), rigid(tool, "tool")
         self._zero = Zero.of(len(self.joints), signs, offsets, coupling)
-        self.given = _given(module)
+        self.given = given_of(module)
         self._mounting = Mounting.of(module, self.parameters, self.base, self.tool)
 
     def part(self, lead: tuple[int, ...], rows: Any) -> Self:
@@ -270,7 +270,7 @@ class Mechanism:
         return {16: (4, 4), 9: (3, 3)}.get(entries, (entries,))
 
 
-def _given(module: ModuleType) -> str | None:
+def given_of(module: ModuleType) -> str | None:
     """The input of the inverse beside the target, such as ``"arm_angle"``."""
     if "ik" not in module.__all__:
         return None

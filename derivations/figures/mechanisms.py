@@ -48,6 +48,8 @@ VIEWS = {
     "irb2400": View(unit="m", general=degrees(-30, 25, -20, 30, 40, 20)),
     "opw_arm": View(unit="m", general=degrees(-30, 15, 70, 30, 40, 20)),
     "ur_arm": View(unit="m"),
+    "srs_arm": View(unit="m", general=degrees(-20, 40, 30, -70, 20, 60, 0), given=0.3),
+    "franka_arm": View(unit="m", general=degrees(-20, -30, 20, -120, 10, 110, 45)),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
     "delta": View(
         unit="m", home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")

@@ -52,6 +52,21 @@ GOSSELIN_HAMEL = Work(
     "IEEE International Conference on Robotics and Automation, 781–786",
     "1994",
 )
+HE_LIU = Work(
+    "he-liu",
+    ("Yanhao He", "Steven Liu"),
+    "Analytical Inverse Kinematics for Franka Emika Panda – a Geometrical Solver for 7-DOF "
+    "Manipulators with Unconventional Design",
+    "9th International Conference on Control, Mechatronics and Automation",
+    "2021",
+)
+KREUTZ_DELGADO_LONG_SERAJI = Work(
+    "kreutz-delgado-long-seraji",
+    ("Kenneth Kreutz-Delgado", "Mark Long", "Homayoun Seraji"),
+    "Kinematic Analysis of 7-DOF Manipulators",
+    "The International Journal of Robotics Research, 11(5), 469–481",
+    "1992",
+)
 LEE_ZIEGLER = Work(
     "lee-ziegler",
     ("C. S. George Lee", "M. Ziegler"),
@@ -65,6 +80,14 @@ LYNCH_PARK = Work(
     "Modern Robotics: Mechanics, Planning, and Control",
     "Cambridge University Press",
     "2017",
+)
+LOPEZ_CUSTODIO_GONG_FIGUEREDO = Work(
+    "lopez-custodio-gong-figueredo",
+    ("Pablo C. Lopez-Custodio", "Yuhe Gong", "Luis F. C. Figueredo"),
+    "GeoFIK: A Fast and Reliable Geometric Solver for the IK of the Franka Arm based on Screw "
+    "Theory Enabling Multiple Redundancy Parameters",
+    "arXiv:2503.03992",
+    "2025",
 )
 MERLET = Work("merlet", ("Jean-Pierre Merlet",), "Parallel Robots", "2nd edition, Springer", "2006")
 MURRAY_LI_SASTRY = Work(
@@ -87,6 +110,20 @@ PAUL = Work(
     "Robot Manipulators: Mathematics, Programming, and Control",
     "MIT Press",
     "1981",
+)
+SHIMIZU_AND_OTHERS = Work(
+    "shimizu-and-others",
+    (
+        "Masayuki Shimizu",
+        "Hiromu Kakuya",
+        "Woo-Keun Yoon",
+        "Kosei Kitagaki",
+        "Kazuhiro Kosuge",
+    ),
+    "Analytical Inverse Kinematic Computation for 7-DOF Redundant Manipulators with Joint Limits "
+    "and Its Application to Redundancy Resolution",
+    "IEEE Transactions on Robotics, 24(5), 1131–1142",
+    "2008",
 )
 SPONG_HUTCHINSON_VIDYASAGAR = Work(
     "spong-hutchinson-vidyasagar",

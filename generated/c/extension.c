@@ -7,6 +7,7 @@
 #include "delta_nearest.h"
 #include "five_bar_nearest.h"
 #include "four_bar_nearest.h"
+#include "franka_arm.h"
 #include "h6ar_nearest.h"
 #include "h6ar_loop_closed_nearest.h"
 #include "hybrid_five_bar_nearest.h"
@@ -22,6 +23,7 @@
 #include "slider_crank_nearest.h"
 #include "spherical_five_bar_nearest.h"
 #include "spherical_wrist_nearest.h"
+#include "srs_arm.h"
 #include "stanford_arm_nearest.h"
 #include "three_prs.h"
 #include "ur_arm_nearest.h"
@@ -943,6 +945,182 @@ static const cf_array four_bar_nearest_out[] = {
     { "branch", 0, { 0 }, 1, CF_REAL },
     { "distance", 0, { 0 }, 1, CF_REAL },
     { "outside", 2, { 2, 1 }, 2, CF_BOOL },
+};
+
+static const char *const franka_arm_fields[] = { "d1", "d3", "a4", "a5", "d5", "a7", "d7" };
+static const double franka_arm_values[] = FRANKA_ARM_DEFAULTS;
+
+static void franka_arm_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_pose((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_pose_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_pose_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void franka_arm_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_skeleton((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_skeleton_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_skeleton_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_skeleton_out[] = {
+    { "points", 2, { 8, 3 }, 24, CF_REAL },
+};
+
+static void franka_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_fk((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_fk_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_fk_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void franka_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_jacobian((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_jacobian_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_jacobian_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_jacobian_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void franka_arm_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_determinant((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_determinant_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_determinant_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void franka_arm_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_singularities((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_singularities_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_singularities_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_singularities_out[] = {
+    { "factors", 1, { 4 }, 4, CF_REAL },
+};
+
+static void franka_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_jacobian_space((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_jacobian_space_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_jacobian_space_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void franka_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_jacobian_body((const franka_arm_params *)params, in[0], out[0]);
+}
+
+static void franka_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_jacobian_body_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array franka_arm_jacobian_body_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array franka_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void franka_arm_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    franka_arm_ik((const franka_arm_params *)params, in[0], in[1], out[0], out[1]);
+}
+
+static void franka_arm_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    franka_arm_ik_batch(n, (const franka_arm_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array franka_arm_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+    { "theta7", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array franka_arm_ik_out[] = {
+    { "q", 2, { 8, 7 }, 56, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
 static const char *const h6ar_fields[] = { "L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp" };
@@ -4543,6 +4721,220 @@ static const cf_array spherical_wrist_nearest_out[] = {
     { "outside", 2, { 2, 3 }, 6, CF_BOOL },
 };
 
+static const char *const srs_arm_fields[] = { "d_bs", "d_se", "d_ew", "d_wf" };
+static const double srs_arm_values[] = SRS_ARM_DEFAULTS;
+
+static void srs_arm_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_pose((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_pose_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_pose_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void srs_arm_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_skeleton((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_skeleton_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_skeleton_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_skeleton_out[] = {
+    { "points", 2, { 5, 3 }, 15, CF_REAL },
+};
+
+static void srs_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_fk((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_fk_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_fk_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void srs_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_jacobian((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_jacobian_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_jacobian_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_jacobian_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void srs_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_jacobian_space((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_jacobian_space_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_jacobian_space_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void srs_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_jacobian_body((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_jacobian_body_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_jacobian_body_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 7 }, 42, CF_REAL },
+};
+
+static void srs_arm_self_motion_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_self_motion((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_self_motion_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_self_motion_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_self_motion_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_self_motion_out[] = {
+    { "qdot", 1, { 7 }, 7, CF_REAL },
+};
+
+static void srs_arm_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_determinant((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_determinant_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_determinant_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void srs_arm_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_singularities((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_singularities_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_singularities_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_singularities_out[] = {
+    { "factors", 1, { 4 }, 4, CF_REAL },
+};
+
+static void srs_arm_arm_angle_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_arm_angle((const srs_arm_params *)params, in[0], out[0]);
+}
+
+static void srs_arm_arm_angle_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_arm_angle_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array srs_arm_arm_angle_in[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+};
+
+static const cf_array srs_arm_arm_angle_out[] = {
+    { "arm_angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static void srs_arm_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    srs_arm_ik((const srs_arm_params *)params, in[0], in[1], out[0], out[1]);
+}
+
+static void srs_arm_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    srs_arm_ik_batch(n, (const srs_arm_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array srs_arm_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+    { "arm_angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array srs_arm_ik_out[] = {
+    { "q", 2, { 8, 7 }, 56, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
 static const char *const stanford_arm_fields[] = { "d2" };
 static const double stanford_arm_values[] = STANFORD_ARM_DEFAULTS;
 
@@ -6552,6 +6944,274 @@ const cf_function cf_functions[] = {
       4, four_bar_values, four_bar_fields,
       4, four_bar_nearest_in, 5, four_bar_nearest_out,
       four_bar_nearest_one, four_bar_nearest_many },
+    { "franka_arm.pose",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_pose_in, 1, franka_arm_pose_out,
+      franka_arm_pose_one, franka_arm_pose_many },
+    { "franka_arm.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 8, 3)\n"
+      "    Coordinates x, y, z of each point.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_skeleton_in, 1, franka_arm_skeleton_out,
+      franka_arm_skeleton_one, franka_arm_skeleton_many },
+    { "franka_arm.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_fk_in, 1, franka_arm_fk_out,
+      franka_arm_fk_one, franka_arm_fk_many },
+    { "franka_arm.jacobian",
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_jacobian_in, 1, franka_arm_jacobian_out,
+      franka_arm_jacobian_one, franka_arm_jacobian_many },
+    { "franka_arm.determinant",
+      "Determinant of the Jacobian without the column of theta7, which is given.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_determinant_in, 1, franka_arm_determinant_out,
+      franka_arm_determinant_one, franka_arm_determinant_many },
+    { "franka_arm.singularities",
+      "The factors of the determinant that hold a joint.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 4)\n"
+      "    One factor for each singular set: shoulder; elbow; axis; wrist.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_singularities_in, 1, franka_arm_singularities_out,
+      franka_arm_singularities_one, franka_arm_singularities_many },
+    { "franka_arm.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_jacobian_space_in, 1, franka_arm_jacobian_space_out,
+      franka_arm_jacobian_space_one, franka_arm_jacobian_space_many },
+    { "franka_arm.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      1, franka_arm_jacobian_body_in, 1, franka_arm_jacobian_body_out,
+      franka_arm_jacobian_body_one, franka_arm_jacobian_body_many },
+    { "franka_arm.ik",
+      "All eight postures of a pose at a given theta7.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "T : array_like, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "theta7 : array_like, shape (...)\n"
+      "    Angle in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 7)\n"
+      "    theta1 to theta7 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The branches, in the order of `BRANCHES`: bent_ahead_front, bent_ahead_back,\n"
+      "  bent_behind_front, bent_behind_back, over_ahead_front, over_ahead_back, over_behind_front,\n"
+      "  over_behind_back.\n"
+      "- bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda\n"
+      "  allow; over: it is bent to the other side.\n"
+      "- ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.\n"
+      "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
+      "- SINGULAR: a link without length: elbow is free; 0.\n"
+      "- SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is\n"
+      "  returned.\n"
+      "- SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.\n"
+      "- SINGULAR: the first and the last axis of the wrist are parallel; theta1 is free.\n"
+      ,
+      7, franka_arm_values, franka_arm_fields,
+      2, franka_arm_ik_in, 2, franka_arm_ik_out,
+      franka_arm_ik_one, franka_arm_ik_many },
     { "h6ar.fk",
       "Position of the tip, and yaw, roll and pitch.\n"
       "\n"
@@ -11752,6 +12412,333 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_values, spherical_wrist_fields,
       4, spherical_wrist_nearest_in, 5, spherical_wrist_nearest_out,
       spherical_wrist_nearest_one, spherical_wrist_nearest_many },
+    { "srs_arm.pose",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_pose_in, 1, srs_arm_pose_out,
+      srs_arm_pose_one, srs_arm_pose_many },
+    { "srs_arm.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 5, 3)\n"
+      "    Coordinates x, y, z of each point.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_skeleton_in, 1, srs_arm_skeleton_out,
+      srs_arm_skeleton_one, srs_arm_skeleton_many },
+    { "srs_arm.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_fk_in, 1, srs_arm_fk_out,
+      srs_arm_fk_one, srs_arm_fk_many },
+    { "srs_arm.jacobian",
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_jacobian_in, 1, srs_arm_jacobian_out,
+      srs_arm_jacobian_one, srs_arm_jacobian_many },
+    { "srs_arm.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_jacobian_space_in, 1, srs_arm_jacobian_space_out,
+      srs_arm_jacobian_space_one, srs_arm_jacobian_space_many },
+    { "srs_arm.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 7)\n"
+      "    One column for each of theta1 to theta7.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_jacobian_body_in, 1, srs_arm_jacobian_body_out,
+      srs_arm_jacobian_body_one, srs_arm_jacobian_body_many },
+    { "srs_arm.self_motion",
+      "Joint rates that leave the hand where it is and turn the elbow.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "qdot : ndarray of float64, shape (..., 7)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_self_motion_in, 1, srs_arm_self_motion_out,
+      srs_arm_self_motion_one, srs_arm_self_motion_many },
+    { "srs_arm.determinant",
+      "Determinant of the Jacobian with the derivative of the arm angle as its last row.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_determinant_in, 1, srs_arm_determinant_out,
+      srs_arm_determinant_one, srs_arm_determinant_many },
+    { "srs_arm.singularities",
+      "The factors of the determinant that hold a joint, and r.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 4)\n"
+      "    One factor for each singular set: shoulder; elbow; wrist; upright.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_singularities_in, 1, srs_arm_singularities_out,
+      srs_arm_singularities_one, srs_arm_singularities_many },
+    { "srs_arm.arm_angle",
+      "The arm angle: of the plane of the arm, about the line from the shoulder to the wrist.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 7)\n"
+      "    theta1 to theta7 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "arm_angle : ndarray of float64, shape (...)\n"
+      "    Angle in rad, in (-pi, pi].\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- It is undefined, and 0, where the wrist is above or below the shoulder.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      1, srs_arm_arm_angle_in, 1, srs_arm_arm_angle_out,
+      srs_arm_arm_angle_one, srs_arm_arm_angle_many },
+    { "srs_arm.ik",
+      "All eight postures of a pose at an arm angle.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "T : array_like, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "arm_angle : array_like, shape (...)\n"
+      "    Angle in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 7)\n"
+      "    theta1 to theta7 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The branches, in the order of `BRANCHES`: up_front_noflip, up_front_flip, up_back_noflip,\n"
+      "  up_back_flip, down_front_noflip, down_front_flip, down_back_noflip, down_back_flip.\n"
+      "- up: sin(theta4) <= 0; down: sin(theta4) >= 0. At arm angles within a right angle of 0, the\n"
+      "  elbow of the branches up is above the line from the shoulder to the wrist.\n"
+      "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
+      "- noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.\n"
+      "- OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the\n"
+      "  wrist from the line through the shoulder along z.\n"
+      "- SINGULAR: a link without length: theta4 is free; 0.\n"
+      "- SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the\n"
+      "  plane of x and z.\n"
+      "- SINGULAR: the wrist is on the shoulder.\n"
+      "- SINGULAR: the first and the last axis of the shoulder are parallel; theta1 is free.\n"
+      "- SINGULAR: the first and the last axis of the wrist are parallel; theta5 is free.\n"
+      ,
+      4, srs_arm_values, srs_arm_fields,
+      2, srs_arm_ik_in, 2, srs_arm_ik_out,
+      srs_arm_ik_one, srs_arm_ik_many },
     { "stanford_arm.pose",
       "Pose of the tool in the base frame.\n"
       "\n"

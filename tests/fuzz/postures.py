@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from given import beside
 from numpy.typing import NDArray
 
 from closedform.model.tolerances import DOUBLE
@@ -80,14 +81,16 @@ def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]
     for backend in BACKENDS:
         module = subject.module(backend)
         reached, rows = _reached(subject, module, lengths, q)
-        solutions = module.ik(reached, tuple(lengths[rows].T))
+        more = beside(module, q[rows], tuple(lengths[rows].T))
+        solutions = module.ik(reached, *more, tuple(lengths[rows].T))
         again = _again(subject, module, lengths[rows], solutions.q, reached)
         statuses[backend] = np.asarray(solutions.status)
         found = _judged(subject, lengths[rows], q[rows], solutions, again)
         problems += [(k, int(rows[i]), f"{backend}: {message}") for k, i, message in found]
         if backend == "c":
             alone = [
-                module.ik(x, tuple(p)).status for x, p in zip(reached, lengths[rows], strict=True)
+                module.ik(*x, tuple(p)).status
+                for *x, p in zip(reached, *more, lengths[rows], strict=True)
             ]
             alone = np.array(alone).reshape(statuses["c"].shape)
             differ = np.flatnonzero((alone != statuses["c"]).any(axis=1))
@@ -96,8 +99,8 @@ def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]
                 for i in differ
             ]
         else:
-            given, given_rows = reached, rows
-    other = np.asarray(subject.module("c").ik(given, tuple(lengths[given_rows].T)).status)
+            given, given_rows = (reached, *more), rows
+    other = np.asarray(subject.module("c").ik(*given, tuple(lengths[given_rows].T)).status)
     differ = np.flatnonzero((statuses["numpy"] != other).any(axis=1))
     problems += [
         ("status", int(given_rows[i]), f"status {statuses['numpy'][i]} in NumPy, {other[i]} in C")

@@ -73,7 +73,13 @@ def _inputs(d: Derivation, robot: str, function: Function, parameters: list[floa
     forward = d[inverse.images or "fk"]
     joints = rng.uniform(-1.5, 1.5, (8 * POSTURES, sum(a.size for a in forward.inputs)))
     images = numpy_values(robot, forward, joints, parameters)[0]
-    images = images[:, :size]  # of assembly modes, the first
+    images = images[:, : function.inputs[0].size]  # of assembly modes, the first
+    named = {s.name: joints[:, k : k + 1] for k, s in enumerate(d.actuated)}
+    given = [
+        named[a.name] if a.name in named else numpy_values(robot, d[a.name], joints, parameters)[0]
+        for a in function.inputs[1:]
+    ]
+    images = np.concatenate([images, *given], axis=1)
     return images[np.isfinite(images).all(axis=1)]
 
 

@@ -22,6 +22,8 @@ COURSE = (
     "irb2400",
     "opw_arm",
     "ur_arm",
+    "srs_arm",
+    "franka_arm",
     "slider_crank",
     "four_bar",
     "rpr_planar",

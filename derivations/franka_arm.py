@@ -1,0 +1,187 @@
+"""Arms with a spherical shoulder and an offset elbow and hand, as the Franka Emika Panda."""
+
+import sympy as sp
+from closedform.derivations.papers.seven_joints import OFFSET_ARMS
+from sympy import cos, pi, sin, sqrt
+
+from closedform import (
+    Chain,
+    Derivation,
+    LinksAtHeight,
+    Pair,
+    coordinate_within,
+    from_dh,
+    law_of_cosines,
+    real,
+    rotate,
+    rotation,
+    turn,
+    turned,
+    zyz,
+)
+
+d = Derivation(
+    "franka_arm",
+    "Seven-joint arm with an offset elbow and hand (Franka)",
+    OFFSET_ARMS,
+    "The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the "
+    "upper arm and beside the forearm.  The axes of theta5 and theta6 meet in the wrist, and the "
+    "axis of theta7 is beside it.  The table is modified (Craig's), as the maker's: at zero angles "
+    "the arm points upwards and its hand downwards.  theta7 is an input of the inverse.",
+)
+
+
+def length(name: str, micrometres: int, meaning: str, *, nonnegative: bool = True) -> sp.Symbol:
+    value, source = sp.Rational(micrometres, 10**6), "the maker's table of the Panda"
+    return d.parameter(
+        name, value=value, unit="m", meaning=meaning, source=source, nonnegative=nonnegative
+    )
+
+
+d1 = length("d1", 333000, "from the base up to the shoulder", nonnegative=False)
+d3 = length("d3", 316000, "from the shoulder along the upper arm")
+a4 = length("a4", 82500, "from the upper arm across to the elbow")
+a5 = length("a5", 82500, "from the elbow back to the forearm")
+d5 = length("d5", 384000, "along the forearm to the wrist")
+a7 = length("a7", 88000, "from the wrist across to the last axis", nonnegative=False)
+d7 = length("d7", 107000, "along the last axis to the flange", nonnegative=False)
+q = theta1, theta2, theta3, theta4, theta5, theta6, theta7 = [
+    d.joint(f"theta{i}") for i in range(1, 8)
+]
+
+# Forward kinematics and velocity
+
+arm = from_dh(
+    d,
+    [
+        (0, 0, d1, theta1),
+        (0, -pi / 2, 0, theta2),
+        (0, pi / 2, d3, theta3),
+        (a4, pi / 2, 0, theta4),
+        (-a5, -pi / 2, d5, theta5),
+        (0, pi / 2, 0, theta6),
+        (a7, pi / 2, d7, theta7),
+    ],
+    modified=True,
+)
+beside = a5 - a4 * cos(theta4) - d3 * sin(theta4)
+bend = (a4 * d5 + a5 * d3) * cos(theta4) + (d3 * d5 - a4 * a5) * sin(theta4)
+factors = {"shoulder": sin(theta2), "elbow": bend, "axis": beside, "wrist": cos(theta5)}
+forward = arm.export(d, factors, given=theta7)
+v = sp.Matrix([beside, 0, a4 * sin(theta4) - d3 * cos(theta4) - d5])
+to_elbow, to_wrist = sp.prod(arm.moves[:4]), sp.prod(arm.moves[:6])
+frame = to_elbow[:3, :3] * rotation("x", -pi / 2)
+R03 = rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)
+R37 = sp.prod(arm.moves[3:])[:3, :3]
+d.explain(
+    {
+        "v": "the shoulder, seen from the wrist in the frame of the forearm",
+        "p": "the shoulder, seen from the wrist in the frame after theta6",
+        "w": "the shoulder, seen from the wrist in the frame before theta6",
+        "R_{03}": "rotation of the upper arm",
+        "R_{37}": "rotation of the other four joints",
+    }
+)
+d.step(
+    "The shoulder from the wrist",
+    "In the frame of the forearm, before theta5 turns it, the shoulder is at v.  The elbow alone "
+    "moves it, in a plane.  The arm is singular where the axes 1 and 3 coincide (shoulder), where "
+    "it is stretched or folded (elbow), where the shoulder is on axis 5 (axis), and where axis 6 "
+    "is in the plane of the arm (wrist).",
+    {"v": v},
+    proves="The shoulder, less the wrist, turned into the frame of the forearm.",
+    equal=[(frame.T * (sp.Matrix([0, 0, d1]) - to_wrist[:3, 3]), v)],
+)
+
+# Inverse kinematics
+
+ik = Chain(d, forward)
+given = ik.given(theta7)
+s = ik.vector("s", ik.R.T * (sp.Matrix([0, 0, d1]) - ik.p) + sp.Matrix([0, 0, d7]))
+p = ik.vector("p", rotation("x", pi / 2) * (turned(given) * s + sp.Matrix([a7, 0, 0])))
+far = ik.let("far", sqrt(p.dot(p)))
+reach = ik.let("reach", sqrt(p[0] ** 2 + p[1] ** 2))
+d.step(
+    "Inverse: the shoulder",
+    "theta7 is given, so the shoulder is known in the frame of theta6, at p from the wrist.",
+    {"p": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0]))},
+)
+upper = ik.program.let("upper", sqrt(a4**2 + d3**2), nonnegative=True)
+fore = ik.program.let("fore", sqrt(a5**2 + d5**2), nonnegative=True)
+straight = ik.direction("straight", d3 * d5 - a4 * a5, a4 * d5 + a5 * d3)
+elbow_angle = theta4 + sp.atan2(a4 * d5 + a5 * d3, d3 * d5 - a4 * a5)
+elbow = ik.angle("elbow", elbow_angle)
+d.write("elbow", r"\eta", "angle of the elbow, from where the straight links are in line")
+
+
+def seen(pair: Pair) -> sp.Matrix:
+    """The shoulder in the frame of the forearm, by the pair of the elbow."""
+    bent = turned(-(pair - straight)) * sp.Matrix([-a4, -d3, 0])
+    return sp.Matrix([bent[0] + a5, 0, bent[1] - d5])
+
+
+bent = ik.solve(
+    law_of_cosines,
+    elbow,
+    (upper, fore),
+    far,
+    {-1: "bent", +1: "over"},
+    toward=coordinate_within(lambda pair: seen(pair)[2], reach),
+)
+d.step(
+    "Inverse: the elbow",
+    "The distance of the shoulder from the wrist is that of the ends of two straight links.  Their "
+    "angle is theta4 plus a constant; it is 0 where they are in line.",
+    {
+        r"\eta": elbow_angle,
+        r"|p|^2": a4**2
+        + d3**2
+        + a5**2
+        + d5**2
+        + 2 * sqrt(a4**2 + d3**2) * sqrt(a5**2 + d5**2) * cos(real("elbow")),
+    },
+)
+v = ik.vector("v", seen(bent))
+tilt = ik.solve(
+    turn,
+    theta6,
+    (p[0], p[1], v[2]),
+    {-1: "ahead", +1: "behind"},
+    toward=LinksAtHeight(sp.Abs(v[0]), sp.S.Zero, p[2], slack=sp.Rational(1, 2**50)),
+)
+w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * p))
+roll = ik.solve(rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]})
+d.step(
+    "Inverse: the wrist",
+    "theta6 turns the shoulder to the height of v along the forearm, and theta5 then turns it to "
+    "v.  Where the shoulder is on axis 6 or on axis 5 that joint is free.",
+    {
+        r"p_x\sin\theta_6 + p_y\cos\theta_6": v[2],
+        "w": rotation("x", pi / 2) * (rotation("z", theta6) * p),
+        r"R_z(\theta_5)\,w": sp.Matrix([real("v_x"), 0, real("v_z")]),
+    },
+)
+R = ik.matrix("R1", ik.R * turned(given).T * rotation("x", -pi / 2))
+R = ik.matrix("R2", R * turned(tilt).T * rotation("x", -pi / 2))
+R = ik.matrix("R3", R * turned(roll).T * rotation("x", pi / 2))
+R = ik.matrix("R4", R * turned(bent - straight).T * rotation("x", -pi / 2))
+ik.solve(zyz, R, (theta1, theta2, theta3), {+1: "front", -1: "back"})
+d.step(
+    "Inverse: the first three joints",
+    "The four others leave the rotation of the upper arm to the shoulder.",
+    {
+        "R_{03}": R03,
+        "R_{37}": R37,
+    },
+    proves="The rotation of the pose is R_03 R_37.",
+    equal=[(arm.pose[:3, :3], R03 * R37)],
+)
+ik.finish(
+    "All eight postures of a pose at a given theta7.",
+    notes=(
+        "bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda "
+        "allow; over: it is bent to the other side.",
+        "ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.",
+        "front: sin(theta2) >= 0; back: sin(theta2) <= 0.",
+    ),
+)

@@ -1,0 +1,209 @@
+"""Arms with a spherical shoulder, an elbow and a spherical wrist, as the KUKA LBR iiwa."""
+
+import sympy as sp
+from closedform.derivations.papers.seven_joints import ARM_ANGLE
+from sympy import cos, pi, sin, sqrt
+
+from closedform import (
+    Chain,
+    Derivation,
+    arm_angle,
+    arm_plane,
+    determinant,
+    from_dh,
+    law_of_cosines,
+    real,
+    rotation,
+    turned,
+    zyz,
+)
+
+d = Derivation(
+    "srs_arm",
+    "Seven-joint arm with a spherical shoulder and wrist (SRS)",
+    ARM_ANGLE,
+    "The axes of theta1, theta2 and theta3 meet in the shoulder, and those of theta5, theta6 and "
+    "theta7 in the wrist; neighbouring axes are at right angles.  theta4 is the elbow.  At zero "
+    "angles the arm points upwards; theta1, theta3, theta5 and theta7 turn about z, theta2 and "
+    "theta6 about y, and theta4 about -y.  A pose leaves one freedom: the elbow turns about the "
+    "line from the shoulder to the wrist.  This turn is the arm angle, an input of the inverse.",
+    singularities=("shoulder", "elbow", "wrist", "upright"),
+)
+
+
+def length(name: str, millimetres: int, meaning: str, *, nonnegative: bool = True) -> sp.Symbol:
+    value, source = sp.Rational(millimetres, 1000), "KUKA LBR iiwa 7 R800, as in iiwa_stack"
+    return d.parameter(
+        name, value=value, unit="m", meaning=meaning, source=source, nonnegative=nonnegative
+    )
+
+
+d_bs = length("d_bs", 340, "from the base up to the shoulder", nonnegative=False)
+d_se = length("d_se", 400, "from the shoulder to the elbow")
+d_ew = length("d_ew", 400, "from the elbow to the wrist")
+d_wf = length("d_wf", 126, "from the wrist to the flange", nonnegative=False)
+q = theta1, theta2, theta3, theta4, theta5, theta6, theta7 = [
+    d.joint(f"theta{i}") for i in range(1, 8)
+]
+
+# Forward kinematics and velocity
+
+arm = from_dh(
+    d,
+    [
+        (0, -pi / 2, d_bs, theta1),
+        (0, pi / 2, 0, theta2),
+        (0, pi / 2, d_se, theta3),
+        (0, -pi / 2, 0, theta4),
+        (0, -pi / 2, d_ew, theta5),
+        (0, pi / 2, 0, theta6),
+        (0, 0, d_wf, theta7),
+    ],
+)
+forward = arm.export(d)
+to_elbow = rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)
+to_elbow = to_elbow * rotation("x", pi / 2)
+line = sp.Matrix([-d_ew * sin(theta4), d_se + d_ew * cos(theta4), 0])
+w = to_elbow * line
+d.explain(
+    {
+        "w": "the wrist, seen from the shoulder",
+        "L": "distance of the wrist from the shoulder",
+        "r": "distance of the wrist from the line through the shoulder along z",
+        "e": "height of a unit vector against the axis of the elbow",
+        "f": "L times the height of a unit vector across the line to the wrist, in the plane of "
+        "the arm",
+        "R_{03}": "rotation of the upper arm",
+    }
+)
+w_squared = d_se**2 + d_ew**2 + 2 * d_se * d_ew * cos(theta4)
+d.step(
+    "Shoulder, elbow and wrist",
+    "Seen from the shoulder, the wrist is at w.  Its distance L depends on the elbow alone; r is "
+    "its distance from the line through the shoulder along z.",
+    {
+        "w": w,
+        "L": sqrt(w_squared),
+        "r": sqrt(real("w_x") ** 2 + real("w_y") ** 2),
+    },
+    proves="The flange is d_bs above the shoulder, w and d_wf along the last axis, together.",
+    equal=[
+        (arm.position, sp.Matrix([0, 0, d_bs]) + w + d_wf * arm.pose[:3, 2]),
+        (w.dot(w), w_squared),
+    ],
+)
+
+# The self-motion and the singular set
+
+s2, c2, s3, c3, s4, c4 = (f(x) for x in (theta2, theta3, theta4) for f in (sin, cos))
+s5, c5, s6, c6 = (f(x) for x in (theta5, theta6) for f in (sin, cos))
+SELF_MOTION = "Joint rates that leave the hand where it is and turn the elbow."
+self_motion = sp.Matrix(
+    [
+        -d_ew * s4 * c3 * s6,
+        d_ew * s4 * s2 * s3 * s6,
+        (d_ew * c2 * c3 * s4 - s2 * (d_se + d_ew * c4)) * s6,
+        0,
+        (s6 * (d_ew + d_se * c4) - d_se * s4 * c5 * c6) * s2,
+        -d_se * s4 * s2 * s5 * s6,
+        d_se * s4 * s2 * c5,
+    ]
+)
+others = [[k for k in range(7) if k != j] for j in range(7)]
+minors = [determinant(arm.middle[:, columns]) for columns in others]
+d.explain({r"\dot q": "joint rates that do not move the hand"})
+d.step(
+    "Self-motion",
+    "One motion of the joints leaves the hand where it is.  Its rates are the determinants of J "
+    "without one column each, with alternating signs and without their common factor.  J has a "
+    "smaller rank, so that the hand loses a direction, exactly where all these determinants "
+    "vanish, for links that have a length: where sin(theta4) = 0, and where sin(theta2) and "
+    "sin(theta6), or sin(theta2) and cos(theta3), or sin(theta6) and cos(theta5) vanish together.",
+    {r"\dot q": self_motion},
+    proves="J times these rates is zero, and d_se d_ew sin(theta4) times them are the minors.",
+    equal=[
+        (arm.middle * self_motion, sp.zeros(6, 1)),
+        *((m, (-1) ** k * d_se * d_ew * s4 * self_motion[k]) for k, m in enumerate(minors)),
+    ],
+)
+distance = sqrt(line.dot(line))
+up = to_elbow[2, :]
+level, across = -up[2], up[1] * line[0] - up[0] * line[1]
+aside = sqrt(w[0].subs(theta1, 0) ** 2 + w[1].subs(theta1, 0) ** 2)
+numerators = [
+    across * (w_squared * level.diff(x) + level * w_squared.diff(x) / 2)
+    - w_squared * level * across.diff(x)
+    for x in q
+]
+DETERMINANT = r"\det\begin{pmatrix} J \\ \partial\psi/\partial q \end{pmatrix}"
+det = -d_se * d_ew * distance * s2 * s4 * s6
+d.step(
+    "Determinant and singular set",
+    "The arm angle psi is that of the vector (f, L e), where f and e are the coordinates below.  "
+    "With its derivative as the last row J is square.  The arm is singular where the axes 1 and 3 "
+    "coincide (shoulder), where it is stretched or folded (elbow), and where the axes 5 and 7 "
+    "coincide (wrist).  Where the wrist is above or below the shoulder (upright), r = 0, and psi "
+    "has no plane from which it is counted.",
+    {
+        "e": level,
+        "f": across,
+        DETERMINANT: det,
+    },
+    proves="The self-motion turns psi by -L sin(theta2) sin(theta6), and r is the length of that "
+    "vector.",
+    equal=[
+        (sp.Matrix(numerators).dot(self_motion), -w_squared * aside**2 * s2 * s6),
+        (aside**2, w[0] ** 2 + w[1] ** 2),
+        (aside**2, w_squared * level**2 + across**2),
+        (distance**2, w_squared),
+    ],
+)
+d.function("self_motion", SELF_MOTION, {"q": q}, {"qdot": self_motion}, equation=r"\dot q")
+d.function(
+    "determinant",
+    "Determinant of the Jacobian with the derivative of the arm angle as its last row.",
+    {"q": q},
+    {"det": det},
+    equation=DETERMINANT,
+)
+d.function(
+    "singularities",
+    "The factors of the determinant that hold a joint, and r.",
+    {"q": q},
+    {"factors": [s2, s4, s6, aside]},
+)
+
+# Inverse kinematics
+
+ik = Chain(d, forward)
+psi = arm_angle(ik, to_elbow, line[:2, 0], sense=-1)
+wx, wy, wz = p = ik.vector("w", ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]))
+far = ik.let("far", sqrt(p.dot(p)))
+elbow = ik.solve(law_of_cosines, theta4, (d_se, d_ew), far, {-1: "up", +1: "down"})
+d.step(
+    "Inverse: the elbow",
+    "The upper arm, the forearm and the line from the shoulder to the wrist are a triangle.",
+    {"w": ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]), "L": sqrt(p.dot(p))},
+)
+bent = ik.vector("v", sp.Matrix([0, d_se, 0]) + turned(elbow) * sp.Matrix([0, d_ew, 0]))
+M = ik.solve(arm_plane, psi, to_elbow, bent[:2, 0], p, because={theta4: 1}, sense=-1)
+d.step(
+    "Inverse: the shoulder",
+    "The arm angle and w determine the rotation of the upper arm: it takes the line to the wrist "
+    "to w, and the axis of the elbow to the direction that the arm angle says.  The branches front "
+    "have sin(theta2) >= 0.",
+    {"R_{03}": rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)},
+)
+left = ik.matrix("R1", M * rotation("x", -pi / 2))
+ik.solve(zyz, left, (theta1, theta2, theta3), {+1: "front", -1: "back"}, name="shoulder")
+right = ik.matrix("R2", rotation("x", pi / 2) * (turned(elbow).T * (M.T * ik.R)))
+ik.solve(zyz, right, (theta5, theta6, theta7), {+1: "noflip", -1: "flip"})
+ik.finish(
+    "All eight postures of a pose at an arm angle.",
+    notes=(
+        "up: sin(theta4) <= 0; down: sin(theta4) >= 0.  At arm angles within a right angle of 0, "
+        "the elbow of the branches up is above the line from the shoulder to the wrist.",
+        "front: sin(theta2) >= 0; back: sin(theta2) <= 0.",
+        "noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.",
+    ),
+)

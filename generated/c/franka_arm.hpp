@@ -1,0 +1,91 @@
+/*
+ * Seven-joint arm with an offset elbow and hand (Franka): the C of franka_arm.h for C++20, printed by closedform. Header only; every
+ * function is one call of the C, with std::span for what it reads and std::array for what it returns.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_FRANKA_ARM_HPP
+#define CLOSEDFORM_FRANKA_ARM_HPP
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "franka_arm.h"
+
+namespace closedform::franka_arm {
+
+using Parameters = franka_arm_params;
+
+inline constexpr Parameters defaults = FRANKA_ARM_DEFAULTS;
+
+[[nodiscard]] inline auto pose(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 16> result;
+    franka_arm_pose(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto skeleton(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 24> result;
+    franka_arm_skeleton(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto fk(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 16> result;
+    franka_arm_fk(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    franka_arm_jacobian(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto determinant(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 1> result;
+    franka_arm_determinant(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto singularities(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 4> result;
+    franka_arm_singularities(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_space(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    franka_arm_jacobian_space(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_body(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    franka_arm_jacobian_body(&parameters, q.data(), result.data());
+    return result;
+}
+
+struct IkResult {
+    std::array<real_t, 56> q;
+    std::array<uint8_t, 8> status;
+};
+
+[[nodiscard]] inline auto ik(std::span<const real_t, 16> T, std::span<const real_t, 1> theta7, const Parameters &parameters = defaults) noexcept
+{
+    IkResult result;
+    franka_arm_ik(&parameters, T.data(), theta7.data(), result.q.data(), result.status.data());
+    return result;
+}
+
+}  // namespace closedform::franka_arm
+
+#endif

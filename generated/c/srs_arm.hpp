@@ -1,0 +1,105 @@
+/*
+ * Seven-joint arm with a spherical shoulder and wrist (SRS): the C of srs_arm.h for C++20, printed by closedform. Header only; every
+ * function is one call of the C, with std::span for what it reads and std::array for what it returns.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_SRS_ARM_HPP
+#define CLOSEDFORM_SRS_ARM_HPP
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "srs_arm.h"
+
+namespace closedform::srs_arm {
+
+using Parameters = srs_arm_params;
+
+inline constexpr Parameters defaults = SRS_ARM_DEFAULTS;
+
+[[nodiscard]] inline auto pose(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 16> result;
+    srs_arm_pose(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto skeleton(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 15> result;
+    srs_arm_skeleton(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto fk(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 16> result;
+    srs_arm_fk(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    srs_arm_jacobian(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_space(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    srs_arm_jacobian_space(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_body(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 42> result;
+    srs_arm_jacobian_body(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto self_motion(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 7> result;
+    srs_arm_self_motion(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto determinant(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 1> result;
+    srs_arm_determinant(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto singularities(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 4> result;
+    srs_arm_singularities(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto arm_angle(std::span<const real_t, 7> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 1> result;
+    srs_arm_arm_angle(&parameters, q.data(), result.data());
+    return result;
+}
+
+struct IkResult {
+    std::array<real_t, 56> q;
+    std::array<uint8_t, 8> status;
+};
+
+[[nodiscard]] inline auto ik(std::span<const real_t, 16> T, std::span<const real_t, 1> arm_angle, const Parameters &parameters = defaults) noexcept
+{
+    IkResult result;
+    srs_arm_ik(&parameters, T.data(), arm_angle.data(), result.q.data(), result.status.data());
+    return result;
+}
+
+}  // namespace closedform::srs_arm
+
+#endif

@@ -20,7 +20,6 @@ from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.robots import seven_joints
 from closedform.scaffold.propose import NoChainError, propose
 
 R = sp.Rational
@@ -133,14 +132,14 @@ def test_a_wrist_above_the_shoulder_is_singular(kuka: ModuleType) -> None:
 
 
 def test_it_is_the_arm_angle_of_the_ready_arms(kuka: ModuleType) -> None:
-    """Composed of other modules, those give the same postures in another order."""
+    """Those have lengths as parameters, and the same postures in the order of their names."""
     code = kuka
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (2000, 7))
-    ready = robots.load("iiwa14").parameters
+    ready = robots.load("iiwa14")
     T, psi = code.fk(q), code.arm_angle(q)
-    assert abs(T - seven_joints.fk(q, ready)).max() < 1e-14
-    assert away(psi, seven_joints.arm_angle(q, ready)).max() < 1e-10
-    ours, theirs = code.ik(T, psi).q, seven_joints.ik(T, psi, ready).q
+    assert abs(T - ready.fk(q)).max() < 1e-14
+    assert away(psi, ready.given_at(q)).max() < 1e-10
+    ours, theirs = code.ik(T, psi).q, ready.ik(T, psi).q
     gap = away(ours[:, :, None], theirs[:, None]).max(axis=-1)
     assert gap.min(axis=2).max() < 1e-6 and gap.min(axis=1).max() < 1e-6
 

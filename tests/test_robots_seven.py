@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from closedform.generated.numpy import srs_arm
 
 from closedform import plot, robots
-from closedform.robots import Robot, seven_joints
+from closedform.robots import Robot
 
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 
@@ -102,11 +103,11 @@ def test_the_other_functions_of_a_robot(arm: Robot) -> None:
     assert abs(frames[:, -1] - arm.fk(q)).max() < 1e-14
     points = arm.skeleton(q)
     for k, name in enumerate(arm.joints):
-        at = seven_joints.SKELETON.points.index(seven_joints.SKELETON.joints[name].points[0])
+        at = srs_arm.SKELETON.points.index(srs_arm.SKELETON.joints[name].points[0])
         assert abs(frames[:, k + 1, :3, 3] - points[:, at]).max() < 1e-14
     rates = arm.joint_rates(q, [0.1, 0, 0, 0, 0.2, 0])
     assert abs(arm.twist(q, rates.qdot) - [0.1, 0, 0, 0, 0.2, 0]).max() < 1e-9
-    assert plot.mechanism(seven_joints, q[0]) is not None
+    assert plot.mechanism(srs_arm, q[0]) is not None
 
 
 def test_what_must_be_given_is_said(arm: Robot) -> None:
@@ -116,8 +117,6 @@ def test_what_must_be_given_is_said(arm: Robot) -> None:
     for call in (lambda: six.ik(np.eye(4), 0.1), lambda: six.nearest(np.eye(4), [0] * 6, given=0)):
         with pytest.raises(ValueError, match="needs the target alone"):
             call()
-    with pytest.raises(ValueError, match="exist in NumPy only"):
-        robots.load("iiwa7", compiled=True)
 
 
 def test_a_given_joint_is_that_of_the_maker() -> None:
@@ -126,9 +125,9 @@ def test_a_given_joint_is_that_of_the_maker() -> None:
 
     def ik(T: Any, theta3: Any, params: Any = None) -> Any:
         taken.append(theta3)
-        return seven_joints.ik(T, 0.0)
+        return srs_arm.ik(T, 0.0)
 
-    names = {name: getattr(seven_joints, name) for name in seven_joints.__all__} | {"ik": ik}
+    names = {name: getattr(srs_arm, name) for name in srs_arm.__all__} | {"ik": ik}
     module: Any = SimpleNamespace(__name__="by.theta3", __all__=list(names), **names)
     signs, offsets = [1, 1, -1, 1, 1, 1, 1], [0, 0, 0.5, 0, 0, 0, 0]
     arm = Robot(module, signs=signs, offsets=offsets)

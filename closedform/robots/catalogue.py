@@ -40,15 +40,15 @@ def names() -> list[str]:
 def load(name: str, *, compiled: bool = False, **options: Any) -> Robot:
     """A ready robot; ``options`` are those of `Robot`, such as another tool or other limits.
 
-    With ``compiled`` it computes with the C module of its family, which arms of seven joints do not
-    have.
+    With ``compiled`` it computes with the C module of its family.
     """
     if name not in entries():
         near = difflib.get_close_matches(name.lower(), names(), n=3)
         advice = f"; did you mean {' or '.join(near)}?" if near else ""
         raise ValueError(f"there is no robot {name!r}{advice}")
     entry = entries()[name]
-    module = _module(entry["family"], compiled)
+    language = "c" if compiled else "numpy"
+    module = import_module(f"closedform.generated.{language}.{entry['family']}")
     known: dict[str, Any] = {"label": name, "parameters": entry["parameters"]}
     for part in ("base", "tool"):
         if part in entry:
@@ -61,15 +61,6 @@ def load(name: str, *, compiled: bool = False, **options: Any) -> Robot:
     if "offsets" in zero:
         zero["offsets"] = in_radians(module, zero["offsets"])
     return Robot(module, **{**known, **zero, **options})
-
-
-def _module(family: str, compiled: bool) -> ModuleType:
-    if family != "seven_joints":
-        language = "c" if compiled else "numpy"
-        return import_module(f"closedform.generated.{language}.{family}")
-    if compiled:
-        raise ValueError(f"robots of the family {family} exist in NumPy only")
-    return import_module(f"closedform.robots.{family}")
 
 
 def in_radians(module: ModuleType, values: Any) -> Any:

@@ -1498,7 +1498,7 @@ CF_INLINE void agile_wrist_ik_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void agile_wrist_ik_whole(const agile_wrist_params *params, const real_t R[9],
+CF_OUT_OF_LINE void agile_wrist_ik_whole(const agile_wrist_params *params, const real_t R[9],
     real_t q[24], uint8_t status[8])
 {
     const real_t one = cf_one();

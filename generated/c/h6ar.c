@@ -2766,7 +2766,7 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
+CF_OUT_OF_LINE void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {
     const real_t one = cf_one();

@@ -3669,7 +3669,7 @@ CF_INLINE void h6ar_loop_closed_ik_whole_kernel(const int single, const real_t o
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void h6ar_loop_closed_ik_whole(const h6ar_loop_closed_params *params,
+CF_OUT_OF_LINE void h6ar_loop_closed_ik_whole(const h6ar_loop_closed_params *params,
     const real_t x[6], real_t q[48], uint8_t status[8])
 {
     const real_t one = cf_one();

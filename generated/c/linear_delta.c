@@ -110,7 +110,7 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void linear_delta_fk_whole(const linear_delta_params *params,
+CF_OUT_OF_LINE void linear_delta_fk_whole(const linear_delta_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
     const real_t one = cf_one();
@@ -1048,7 +1048,7 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void linear_delta_jacobian_serial_whole(const linear_delta_params *params,
+CF_OUT_OF_LINE void linear_delta_jacobian_serial_whole(const linear_delta_params *params,
     const real_t q[3], real_t B[6])
 {
     linear_delta_jacobian_serial_whole_kernel(1, params, q, B);

@@ -111,7 +111,7 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_fk_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_fk_whole(const orthoglide_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
     const real_t one = cf_one();
@@ -511,7 +511,7 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_skeleton_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_skeleton_whole(const orthoglide_params *params, const real_t q[3],
     real_t points[114])
 {
     orthoglide_skeleton_whole_kernel(1, params, q, points);
@@ -1015,7 +1015,7 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_parallel_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_parallel_whole(const orthoglide_params *params, const real_t q[3],
     real_t A[18])
 {
     orthoglide_jacobian_parallel_whole_kernel(1, params, q, A);
@@ -1296,7 +1296,7 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_serial_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_serial_whole(const orthoglide_params *params, const real_t q[3],
     real_t B[6])
 {
     orthoglide_jacobian_serial_whole_kernel(1, params, q, B);
@@ -1576,7 +1576,7 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_whole(const orthoglide_params *params, const real_t q[3],
     real_t J[18])
 {
     orthoglide_jacobian_whole_kernel(1, params, q, J);
@@ -1879,7 +1879,7 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_determinant_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_determinant_whole(const orthoglide_params *params, const real_t q[3],
     real_t det[2])
 {
     orthoglide_determinant_whole_kernel(1, params, q, det);
@@ -2122,7 +2122,7 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_singularities_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_singularities_whole(const orthoglide_params *params, const real_t q[3],
     real_t factors[8])
 {
     orthoglide_singularities_whole_kernel(1, params, q, factors);
@@ -2421,7 +2421,7 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_condition_number_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_condition_number_whole(const orthoglide_params *params, const real_t q[3],
     real_t kappa[2])
 {
     orthoglide_condition_number_whole_kernel(1, params, q, kappa);
@@ -2712,7 +2712,7 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_constraint_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_constraint_whole(const orthoglide_params *params, const real_t q[3],
     real_t factors[2])
 {
     orthoglide_constraint_whole_kernel(1, params, q, factors);

@@ -1060,7 +1060,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void stanford_arm_ik_whole(const stanford_arm_params *params,
+CF_OUT_OF_LINE void stanford_arm_ik_whole(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {
     const real_t one = cf_one();

@@ -5703,7 +5703,7 @@ CF_INLINE void ur_arm_ik_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void ur_arm_ik_whole(const ur_arm_params *params, const real_t T[16],
+CF_OUT_OF_LINE void ur_arm_ik_whole(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {
     const real_t one = cf_one();

@@ -46,13 +46,13 @@
 #if defined(__GNUC__)
 #define CF_INLINE static inline __attribute__((always_inline))
 #define CF_RARE static __attribute__((cold, noinline, unused))
-#define CF_APART static __attribute__((noinline))
+#define CF_OUT_OF_LINE static __attribute__((noinline))
 #define CF_RESTRICT __restrict
 #define CF_UNLIKELY(condition) __builtin_expect((condition), 0)
 #else
 #define CF_INLINE static inline
 #define CF_RARE static inline
-#define CF_APART static
+#define CF_OUT_OF_LINE static
 #define CF_RESTRICT
 #define CF_UNLIKELY(condition) (condition)
 #endif

@@ -3,16 +3,19 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sympy as sp
+from chains import printed
 
-from closedform.pipeline.run import Store, find, print_robot
+from closedform.pipeline.run import Store, find, load, print_robot
 from closedform.proof import prove as prove_module
 from closedform.scaffold import limit
 from closedform.scaffold import new as scaffold
 from closedform.scaffold.limit import LimitError, bounded, limited
+from closedform.scaffold.motors import motors_of
 from closedform.scaffold.new import Search, new
-from closedform.scaffold.tables import TableError, motors_of, read_dh
+from closedform.scaffold.tables import TableError, read_dh
 
 PLANAR = "a, alpha, d, theta\n1, 0, 0, theta1\n1, 0, 0, theta2\n"
 COUPLED = """\
@@ -109,6 +112,8 @@ def test_coupled_joints_get_functions_between_motors_and_joints(tmp_path: Path) 
         ("theta2, m2", "theta2,", "the column motors names 4 motors for 3 joints"),
         ("m3 - m2", "theta1 - m2", "the motor theta1 has the name of something else"),
         ("m3 - m2", "2*m3 - m2", "do not determine each other"),
+        ("m3 - m2", "m3*m2", "is not a sum of motors with integer"),
+        ("m3 - m2", "m3 - m2 + 1", "is not a sum of multiples of motors, such as"),
     ],
 )
 def test_a_coupling_that_cannot_be_is_refused(tmp_path: Path, old: str, new: str, why: str) -> None:
@@ -124,3 +129,43 @@ def test_the_matrix_takes_motors_to_joints(tmp_path: Path) -> None:
     names, matrix = motors_of(read_dh(path), path.name)
     turned = matrix * sp.Matrix([1, 10, 100])
     assert names == ["m_theta1", "m2", "m3"] and list(turned) == [1, 10, 90]
+
+
+SCREW = """\
+# pitch = 0.02 m: rise of the screw in a turn
+a, alpha, d, theta, joint, motors
+0.25, 0, 0.3, q1, q1,
+0.25, pi, 0, q2, q2,
+0, 0, d3, 0, d3, pitch/(2*pi)*(m3 - m4)
+0, 0, 0.05, q4, q4, m4
+"""
+
+
+def test_a_slide_may_be_driven_by_a_screw(tmp_path: Path) -> None:
+    """A SCARA whose nut lifts the tool unless it turns with the spline."""
+    path = tmp_path / "screwed.py"
+    path.write_text(written(tmp_path, SCREW).text.replace('"two"', '"screwed"'), "utf-8")
+    (source,) = find([str(path)])
+    robot = printed(load(source), tmp_path / "printed")
+    lifted = robot.joints_from_motors([0, 0, 2 * np.pi, 0])
+    np.testing.assert_allclose(lifted, [0, 0, 0.02, 0], atol=1e-16)
+    level = robot.joints_from_motors([0, 0, 1.5, 1.5])
+    np.testing.assert_allclose(level, [0, 0, 0, 1.5], atol=1e-16)
+    q = np.array([0.3, -0.4, 0.1, 0.7])
+    np.testing.assert_allclose(robot.joints_from_motors(robot.motors_from_joints(q)), q, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("(m3 - m4)", "(m4 - m4)", "not a sum of multiples of motors"),
+        ("(m3 - m4)", "m3*m4", "not a sum of multiples of motors"),
+        ("(m3 - m4)", "m4", "names 3 motors for 4 joints"),
+        ("q4, m4", "q4, m3 - m4", "do not determine each other"),
+    ],
+)
+def test_a_screw_that_cannot_be_is_refused(tmp_path: Path, old: str, new: str, why: str) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(SCREW.replace(old, new), "utf-8")
+    with pytest.raises(TableError, match=why):
+        motors_of(read_dh(path), path.name)

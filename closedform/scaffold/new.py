@@ -27,6 +27,7 @@ from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loop_script import loop_script
 from closedform.scaffold.loops import read_loop
 from closedform.scaffold.mjcf import read_mjcf
+from closedform.scaffold.motors import motors_of
 from closedform.scaffold.proposal import Tried
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
@@ -39,7 +40,6 @@ from closedform.scaffold.tables import (
     Table,
     TableError,
     check_names,
-    motors_of,
     read_dh,
     read_screws,
 )

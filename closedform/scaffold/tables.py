@@ -7,7 +7,8 @@ to correct it.
 A Denavit-Hartenberg table is CSV with the columns ``a, alpha, d, theta`` and optionally ``joint``,
 the name of the variable of a row.  By default this is the symbol in ``theta``, or the one in ``d``
 if ``theta`` is a number.  A row without a variable is a fixed transform.  A column ``motors`` says
-what turns a joint that is not driven by a motor of its own, as ``m3 - m2`` for a parallelogram.
+what moves a joint that is not driven by a motor of its own, as ``m3 - m2`` for a parallelogram, or
+``pitch/(2*pi)*m3`` for a screw.
 Screws are TOML with ``[[axes]]`` and ``[home]``.  Every other symbol is a parameter; its value,
 unit and meaning come from comment lines ``# name = value unit: meaning`` or from the table
 ``[parameters]``.
@@ -100,7 +101,7 @@ class Table:
     limits: dict[str, tuple[str, str]] = field(default_factory=dict)
     """The least and the largest value of a joint, as decimals."""
     couplings: dict[str, Any] = field(default_factory=dict)
-    """Joints that several motors drive: each as a sum of motors with integer coefficients."""
+    """Joints that several motors drive: each as a sum of motors, with integers if it turns."""
     notes: list[str] = field(default_factory=list)
     """Entries that were not taken literally, in words for the author of the table."""
     doubt: str = ""
@@ -304,32 +305,23 @@ def _couple(table: Table, joint: str, text: str, where: str) -> None:
     if not joint:
         raise TableError(f"{where}: the row has no joint that motors could drive")
     total = sp.expand(expression(text, where))
-    terms = total.as_coefficients_dict()
-    if not all(t.is_Symbol and k.is_Integer for t, k in terms.items()):
+    motors = total.free_symbols - {real(name) for name in table.parameters}
+    factors = [total.diff(motor) for motor in motors]
+    if table.joints[joint] == "revolute" and not all(k.is_Integer for k in factors):
         raise TableError(
             f"{where}: {shown(text)} is not a sum of motors with integer coefficients, such as "
             f"m3 - m2"
         )
-    table.couplings[joint] = total
-
-
-def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:
-    """The names of the motors, and the matrix that takes their angles to those of the joints."""
-    driven = {j: table.couplings.get(j, real(f"m_{j}")) for j in table.joints}
-    names = list(dict.fromkeys(str(s) for e in driven.values() for s in _in_order(e)))
-    if clash := [n for n in names if n in table.joints or n in table.parameters or n in TAKEN]:
-        raise TableError(f"{where}: the motor {clash[0]} has the name of something else; rename it")
-    matrix = sp.Matrix([[e.coeff(real(n)) for n in names] for e in driven.values()])
-    if not matrix.is_square or abs(matrix.det()) != 1:
+    if (
+        not motors
+        or total.subs(dict.fromkeys(motors, 0)) != 0
+        or any(k.free_symbols & motors for k in factors)
+    ):
         raise TableError(
-            f"{where}: the column motors names {len(names)} motors for {len(driven)} joints, and "
-            f"they do not determine each other; a joint with an empty cell has a motor of its own"
+            f"{where}: {shown(text)} is not a sum of multiples of motors, such as "
+            f"m3 + 0.02/(2*pi)*m4 for a screw"
         )
-    return names, matrix
-
-
-def _in_order(e: sp.Expr) -> list[sp.Symbol]:
-    return sorted(e.free_symbols, key=str)
+    table.couplings[joint] = total
 
 
 def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
@@ -581,7 +573,7 @@ def _other_symbols(table: Table, entries: Sequence[Any], where: str) -> None:
         for name in sorted(map(str, entry.free_symbols)):
             if name not in table.joints:
                 table.parameters.setdefault(name, {})
-    used = {str(s) for e in entries for s in e.free_symbols}
+    used = {str(s) for e in (*entries, *table.couplings.values()) for s in e.free_symbols}
     if untold := [n for n, given in table.parameters.items() if "value" not in given]:
         table.notes.append(
             f"{where}: no value is given for {', '.join(untold)}, so 1 is taken; "

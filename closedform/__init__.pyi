@@ -49,6 +49,7 @@ from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.spheres import three_spheres as three_spheres
+from closedform.lemmas.tangent import LinkAtHeight as LinkAtHeight
 from closedform.lemmas.tangent import Links as Links
 from closedform.lemmas.tangent import LinksAndWrist as LinksAndWrist
 from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight

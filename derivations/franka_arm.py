@@ -7,7 +7,7 @@ from sympy import cos, pi, sin, sqrt
 from closedform import (
     Chain,
     Derivation,
-    LinksAtHeight,
+    LinkAtHeight,
     Pair,
     coordinate_within,
     from_dh,
@@ -147,7 +147,7 @@ tilt = ik.solve(
     theta6,
     (p[0], p[1], v[2]),
     {-1: "ahead", +1: "behind"},
-    toward=LinksAtHeight(sp.Abs(v[0]), sp.S.Zero, p[2], slack=sp.Rational(1, 2**50)),
+    toward=LinkAtHeight(sp.Abs(v[0]), p[2]),
 )
 w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * p))
 roll = ik.solve(rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]})

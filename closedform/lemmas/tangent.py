@@ -161,6 +161,15 @@ class Tangency:
         both = self.at.pair(root, width)
         return Pair(choose(self.free, 0, both.s), choose(self.free, 1, both.c))
 
+    def kept(self, square: sp.Expr, tangent: sp.Symbol) -> Reached:
+        """The pair for another ``square`` of the root, where the turn is tangent."""
+        p, at, suffix = self.chain.program, self.at, self.suffix
+        whole = sp.sqrt(4 * square + (at.above - at.below) ** 2)
+        root = choose(tangent, sp.sqrt(square), self.root)
+        root = p.let(f"kept{suffix}", root, nonnegative=True)
+        width = p.let(f"span{suffix}", choose(tangent, whole, self.width), nonnegative=True)
+        return Reached(self.pair(root, width), root)
+
 
 @dataclass(frozen=True)
 class Reached:
@@ -209,22 +218,14 @@ class LinksAtHeight:
     preferred: Sequence[Preferred] = ()
     rounding: sp.Expr = ROUNDING
     """What rounding changes the right side of the equation by, in units of its scale."""
-    slack: sp.Expr = sp.S.Zero
-    """How far beyond the links a point still counts as within reach, in units of the scale.
-
-    The reach itself is known no better, and a root that it allows should stay as it was computed.
-    """
 
     def square_in_reach(
         self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
     ) -> sp.Symbol:
         """The square of the root, brought within reach if rounding puts it out of reach."""
         square = at.below * at.above
-        apart = self.l1 - self.l2
-        if self.slack != 0:
-            apart = sp.Max(0, sp.Abs(apart) - self.slack * scale)
-        farthest = (self.l1 + self.l2 + self.slack * scale) ** 2 - self.height**2
-        nearest = apart**2 - self.height**2
+        farthest = (self.l1 + self.l2) ** 2 - self.height**2
+        nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
         rounding = 2 * at.h * scale * self.rounding
         result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
@@ -245,12 +246,28 @@ class LinksAtHeight:
         """The pair of the turn, from the root within reach that is nearest to the computed one."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
         tangent = nearly_tangent(p, turn.root, at.h, suffix)
-        square = self.square_in_reach(p, at, turn.chain.size, suffix)
-        whole = sp.sqrt(4 * square + (at.above - at.below) ** 2)
-        root = choose(tangent, sp.sqrt(square), turn.root)
-        root = p.let(f"kept{suffix}", root, nonnegative=True)
-        width = p.let(f"span{suffix}", choose(tangent, whole, turn.width), nonnegative=True)
-        return Reached(turn.pair(root, width), root)
+        return turn.kept(self.square_in_reach(p, at, turn.chain.size, suffix), tangent)
+
+
+@dataclass(frozen=True)
+class LinkAtHeight:
+    """One link that ends at a ``height``; its other coordinate is the root of a turn.
+
+    So the square of the root is known twice.  Near a tangent that one is taken which rounding
+    changes less: by the ``length`` of the link if it is shorter than the amplitude of the turn.
+    """
+
+    length: sp.Expr
+    height: sp.Expr
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn by the better of both squares."""
+        p, at, suffix = turn.chain.program, turn.at, turn.suffix
+        tangent = nearly_tangent(p, turn.root, at.h, suffix)
+        height = sp.Abs(self.height)
+        own = sp.Max(0, (self.length - height) * (self.length + height))
+        square = sp.Piecewise((own, self.length < at.h), (at.below * at.above, True))
+        return turn.kept(p.let(f"held{suffix}", square, nonnegative=True), tangent)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 486 compare and select, 348 add, 23 atan2, 42 divide, 582 multiply, 1 sincos, 50 sqrt
+#   ik: 473 compare and select, 338 add, 23 atan2, 41 divide, 575 multiply, 1 sincos, 50 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the
@@ -1125,606 +1125,591 @@ def _ik(
     tangent6 = root6 - t73 <= t74
     v_x = a5 - a4 * t67 + d3 * t66
     t75 = ops.abs(v_x)
-    t76 = size * 8.881784197001252e-16
-    t77 = ops.max(0.0, t75 - t76)
-    t78 = t76 + t75
-    wanted6 = ops.max(ops.max(0.0, t77 * t77 - t20), ops.min(t72, t78 * t78 - t20))
-    t79 = reach * size
-    t80 = 8796093022208.0 * ops.abs(t72 - wanted6) <= t79
-    held6 = ops.select(t80, wanted6, t72)
+    t76 = t75 < reach
+    t77 = ops.abs(w_y)
+    held6 = ops.select(t76, ops.max(0.0, -((t77 - t75) * (t77 + t75))), t72)
     kept6 = ops.select(tangent6, ops.sqrt(held6), root6)
-    t81 = above6 - below6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t81 * t81), above6 + below6)
-    t82 = 1.0 / (reach * span6)
-    t83 = t71 * kept6 * t82
-    t84 = t82 * (p_x * t81)
-    s6 = ops.select(free6, 0.0, t83 + t84)
-    t85 = p_x * 2.0
-    t86 = t82 * (t85 * kept6)
-    t87 = t82 * (s_z * t81)
-    c6 = ops.select(free6, 1.0, t86 - t87)
-    t88 = ops.sqrt(v_x * v_x)
+    t78 = above6 - below6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t78 * t78), above6 + below6)
+    t79 = 1.0 / (reach * span6)
+    t80 = t71 * kept6 * t79
+    t81 = t79 * (p_x * t78)
+    s6 = ops.select(free6, 0.0, t80 + t81)
+    t82 = p_x * 2.0
+    t83 = t79 * (t82 * kept6)
+    t84 = t79 * (s_z * t78)
+    c6 = ops.select(free6, 1.0, t83 - t84)
+    t85 = ops.sqrt(v_x * v_x)
     w_x = p_x * c6 + s_z * s6
-    on_axis_5 = ops.min(t88, ops.sqrt(t20 + w_x * w_x)) <= t35
+    on_axis_5 = ops.min(t85, ops.sqrt(t20 + w_x * w_x)) <= t35
     dot_5 = v_x * w_x
-    t89 = w_y * v_x
-    t90 = t89 * t89
-    t91 = 1.0 / ops.sqrt(t90 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t91)
+    t86 = w_y * v_x
+    t87 = t86 * t86
+    t88 = 1.0 / ops.sqrt(t87 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t88)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t92 = ops.select(on_axis_5, 0.0, t89 * t91)
-    t93 = t66 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t92)
-    R4_13 = t67 * (R1_11 * s6 - T13 * c6) - t93
+    t89 = ops.select(on_axis_5, 0.0, t86 * t88)
+    t90 = t66 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t89)
+    R4_13 = t67 * (R1_11 * s6 - T13 * c6) - t90
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t94 = t66 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t92)
-    R4_23 = t67 * (R1_21 * s6 - T23 * c6) - t94
-    t95 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t95
-    t96 = ops.opposite(failed)
-    t97 = d5 - a4 * (t41 + t42) - d3 * (t43 - t44)
-    t98 = t46 - t47
-    slope__elbow_1_over_ahead_front = t97 * t98
-    t99 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
-    square__elbow_1_over_ahead_front = t97 * t97
-    t100 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t100)
-    bend__elbow_1_over_ahead_front = t98 * t98
-    t101 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t99 - t101
-    t102 = inner__elbow_1_over_ahead_front < 0.0
-    t103 = ops.sign(slope__elbow_1_over_ahead_front)
-    t104 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t103 * ops.sqrt(t104)
-    below__elbow_1_over_ahead_front = ops.select(t102, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
-    above__elbow_1_over_ahead_front = ops.select(t102, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
-    t105 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
-    t106 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    t107 = ops.select(t105, 0.0, t106)
-    t108 = t107 * t107
-    t109 = 1.0 / (1.0 + t108)
-    t110 = 2.0 * t107 * t109
-    by_c__elbow_1_over_ahead_front = t109 * (1.0 - t108)
-    t111 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t110 * t110 / t111, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t110) + t60 * versine__elbow_1_over_ahead_front
-    t112 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t112, by_c__elbow_1_over_ahead_front, 1.0)
-    t113 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t112, -t110, 0.0)
-    t114 = ops.select(tangent_elbow, t113 - t40 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, 0.0, t114)
-    t115 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t116 = t40 * cosine__elbow_1_over_ahead_front + t115
-    celbow_over_ahead_front = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t116, t40))
-    t117 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t118 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t119 = d5 - a4 * t117 + d3 * t118
-    t120 = reach + t119
-    t121 = reach - t119
-    unreachable_2 = ops.opposite(t27 & (t13 <= t120) & (t13 <= t121))
+    t91 = t66 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t89)
+    R4_23 = t67 * (R1_21 * s6 - T23 * c6) - t91
+    t92 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t92
+    t93 = ops.opposite(failed)
+    t94 = d5 - a4 * (t41 + t42) - d3 * (t43 - t44)
+    t95 = t46 - t47
+    slope__elbow_1_over_ahead_front = t94 * t95
+    t96 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
+    square__elbow_1_over_ahead_front = t94 * t94
+    t97 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t97)
+    bend__elbow_1_over_ahead_front = t95 * t95
+    t98 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t96 - t98
+    t99 = inner__elbow_1_over_ahead_front < 0.0
+    t100 = ops.sign(slope__elbow_1_over_ahead_front)
+    t101 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t100 * ops.sqrt(t101)
+    below__elbow_1_over_ahead_front = ops.select(t99, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
+    above__elbow_1_over_ahead_front = ops.select(t99, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
+    t102 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
+    t103 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    t104 = ops.select(t102, 0.0, t103)
+    t105 = t104 * t104
+    t106 = 1.0 / (1.0 + t105)
+    t107 = 2.0 * t104 * t106
+    by_c__elbow_1_over_ahead_front = t106 * (1.0 - t105)
+    t108 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t107 * t107 / t108, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t107) + t60 * versine__elbow_1_over_ahead_front
+    t109 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t109, by_c__elbow_1_over_ahead_front, 1.0)
+    t110 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t109, -t107, 0.0)
+    t111 = ops.select(tangent_elbow, t110 - t40 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, 0.0, t111)
+    t112 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t113 = t40 * cosine__elbow_1_over_ahead_front + t112
+    celbow_over_ahead_front = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t113, t40))
+    t114 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t115 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t116 = d5 - a4 * t114 + d3 * t115
+    t117 = reach + t116
+    t118 = reach - t116
+    unreachable_2 = ops.opposite(t27 & (t13 <= t117) & (t13 <= t118))
     failed_2 = invalid | unreachable_2
-    t122 = ops.opposite(failed_2)
-    t123 = t96 | t122
-    t124 = ops.opposite(free6)
-    t125 = t122 & t124
-    above6_over_ahead_front = ops.max(t121, 0.0)
-    below6_over_ahead_front = ops.max(t120, 0.0)
-    t126 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = ops.sqrt(t126)
+    t119 = ops.opposite(failed_2)
+    t120 = t93 | t119
+    t121 = ops.opposite(no_link_elbow)
+    t122 = t119 & t121
+    t123 = t122 & tangent_elbow & t109
+    t124 = t123 & ops.opposite(t102)
+    t125 = t93 & t121
+    t126 = t125 & tangent_elbow & t61
+    t127 = t126 & ops.opposite(t55)
+    t128 = (t120 | t124 | t127) & ops.opposite(no_straight)
+    t129 = ops.select(t128, ops.sqrt(ops.select(t128, t30, 1.0)), 1.0)
+    t130 = 1.0 / t129
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t130))
+    t131 = t122 | t124 | t125 | t127
+    t132 = 1.0 / ops.select(t131, t36, 1.0)
+    upper_2 = ops.sqrt(ops.select(t131, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t131, t15, 1.0))
+    t133 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t131, t22, 1.0))
+    t134 = (t133 + far_2) * ops.max(t133 - far_2, 0.0)
+    t135 = upper_2 - fore_2
+    t136 = ops.max(t135 + far_2, 0.0) * ops.max(far_2 - t135, 0.0)
+    t137 = 1.0 / ops.select(t131, t132 * (t134 + t136), 1.0)
+    t138 = (t132 * t134 - t132 * t136) * t137
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t130)
+    t139 = s_straight_2 * t138
+    area_elbow = 2.0 * ops.sqrt(ops.select(t131, t134 * t136, 1.0))
+    t140 = 2.0 * (area_elbow / ops.select(t131, t34, 1.0))
+    s__elbow_1_over_ahead_front_2 = t137 * t140
+    t141 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t142 = c_straight_2 * t138
+    t143 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t144 = d5 - a4 * (t139 - t141) - d3 * (t142 + t143)
+    t145 = (a4 * c_straight_2 - d3 * s_straight_2) * t138
+    t146 = (a4 * s_straight_2 + d3 * c_straight_2) * s__elbow_1_over_ahead_front_2
+    t147 = t145 + t146
+    slope__elbow_1_2 = t144 * t147
+    square__elbow_1_2 = t144 * t144
+    t148 = ops.opposite(free6)
+    t149 = t119 & t148
+    above6_over_ahead_front = ops.max(t118, 0.0)
+    below6_over_ahead_front = ops.max(t117, 0.0)
+    t150 = above6_over_ahead_front * below6_over_ahead_front
+    root6_over_ahead_front = ops.sqrt(t150)
     tangent6_over_ahead_front = root6_over_ahead_front - t73 <= t74
-    t127 = t125 & tangent6_over_ahead_front
-    v_x_over_ahead_front = a5 - a4 * t118 - d3 * t117
-    t128 = ops.abs(v_x_over_ahead_front)
-    t129 = ops.max(0.0, t128 - t76)
-    t130 = t76 + t128
-    wanted6_over_ahead_front = ops.max(ops.max(0.0, t129 * t129 - t20), ops.min(t126, t130 * t130 - t20))
-    t131 = 8796093022208.0 * ops.abs(t126 - wanted6_over_ahead_front)
-    t132 = t131 <= t79
-    t133 = t127 & t132
-    t134 = ops.opposite(no_link_elbow)
-    t135 = (t122 | t133) & t134
-    t136 = t135 & tangent_elbow & t112
-    t137 = t136 & ops.opposite(t105)
-    t138 = t96 & t124
-    t139 = t138 & tangent6
-    t140 = t139 & t80
-    t141 = (t96 | t140) & t134
-    t142 = t141 & tangent_elbow & t61
-    t143 = t142 & ops.opposite(t55)
-    t144 = (t123 | t133 | t137 | t140 | t143) & ops.opposite(no_straight)
-    t145 = ops.select(t144, ops.sqrt(ops.select(t144, t30, 1.0)), 1.0)
-    t146 = 1.0 / t145
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t146))
-    t147 = t135 | t137 | t141 | t143
-    t148 = 1.0 / ops.select(t147, t36, 1.0)
-    upper_2 = ops.sqrt(ops.select(t147, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t147, t15, 1.0))
-    t149 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t147, t22, 1.0))
-    t150 = (t149 + far_2) * ops.max(t149 - far_2, 0.0)
-    t151 = upper_2 - fore_2
-    t152 = ops.max(t151 + far_2, 0.0) * ops.max(far_2 - t151, 0.0)
-    t153 = 1.0 / ops.select(t147, t148 * (t150 + t152), 1.0)
-    t154 = (t148 * t150 - t148 * t152) * t153
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t146)
-    t155 = s_straight_2 * t154
-    area_elbow = 2.0 * ops.sqrt(ops.select(t147, t150 * t152, 1.0))
-    t156 = 2.0 * (area_elbow / ops.select(t147, t34, 1.0))
-    s__elbow_1_over_ahead_front_2 = t153 * t156
-    t157 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t158 = c_straight_2 * t154
-    t159 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t160 = d5 - a4 * (t155 - t157) - d3 * (t158 + t159)
-    t161 = (a4 * c_straight_2 - d3 * s_straight_2) * t154
-    t162 = (a4 * s_straight_2 + d3 * c_straight_2) * s__elbow_1_over_ahead_front_2
-    t163 = t161 + t162
-    slope__elbow_1_2 = t160 * t163
-    square__elbow_1_2 = t160 * t160
-    t164 = t137 & ops.opposite(t102)
-    t165 = t143 & ops.opposite(t53)
-    t166 = ops.select(t125 | t164 | t138 | t165, t21, 1.0)
-    reach_2 = ops.sqrt(t166)
-    t167 = reach_2 + t49
-    high__elbow_1_2 = t167 * t167
-    t168 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    miss__elbow_1_2 = square__elbow_1_2 - t168
+    t151 = t149 & tangent6_over_ahead_front
+    v_x_over_ahead_front = a5 - a4 * t115 - d3 * t114
+    t152 = ops.abs(v_x_over_ahead_front)
+    t153 = t152 < reach
+    t154 = t124 & ops.opposite(t99)
+    t155 = t93 & t148
+    t156 = t149 | (t151 & ops.opposite(t153)) | t154 | t155
+    t157 = t155 & tangent6
+    t158 = t127 & ops.opposite(t53)
+    t159 = ops.select(t156 | (t157 & ops.opposite(t76)) | t158, t21, 1.0)
+    reach_2 = ops.sqrt(t159)
+    t160 = reach_2 + t49
+    high__elbow_1_2 = t160 * t160
+    t161 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
+    miss__elbow_1_2 = square__elbow_1_2 - t161
     above__elbow_1_2 = ops.select(t53, slope__elbow_1_2, miss__elbow_1_2)
-    bend__elbow_1_2 = t163 * t163
+    bend__elbow_1_2 = t147 * t147
     inner__elbow_1_2 = slope__elbow_1_2 * slope__elbow_1_2 - miss__elbow_1_2 * bend__elbow_1_2
-    t169 = ops.select(t165, ops.max(0.0, inner__elbow_1_2), 1.0)
-    t170 = 2.0 * (slope__elbow_1_2 + t54 * ops.sqrt(t169))
-    t171 = ops.select(t143, ops.select(t53, 2.0 * bend__elbow_1_2, t170), 1.0)
-    t172 = ops.select(t55, 0.0, above__elbow_1_2 / t171)
-    t173 = t172 * t172
-    t174 = 1.0 / ops.select(t142, 1.0 + t173, 1.0)
-    cosine__elbow_1_2 = ops.select(t61, t174 * (1.0 - t173), 1.0)
-    sine__elbow_1_2 = ops.select(t61, -(2.0 * t172 * t174), 0.0)
-    t175 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t176 = ops.select(tangent_elbow, t154 * cosine__elbow_1_2 - t175, t154)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -t176)
-    t177 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t178 = ops.select(tangent_elbow, t154 * sine__elbow_1_2 + t177, s__elbow_1_over_ahead_front_2)
-    t179 = ops.select(no_link_elbow, 0.0, t178)
-    t180 = c_straight_2 * celbow_2 - s_straight_2 * t179
-    t181 = c_straight_2 * t179 + s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t180 + d3 * t181
-    t182 = ops.abs(v_x_2)
-    t183 = ops.max(0.0, t182 - t76)
-    t184 = d5 + a4 * t181 + d3 * t180
-    above6_2 = ops.max(reach_2 - t184, 0.0)
-    below6_2 = ops.max(reach_2 + t184, 0.0)
-    t185 = above6_2 * below6_2
-    t186 = t76 + t182
-    wanted6_2 = ops.max(ops.max(0.0, t183 * t183 - t20), ops.min(t185, t186 * t186 - t20))
-    held6_2 = ops.select(t80, wanted6_2, t185)
-    t187 = ops.select(t138 & ops.opposite(tangent6), t185, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t139, held6_2, 1.0)), ops.sqrt(t187))
-    t188 = above6_2 - below6_2
-    t189 = ops.select(t139, 4.0 * held6_2 + t188 * t188, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t189), above6_2 + below6_2)
-    t190 = 1.0 / ops.select(t138, reach_2 * span6_2, 1.0)
-    t191 = t71 * kept6_2 * t190
-    t192 = t190 * (p_x * t188)
-    s6_2 = ops.select(free6, 0.0, t191 + t192)
-    t193 = t190 * (t85 * kept6_2)
-    t194 = t190 * (s_z * t188)
-    c6_2 = ops.select(free6, 1.0, t193 - t194)
+    t162 = ops.select(t158, ops.max(0.0, inner__elbow_1_2), 1.0)
+    t163 = 2.0 * (slope__elbow_1_2 + t54 * ops.sqrt(t162))
+    t164 = ops.select(t127, ops.select(t53, 2.0 * bend__elbow_1_2, t163), 1.0)
+    t165 = ops.select(t55, 0.0, above__elbow_1_2 / t164)
+    t166 = t165 * t165
+    t167 = 1.0 / ops.select(t126, 1.0 + t166, 1.0)
+    cosine__elbow_1_2 = ops.select(t61, t167 * (1.0 - t166), 1.0)
+    sine__elbow_1_2 = ops.select(t61, -(2.0 * t165 * t167), 0.0)
+    t168 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t169 = ops.select(tangent_elbow, t138 * cosine__elbow_1_2 - t168, t138)
+    celbow_2 = ops.select(no_link_elbow, 1.0, -t169)
+    t170 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t171 = ops.select(tangent_elbow, t138 * sine__elbow_1_2 + t170, s__elbow_1_over_ahead_front_2)
+    t172 = ops.select(no_link_elbow, 0.0, t171)
+    t173 = c_straight_2 * celbow_2 - s_straight_2 * t172
+    t174 = c_straight_2 * t172 + s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t173 + d3 * t174
+    t175 = ops.abs(v_x_2)
+    t176 = d5 + a4 * t174 + d3 * t173
+    above6_2 = ops.max(reach_2 - t176, 0.0)
+    below6_2 = ops.max(reach_2 + t176, 0.0)
+    t177 = above6_2 * below6_2
+    held6_2 = ops.select(t76, ops.max(0.0, -((t77 - t175) * (t77 + t175))), t177)
+    t178 = ops.select(t155 & ops.opposite(tangent6), t177, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t157, held6_2, 1.0)), ops.sqrt(t178))
+    t179 = above6_2 - below6_2
+    t180 = ops.select(t157, 4.0 * held6_2 + t179 * t179, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t180), above6_2 + below6_2)
+    t181 = 1.0 / ops.select(t155, reach_2 * span6_2, 1.0)
+    t182 = t71 * kept6_2 * t181
+    t183 = t181 * (p_x * t179)
+    s6_2 = ops.select(free6, 0.0, t182 + t183)
+    t184 = t181 * (t82 * kept6_2)
+    t185 = t181 * (s_z * t179)
+    c6_2 = ops.select(free6, 1.0, t184 - t185)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (p_x * c6_2 + s_z * s6_2)
-    t195 = t96 & ops.opposite(on_axis_5)
-    t196 = w_y * v_x_2
-    t197 = t196 * t196
-    t198 = t197 + ops.select(t195, dot_5_2 * dot_5_2, 1.0)
-    t199 = ops.select(t195, ops.sqrt(ops.select(t195, t198, 1.0)), 1.0)
-    t200 = 1.0 / t199
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t200)
+    t186 = t93 & ops.opposite(on_axis_5)
+    t187 = w_y * v_x_2
+    t188 = t187 * t187
+    t189 = t188 + ops.select(t186, dot_5_2 * dot_5_2, 1.0)
+    t190 = ops.select(t186, ops.sqrt(ops.select(t186, t189, 1.0)), 1.0)
+    t191 = 1.0 / t190
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t191)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t201 = ops.select(on_axis_5, 0.0, t196 * t200)
-    R3_21 = c5_2 * R2_21 - R1_23 * t201
-    R4_23_2 = t180 * R2_23 - ops.select(t96, t181 * R3_21, 1.0)
-    t202 = t96 & ops.opposite(aligned_wrist)
+    t192 = ops.select(on_axis_5, 0.0, t187 * t191)
+    R3_21 = c5_2 * R2_21 - R1_23 * t192
+    R4_23_2 = t173 * R2_23 - ops.select(t93, t174 * R3_21, 1.0)
+    t193 = t93 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t201
-    R4_13_2 = t180 * R2_13 - ops.select(t96, t181 * R3_11, 1.0)
-    t203 = ops.select(t202, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
-    t204 = 1.0 / ops.select(t202, ops.sqrt(t203), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t204)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t204)
-    t205 = ops.atan2(s_wrist, ops.select(t96, c_wrist, 1.0))
-    t206 = ops.select(failed, ops.nan, ops.wrap_cut(t205))
+    R3_11 = c5_2 * R2_11 - R1_13 * t192
+    R4_13_2 = t173 * R2_13 - ops.select(t93, t174 * R3_11, 1.0)
+    t194 = ops.select(t193, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
+    t195 = 1.0 / ops.select(t193, ops.sqrt(t194), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t195)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t195)
+    t196 = ops.atan2(s_wrist, ops.select(t93, c_wrist, 1.0))
+    t197 = ops.select(failed, ops.nan, ops.wrap_cut(t196))
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t201
-    R4_33 = t180 * (R1_31 * s6_2 - T33 * c6_2) - ops.select(t96, t181 * R3_31, 1.0)
-    t207 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t96, R4_33, 1.0))
-    t208 = ops.select(failed, ops.nan, ops.wrap_cut(t207))
-    R4_11 = t181 * R2_13 + ops.select(t96, t180 * R3_11, 1.0)
-    R4_21 = t181 * R2_23 + ops.select(t96, t180 * R3_21, 1.0)
-    t209 = ops.select(t96, s_wrist * (R2_11 * t201 + R1_13 * c5_2), 1.0)
-    t210 = ops.select(t96, c_wrist * (t201 * R2_21 + R1_23 * c5_2), 1.0)
-    t211 = ops.atan2(s_wrist * R4_11 - c_wrist * R4_21, ops.select(t96, t209 - t210, 1.0))
-    t212 = ops.select(failed, ops.nan, ops.wrap_cut(-t211))
-    t213 = ops.wrap_cut(-ops.atan2(t181, ops.select(t96, t180, 1.0)))
-    t214 = ops.select(failed, ops.nan, t213)
-    t215 = ops.wrap_cut(-ops.atan2(t201, ops.select(t96, c5_2, 1.0)))
-    t216 = ops.select(failed, ops.nan, t215)
-    t217 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t96, c6_2, 1.0)))
-    t218 = ops.select(failed, ops.nan, t217)
-    t219 = ops.atan2(s_x_theta7, ops.select(t123, c_x_theta7, 1.0))
-    t220 = ops.wrap_cut(t219)
-    t221 = ops.select(failed, ops.nan, t220)
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t192
+    R4_33 = t173 * (R1_31 * s6_2 - T33 * c6_2) - ops.select(t93, t174 * R3_31, 1.0)
+    t198 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t93, R4_33, 1.0))
+    t199 = ops.select(failed, ops.nan, ops.wrap_cut(t198))
+    R4_11 = t174 * R2_13 + ops.select(t93, t173 * R3_11, 1.0)
+    R4_21 = t174 * R2_23 + ops.select(t93, t173 * R3_21, 1.0)
+    t200 = ops.select(t93, s_wrist * (R2_11 * t192 + R1_13 * c5_2), 1.0)
+    t201 = ops.select(t93, c_wrist * (t192 * R2_21 + R1_23 * c5_2), 1.0)
+    t202 = ops.atan2(s_wrist * R4_11 - c_wrist * R4_21, ops.select(t93, t200 - t201, 1.0))
+    t203 = ops.select(failed, ops.nan, ops.wrap_cut(-t202))
+    t204 = ops.wrap_cut(-ops.atan2(t174, ops.select(t93, t173, 1.0)))
+    t205 = ops.select(failed, ops.nan, t204)
+    t206 = ops.wrap_cut(-ops.atan2(t192, ops.select(t93, c5_2, 1.0)))
+    t207 = ops.select(failed, ops.nan, t206)
+    t208 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t93, c6_2, 1.0)))
+    t209 = ops.select(failed, ops.nan, t208)
+    t210 = ops.atan2(s_x_theta7, ops.select(t120, c_x_theta7, 1.0))
+    t211 = ops.wrap_cut(t210)
+    t212 = ops.select(failed, ops.nan, t211)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t222 = ops.select(failed, ops.nan, ops.wrap(t205 + flip_wrist))
-    t223 = ops.select(failed, ops.nan, ops.wrap_cut(-t207))
-    t224 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t211))
-    t225 = ops.select(free6, 0.0, t83 - t84)
-    c6_bent_behind_front = ops.select(free6, 1.0, -(t86 + t87))
-    t226 = t67 * (R1_11 * t225 + T13 * c6_bent_behind_front)
-    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t225
-    t227 = w_x_bent_behind_front * w_x_bent_behind_front
-    on_axis_5_bent_behind_front = ops.min(t88, ops.sqrt(t20 + t227)) <= t35
+    t213 = ops.select(failed, ops.nan, ops.wrap(t196 + flip_wrist))
+    t214 = ops.select(failed, ops.nan, ops.wrap_cut(-t198))
+    t215 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t202))
+    t216 = ops.select(free6, 0.0, t80 - t81)
+    c6_bent_behind_front = ops.select(free6, 1.0, -(t83 + t84))
+    t217 = t67 * (R1_11 * t216 + T13 * c6_bent_behind_front)
+    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t216
+    t218 = w_x_bent_behind_front * w_x_bent_behind_front
+    on_axis_5_bent_behind_front = ops.min(t85, ops.sqrt(t20 + t218)) <= t35
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t228 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t229 = 1.0 / ops.sqrt(t90 + t228)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t229)
-    t230 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t225)
-    t231 = ops.select(on_axis_5_bent_behind_front, 0.0, t89 * t229)
-    t232 = t226 + t66 * (t230 - R1_13 * t231)
-    t233 = t67 * (R1_21 * t225 + T23 * c6_bent_behind_front)
-    t234 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t225)
-    t235 = t233 + t66 * (t234 - R1_23 * t231)
-    aligned_wrist_bent_behind_front = ops.sqrt(t232 * t232 + t235 * t235) <= t95
-    t236 = ops.select(free6, 0.0, t191 - t192)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, -(t193 + t194))
-    t237 = R1_21 * t236 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (p_x * c6_bent_behind_front_2 - s_z * t236)
-    t238 = t96 & ops.opposite(on_axis_5_bent_behind_front)
-    t239 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t240 = ops.select(t238, t197 + ops.select(t238, t239, 1.0), 1.0)
-    t241 = 1.0 / ops.select(t238, ops.sqrt(t240), 1.0)
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t241)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t236
-    t242 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t243 = ops.select(on_axis_5_bent_behind_front, 0.0, t196 * t241)
-    R3_21_bent_behind_front = t242 - R1_23 * t243
-    t244 = ops.select(t96, t181 * R3_21_bent_behind_front, 1.0)
-    t245 = t180 * t237 + t244
-    t246 = ops.opposite(aligned_wrist_bent_behind_front)
-    t247 = t96 & t246
-    t248 = R1_11 * t236 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t236
-    t249 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t249 - R1_13 * t243
-    t250 = ops.select(t96, t181 * R3_11_bent_behind_front, 1.0)
-    t251 = t180 * t248 + t250
-    t252 = ops.select(t247, t251 * t251 + t245 * t245, 1.0)
-    t253 = 1.0 / ops.select(t247, ops.sqrt(t252), 1.0)
-    t254 = ops.select(aligned_wrist_bent_behind_front, 0.0, t245 * t253)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t251 * t253))
-    t255 = ops.select(t96, c_wrist_bent_behind_front, 1.0)
-    t256 = ops.atan2(t254, t255)
-    t257 = ops.select(failed, ops.nan, ops.wrap_cut(-t256))
-    t258 = t251 * c_wrist_bent_behind_front - t245 * t254
-    t259 = t180 * (R1_31 * t236 + T33 * c6_bent_behind_front_2)
-    t260 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t236)
-    t261 = ops.select(t96, t181 * (t260 - R1_33 * t243), 1.0)
-    t262 = ops.atan2(t258, ops.select(t96, -(t259 + t261), 1.0))
-    t263 = ops.select(failed, ops.nan, ops.wrap_cut(-t262))
-    t264 = ops.select(t96, t180 * R3_11_bent_behind_front, 1.0)
-    t265 = ops.select(t96, t180 * R3_21_bent_behind_front, 1.0)
-    t266 = c_wrist_bent_behind_front * (t181 * t237 - t265)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t243 + R1_13 * c5_bent_behind_front_2
-    t267 = ops.select(t96, t254 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t243 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t268 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t269 = ops.select(t96, -(t267 + ops.select(t96, t268, 1.0)), 1.0)
-    t270 = ops.atan2(t254 * (t181 * t248 - t264) + t266, t269)
-    t271 = ops.select(failed, ops.nan, ops.wrap_cut(-t270))
-    t272 = ops.atan2(t243, ops.select(t96, c5_bent_behind_front_2, 1.0))
-    t273 = ops.select(failed, ops.nan, ops.wrap_cut(-t272))
-    t274 = ops.atan2(t236, ops.select(t96, c6_bent_behind_front_2, 1.0))
-    t275 = ops.select(failed, ops.nan, ops.wrap_cut(-t274))
+    t219 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t220 = 1.0 / ops.sqrt(t87 + t219)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t220)
+    t221 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t216)
+    t222 = ops.select(on_axis_5_bent_behind_front, 0.0, t86 * t220)
+    t223 = t217 + t66 * (t221 - R1_13 * t222)
+    t224 = t67 * (R1_21 * t216 + T23 * c6_bent_behind_front)
+    t225 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t216)
+    t226 = t224 + t66 * (t225 - R1_23 * t222)
+    aligned_wrist_bent_behind_front = ops.sqrt(t223 * t223 + t226 * t226) <= t92
+    t227 = ops.select(free6, 0.0, t182 - t183)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, -(t184 + t185))
+    t228 = R1_21 * t227 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (p_x * c6_bent_behind_front_2 - s_z * t227)
+    t229 = t93 & ops.opposite(on_axis_5_bent_behind_front)
+    t230 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t231 = ops.select(t229, t188 + ops.select(t229, t230, 1.0), 1.0)
+    t232 = 1.0 / ops.select(t229, ops.sqrt(t231), 1.0)
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t232)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t227
+    t233 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t234 = ops.select(on_axis_5_bent_behind_front, 0.0, t187 * t232)
+    R3_21_bent_behind_front = t233 - R1_23 * t234
+    t235 = ops.select(t93, t174 * R3_21_bent_behind_front, 1.0)
+    t236 = t173 * t228 + t235
+    t237 = ops.opposite(aligned_wrist_bent_behind_front)
+    t238 = t93 & t237
+    t239 = R1_11 * t227 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t227
+    t240 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t240 - R1_13 * t234
+    t241 = ops.select(t93, t174 * R3_11_bent_behind_front, 1.0)
+    t242 = t173 * t239 + t241
+    t243 = ops.select(t238, t242 * t242 + t236 * t236, 1.0)
+    t244 = 1.0 / ops.select(t238, ops.sqrt(t243), 1.0)
+    t245 = ops.select(aligned_wrist_bent_behind_front, 0.0, t236 * t244)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t242 * t244))
+    t246 = ops.select(t93, c_wrist_bent_behind_front, 1.0)
+    t247 = ops.atan2(t245, t246)
+    t248 = ops.select(failed, ops.nan, ops.wrap_cut(-t247))
+    t249 = t242 * c_wrist_bent_behind_front - t236 * t245
+    t250 = t173 * (R1_31 * t227 + T33 * c6_bent_behind_front_2)
+    t251 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t227)
+    t252 = ops.select(t93, t174 * (t251 - R1_33 * t234), 1.0)
+    t253 = ops.atan2(t249, ops.select(t93, -(t250 + t252), 1.0))
+    t254 = ops.select(failed, ops.nan, ops.wrap_cut(-t253))
+    t255 = ops.select(t93, t173 * R3_11_bent_behind_front, 1.0)
+    t256 = ops.select(t93, t173 * R3_21_bent_behind_front, 1.0)
+    t257 = c_wrist_bent_behind_front * (t174 * t228 - t256)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t234 + R1_13 * c5_bent_behind_front_2
+    t258 = ops.select(t93, t245 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t234 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t259 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t260 = ops.select(t93, -(t258 + ops.select(t93, t259, 1.0)), 1.0)
+    t261 = ops.atan2(t245 * (t174 * t239 - t255) + t257, t260)
+    t262 = ops.select(failed, ops.nan, ops.wrap_cut(-t261))
+    t263 = ops.atan2(t234, ops.select(t93, c5_bent_behind_front_2, 1.0))
+    t264 = ops.select(failed, ops.nan, ops.wrap_cut(-t263))
+    t265 = ops.atan2(t227, ops.select(t93, c6_bent_behind_front_2, 1.0))
+    t266 = ops.select(failed, ops.nan, ops.wrap_cut(-t265))
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t276 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t256))
-    t277 = ops.select(failed, ops.nan, ops.wrap_cut(t262))
-    t278 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t270))
-    held6_over_ahead_front = ops.select(t132, wanted6_over_ahead_front, t126)
+    t267 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t247))
+    t268 = ops.select(failed, ops.nan, ops.wrap_cut(t253))
+    t269 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t261))
+    held6_over_ahead_front = ops.select(t153, ops.max(0.0, -((t77 - t152) * (t77 + t152))), t150)
     kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), root6_over_ahead_front)
-    t279 = above6_over_ahead_front - below6_over_ahead_front
-    t280 = ops.sqrt(4.0 * held6_over_ahead_front + t279 * t279)
+    t270 = above6_over_ahead_front - below6_over_ahead_front
+    t271 = ops.sqrt(4.0 * held6_over_ahead_front + t270 * t270)
     width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t280, width6_over_ahead_front)
-    t281 = 1.0 / (reach * span6_over_ahead_front)
-    t282 = t71 * kept6_over_ahead_front * t281
-    t283 = t281 * (p_x * t279)
-    s6_over_ahead_front = ops.select(free6, 0.0, t282 + t283)
-    t284 = t281 * (t85 * kept6_over_ahead_front)
-    t285 = t281 * (s_z * t279)
-    c6_over_ahead_front = ops.select(free6, 1.0, t284 - t285)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t271, width6_over_ahead_front)
+    t272 = 1.0 / (reach * span6_over_ahead_front)
+    t273 = t71 * kept6_over_ahead_front * t272
+    t274 = t272 * (p_x * t270)
+    s6_over_ahead_front = ops.select(free6, 0.0, t273 + t274)
+    t275 = t272 * (t82 * kept6_over_ahead_front)
+    t276 = t272 * (s_z * t270)
+    c6_over_ahead_front = ops.select(free6, 1.0, t275 - t276)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t286 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t277 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t287 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t286, ops.sqrt(t287)) <= t35
+    t278 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    on_axis_5_over_ahead_front = ops.min(t277, ops.sqrt(t278)) <= t35
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t288 = w_y * v_x_over_ahead_front
-    t289 = t288 * t288
-    t290 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t291 = 1.0 / ops.sqrt(t289 + t290)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t291)
+    t279 = w_y * v_x_over_ahead_front
+    t280 = t279 * t279
+    t281 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t282 = 1.0 / ops.sqrt(t280 + t281)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t282)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t292 = ops.select(on_axis_5_over_ahead_front, 0.0, t288 * t291)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t292
-    R4_13_over_ahead_front = t118 * R2_13_over_ahead_front + t117 * R3_11_over_ahead_front
-    t293 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t283 = ops.select(on_axis_5_over_ahead_front, 0.0, t279 * t282)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t283
+    R4_13_over_ahead_front = t115 * R2_13_over_ahead_front + t114 * R3_11_over_ahead_front
+    t284 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t292
-    R4_23_over_ahead_front = t118 * R2_23_over_ahead_front + t117 * R3_21_over_ahead_front
-    t294 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t293 + t294) <= t95
-    t295 = d5 - a4 * (t155 + t157) - d3 * (t158 - t159)
-    t296 = t161 - t162
-    slope__elbow_1_over_ahead_front_2 = t295 * t296
-    square__elbow_1_over_ahead_front_2 = t295 * t295
-    t297 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
-    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t297)
-    above__elbow_1_over_ahead_front_2 = ops.select(t102, slope__elbow_1_over_ahead_front_2, miss__elbow_1_over_ahead_front_2)
-    bend__elbow_1_over_ahead_front_2 = t296 * t296
-    t298 = slope__elbow_1_over_ahead_front_2 * slope__elbow_1_over_ahead_front_2
-    t299 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
-    t300 = ops.select(t164, ops.max(0.0, t298 - t299), 1.0)
-    outer__elbow_1_over_ahead_front_2 = slope__elbow_1_over_ahead_front_2 + t103 * ops.sqrt(t300)
-    below__elbow_1_over_ahead_front_2 = ops.select(t102, 2.0 * bend__elbow_1_over_ahead_front_2, 2.0 * outer__elbow_1_over_ahead_front_2)
-    t301 = ops.select(t137, below__elbow_1_over_ahead_front_2, 1.0)
-    t302 = ops.select(t105, 0.0, above__elbow_1_over_ahead_front_2 / t301)
-    t303 = t302 * t302
-    t304 = 1.0 / ops.select(t136, 1.0 + t303, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t112, t304 * (1.0 - t303), 1.0)
-    sine__elbow_1_over_ahead_front_2 = ops.select(t112, -(2.0 * t302 * t304), 0.0)
-    t305 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t306 = t154 * cosine__elbow_1_over_ahead_front_2 + t305
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t306, t154))
-    t307 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t308 = t307 - t154 * sine__elbow_1_over_ahead_front_2
-    t309 = ops.select(tangent_elbow, t308, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, 0.0, t309)
-    t310 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t311 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t310 - d3 * t311
-    t312 = ops.abs(v_x_over_ahead_front_2)
-    t313 = ops.max(0.0, t312 - t76)
-    t314 = d5 - a4 * t311 + d3 * t310
-    above6_over_ahead_front_2 = ops.max(reach_2 - t314, 0.0)
-    below6_over_ahead_front_2 = ops.max(reach_2 + t314, 0.0)
-    t315 = above6_over_ahead_front_2 * below6_over_ahead_front_2
-    t316 = t76 + t312
-    wanted6_over_ahead_front_2 = ops.max(ops.max(0.0, t313 * t313 - t20), ops.min(t315, t316 * t316 - t20))
-    held6_over_ahead_front_2 = ops.select(t132, wanted6_over_ahead_front_2, t315)
-    t317 = ops.select(t127, held6_over_ahead_front_2, 1.0)
-    t318 = t125 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t317), ops.sqrt(ops.select(t318, t315, 1.0)))
-    t319 = above6_over_ahead_front_2 - below6_over_ahead_front_2
-    t320 = ops.select(t127, 4.0 * held6_over_ahead_front_2 + t319 * t319, 1.0)
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t283
+    R4_23_over_ahead_front = t115 * R2_23_over_ahead_front + t114 * R3_21_over_ahead_front
+    t285 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t284 + t285) <= t92
+    t286 = d5 - a4 * (t139 + t141) - d3 * (t142 - t143)
+    t287 = t145 - t146
+    slope__elbow_1_over_ahead_front_2 = t286 * t287
+    square__elbow_1_over_ahead_front_2 = t286 * t286
+    t288 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
+    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t288)
+    above__elbow_1_over_ahead_front_2 = ops.select(t99, slope__elbow_1_over_ahead_front_2, miss__elbow_1_over_ahead_front_2)
+    bend__elbow_1_over_ahead_front_2 = t287 * t287
+    t289 = slope__elbow_1_over_ahead_front_2 * slope__elbow_1_over_ahead_front_2
+    t290 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
+    t291 = ops.select(t154, ops.max(0.0, t289 - t290), 1.0)
+    outer__elbow_1_over_ahead_front_2 = slope__elbow_1_over_ahead_front_2 + t100 * ops.sqrt(t291)
+    below__elbow_1_over_ahead_front_2 = ops.select(t99, 2.0 * bend__elbow_1_over_ahead_front_2, 2.0 * outer__elbow_1_over_ahead_front_2)
+    t292 = ops.select(t124, below__elbow_1_over_ahead_front_2, 1.0)
+    t293 = ops.select(t102, 0.0, above__elbow_1_over_ahead_front_2 / t292)
+    t294 = t293 * t293
+    t295 = 1.0 / ops.select(t123, 1.0 + t294, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t109, t295 * (1.0 - t294), 1.0)
+    sine__elbow_1_over_ahead_front_2 = ops.select(t109, -(2.0 * t293 * t295), 0.0)
+    t296 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t297 = t138 * cosine__elbow_1_over_ahead_front_2 + t296
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t297, t138))
+    t298 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t299 = t298 - t138 * sine__elbow_1_over_ahead_front_2
+    t300 = ops.select(tangent_elbow, t299, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, 0.0, t300)
+    t301 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t302 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t301 - d3 * t302
+    t303 = ops.abs(v_x_over_ahead_front_2)
+    t304 = d5 - a4 * t302 + d3 * t301
+    above6_over_ahead_front_2 = ops.max(reach_2 - t304, 0.0)
+    below6_over_ahead_front_2 = ops.max(reach_2 + t304, 0.0)
+    t305 = above6_over_ahead_front_2 * below6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t153, ops.max(0.0, -((t77 - t303) * (t77 + t303))), t305)
+    t306 = ops.select(t151, held6_over_ahead_front_2, 1.0)
+    t307 = t149 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t306), ops.sqrt(ops.select(t307, t305, 1.0)))
+    t308 = above6_over_ahead_front_2 - below6_over_ahead_front_2
+    t309 = ops.select(t151, 4.0 * held6_over_ahead_front_2 + t308 * t308, 1.0)
     width6_over_ahead_front_2 = above6_over_ahead_front_2 + below6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t320), width6_over_ahead_front_2)
-    t321 = ops.select(t125, reach_2 * span6_over_ahead_front_2, 1.0)
-    t322 = 1.0 / t321
-    t323 = t71 * kept6_over_ahead_front_2 * t322
-    t324 = t322 * (p_x * t319)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t323 + t324)
-    t325 = t322 * (t85 * kept6_over_ahead_front_2)
-    t326 = t322 * (s_z * t319)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t325 - t326)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t309), width6_over_ahead_front_2)
+    t310 = ops.select(t149, reach_2 * span6_over_ahead_front_2, 1.0)
+    t311 = 1.0 / t310
+    t312 = t71 * kept6_over_ahead_front_2 * t311
+    t313 = t311 * (p_x * t308)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t312 + t313)
+    t314 = t311 * (t82 * kept6_over_ahead_front_2)
+    t315 = t311 * (s_z * t308)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t314 - t315)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = p_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t327 = t122 & ops.opposite(on_axis_5_over_ahead_front)
-    t328 = w_y * v_x_over_ahead_front_2
-    t329 = t328 * t328
-    t330 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t331 = ops.select(t327, t329 + ops.select(t327, t330, 1.0), 1.0)
-    t332 = 1.0 / ops.select(t327, ops.sqrt(t331), 1.0)
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t332)
+    t316 = t119 & ops.opposite(on_axis_5_over_ahead_front)
+    t317 = w_y * v_x_over_ahead_front_2
+    t318 = t317 * t317
+    t319 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t320 = ops.select(t316, t318 + ops.select(t316, t319, 1.0), 1.0)
+    t321 = 1.0 / ops.select(t316, ops.sqrt(t320), 1.0)
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t321)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t333 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t334 = ops.select(on_axis_5_over_ahead_front, 0.0, t328 * t332)
-    R3_21_over_ahead_front_2 = t333 - R1_23 * t334
-    t335 = ops.select(t122, t311 * R3_21_over_ahead_front_2, 1.0)
-    R4_23_over_ahead_front_2 = t310 * R2_23_over_ahead_front_2 + t335
-    t336 = t122 & ops.opposite(aligned_wrist_over_ahead_front)
+    t322 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t323 = ops.select(on_axis_5_over_ahead_front, 0.0, t317 * t321)
+    R3_21_over_ahead_front_2 = t322 - R1_23 * t323
+    t324 = ops.select(t119, t302 * R3_21_over_ahead_front_2, 1.0)
+    R4_23_over_ahead_front_2 = t301 * R2_23_over_ahead_front_2 + t324
+    t325 = t119 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t337 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t337 - R1_13 * t334
-    t338 = ops.select(t122, t311 * R3_11_over_ahead_front_2, 1.0)
-    R4_13_over_ahead_front_2 = t310 * R2_13_over_ahead_front_2 + t338
-    t339 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t340 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t341 = ops.select(t336, ops.sqrt(ops.select(t336, t339 + t340, 1.0)), 1.0)
-    t342 = 1.0 / t341
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t342)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t342)
-    t343 = ops.select(t122, c_wrist_over_ahead_front, 1.0)
-    t344 = ops.atan2(s_wrist_over_ahead_front, t343)
-    t345 = ops.select(failed_2, ops.nan, ops.wrap_cut(t344))
-    t346 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t347 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t326 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t326 - R1_13 * t323
+    t327 = ops.select(t119, t302 * R3_11_over_ahead_front_2, 1.0)
+    R4_13_over_ahead_front_2 = t301 * R2_13_over_ahead_front_2 + t327
+    t328 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t329 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t330 = ops.select(t325, ops.sqrt(ops.select(t325, t328 + t329, 1.0)), 1.0)
+    t331 = 1.0 / t330
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t331)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t331)
+    t332 = ops.select(t119, c_wrist_over_ahead_front, 1.0)
+    t333 = ops.atan2(s_wrist_over_ahead_front, t332)
+    t334 = ops.select(failed_2, ops.nan, ops.wrap_cut(t333))
+    t335 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t336 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t348 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    t349 = ops.select(t122, t311 * (t348 - R1_33 * t334), 1.0)
-    t350 = ops.select(t122, t310 * R2_33_over_ahead_front + t349, 1.0)
-    t351 = ops.atan2(t346 + t347, t350)
-    t352 = ops.select(failed_2, ops.nan, ops.wrap_cut(t351))
-    t353 = ops.select(t122, t310 * R3_11_over_ahead_front_2, 1.0)
-    t354 = s_wrist_over_ahead_front * (t311 * R2_13_over_ahead_front_2 - t353)
-    t355 = ops.select(t122, t310 * R3_21_over_ahead_front_2, 1.0)
-    t356 = c_wrist_over_ahead_front * (t311 * R2_23_over_ahead_front_2 - t355)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t334 + R1_13 * c5_over_ahead_front_2
-    t357 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t334 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t358 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t359 = ops.select(t122, t357, 1.0) - ops.select(t122, t358, 1.0)
-    t360 = ops.atan2(t354 - t356, ops.select(t122, t359, 1.0))
-    t361 = ops.select(failed_2, ops.nan, ops.wrap_cut(t360))
-    t362 = ops.wrap_cut(ops.atan2(t311, ops.select(t122, t310, 1.0)))
-    t363 = ops.select(failed_2, ops.nan, t362)
-    t364 = ops.atan2(t334, ops.select(t122, c5_over_ahead_front_2, 1.0))
-    t365 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t364))
-    t366 = ops.atan2(s6_over_ahead_front_2, ops.select(t122, c6_over_ahead_front_2, 1.0))
-    t367 = ops.select(failed_2, ops.nan, ops.wrap_cut(t366))
-    t368 = ops.select(failed_2, ops.nan, t220)
+    t337 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    t338 = ops.select(t119, t302 * (t337 - R1_33 * t323), 1.0)
+    t339 = ops.select(t119, t301 * R2_33_over_ahead_front + t338, 1.0)
+    t340 = ops.atan2(t335 + t336, t339)
+    t341 = ops.select(failed_2, ops.nan, ops.wrap_cut(t340))
+    t342 = ops.select(t119, t301 * R3_11_over_ahead_front_2, 1.0)
+    t343 = s_wrist_over_ahead_front * (t302 * R2_13_over_ahead_front_2 - t342)
+    t344 = ops.select(t119, t301 * R3_21_over_ahead_front_2, 1.0)
+    t345 = c_wrist_over_ahead_front * (t302 * R2_23_over_ahead_front_2 - t344)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t323 + R1_13 * c5_over_ahead_front_2
+    t346 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t323 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t347 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t348 = ops.select(t119, t346, 1.0) - ops.select(t119, t347, 1.0)
+    t349 = ops.atan2(t343 - t345, ops.select(t119, t348, 1.0))
+    t350 = ops.select(failed_2, ops.nan, ops.wrap_cut(t349))
+    t351 = ops.wrap_cut(ops.atan2(t302, ops.select(t119, t301, 1.0)))
+    t352 = ops.select(failed_2, ops.nan, t351)
+    t353 = ops.atan2(t323, ops.select(t119, c5_over_ahead_front_2, 1.0))
+    t354 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t353))
+    t355 = ops.atan2(s6_over_ahead_front_2, ops.select(t119, c6_over_ahead_front_2, 1.0))
+    t356 = ops.select(failed_2, ops.nan, ops.wrap_cut(t355))
+    t357 = ops.select(failed_2, ops.nan, t211)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t369 = ops.select(failed_2, ops.nan, ops.wrap(t344 + flip_wrist_over_ahead_back))
-    t370 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t351))
-    t371 = ops.select(failed_2, ops.nan, ops.wrap(t360 + flip_wrist_over_ahead_back))
-    t372 = ops.select(free6, 0.0, t282 - t283)
-    c6_over_behind_front = ops.select(free6, 1.0, -(t284 + t285))
-    t373 = t118 * (R1_11 * t372 + T13 * c6_over_behind_front)
-    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t372
-    t374 = w_x_over_behind_front * w_x_over_behind_front
-    on_axis_5_over_behind_front = ops.min(t286, ops.sqrt(t20 + t374)) <= t35
+    t358 = ops.select(failed_2, ops.nan, ops.wrap(t333 + flip_wrist_over_ahead_back))
+    t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t340))
+    t360 = ops.select(failed_2, ops.nan, ops.wrap(t349 + flip_wrist_over_ahead_back))
+    t361 = ops.select(free6, 0.0, t273 - t274)
+    c6_over_behind_front = ops.select(free6, 1.0, -(t275 + t276))
+    t362 = t115 * (R1_11 * t361 + T13 * c6_over_behind_front)
+    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t361
+    t363 = w_x_over_behind_front * w_x_over_behind_front
+    on_axis_5_over_behind_front = ops.min(t277, ops.sqrt(t20 + t363)) <= t35
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t375 = dot_5_over_behind_front * dot_5_over_behind_front
-    t376 = 1.0 / ops.sqrt(t289 + t375)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t376)
-    t377 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t372)
-    t378 = ops.select(on_axis_5_over_behind_front, 0.0, t288 * t376)
-    t379 = t373 - t117 * (t377 - R1_13 * t378)
-    t380 = t118 * (R1_21 * t372 + T23 * c6_over_behind_front)
-    t381 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t372)
-    t382 = t380 - t117 * (t381 - R1_23 * t378)
-    aligned_wrist_over_behind_front = ops.sqrt(t379 * t379 + t382 * t382) <= t95
-    t383 = ops.select(free6, 0.0, t323 - t324)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, -(t325 + t326))
-    t384 = R1_21 * t383 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (p_x * c6_over_behind_front_2 - s_z * t383)
-    t385 = t122 & ops.opposite(on_axis_5_over_behind_front)
-    t386 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t387 = ops.select(t385, t329 + ops.select(t385, t386, 1.0), 1.0)
-    t388 = 1.0 / ops.select(t385, ops.sqrt(t387), 1.0)
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t388)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t383
-    t389 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t390 = ops.select(on_axis_5_over_behind_front, 0.0, t328 * t388)
-    R3_21_over_behind_front = t389 - R1_23 * t390
-    t391 = ops.select(t122, t311 * R3_21_over_behind_front, 1.0)
-    t392 = t310 * t384 - t391
-    t393 = ops.opposite(aligned_wrist_over_behind_front)
-    t394 = t122 & t393
-    t395 = R1_11 * t383 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t383
-    t396 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t396 - R1_13 * t390
-    t397 = ops.select(t122, t311 * R3_11_over_behind_front, 1.0)
-    t398 = t310 * t395 - t397
-    t399 = ops.select(t394, t398 * t398 + t392 * t392, 1.0)
-    t400 = 1.0 / ops.select(t394, ops.sqrt(t399), 1.0)
-    t401 = ops.select(aligned_wrist_over_behind_front, 0.0, t392 * t400)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t398 * t400))
-    t402 = ops.select(t122, c_wrist_over_behind_front, 1.0)
-    t403 = ops.atan2(t401, t402)
-    t404 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t403))
-    t405 = t398 * c_wrist_over_behind_front - t392 * t401
-    t406 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t383)
-    t407 = ops.select(t122, t311 * (t406 - R1_33 * t390), 1.0)
-    t408 = t310 * (R1_31 * t383 + T33 * c6_over_behind_front_2)
-    t409 = ops.atan2(t405, ops.select(t122, t407 - t408, 1.0))
-    t410 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t409))
-    t411 = ops.select(t122, t310 * R3_11_over_behind_front, 1.0)
-    t412 = ops.select(t122, t310 * R3_21_over_behind_front, 1.0)
-    t413 = c_wrist_over_behind_front * (t311 * t384 + t412)
-    R3_13_over_behind_front = R2_11_over_behind_front * t390 + R1_13 * c5_over_behind_front_2
-    t414 = ops.select(t122, t401 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t390 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t415 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t416 = ops.select(t122, -(t414 + ops.select(t122, t415, 1.0)), 1.0)
-    t417 = ops.atan2(t401 * (t311 * t395 + t411) + t413, t416)
-    t418 = ops.select(failed_2, ops.nan, ops.wrap_cut(t417))
-    t419 = ops.select(t122, c5_over_behind_front_2, 1.0)
-    t420 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t390, t419)))
-    t421 = ops.select(t122, c6_over_behind_front_2, 1.0)
-    t422 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t383, t421)))
+    t364 = dot_5_over_behind_front * dot_5_over_behind_front
+    t365 = 1.0 / ops.sqrt(t280 + t364)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t365)
+    t366 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t361)
+    t367 = ops.select(on_axis_5_over_behind_front, 0.0, t279 * t365)
+    t368 = t362 - t114 * (t366 - R1_13 * t367)
+    t369 = t115 * (R1_21 * t361 + T23 * c6_over_behind_front)
+    t370 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t361)
+    t371 = t369 - t114 * (t370 - R1_23 * t367)
+    aligned_wrist_over_behind_front = ops.sqrt(t368 * t368 + t371 * t371) <= t92
+    t372 = ops.select(free6, 0.0, t312 - t313)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, -(t314 + t315))
+    t373 = R1_21 * t372 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (p_x * c6_over_behind_front_2 - s_z * t372)
+    t374 = t119 & ops.opposite(on_axis_5_over_behind_front)
+    t375 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t376 = ops.select(t374, t318 + ops.select(t374, t375, 1.0), 1.0)
+    t377 = 1.0 / ops.select(t374, ops.sqrt(t376), 1.0)
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t377)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t372
+    t378 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t379 = ops.select(on_axis_5_over_behind_front, 0.0, t317 * t377)
+    R3_21_over_behind_front = t378 - R1_23 * t379
+    t380 = ops.select(t119, t302 * R3_21_over_behind_front, 1.0)
+    t381 = t301 * t373 - t380
+    t382 = ops.opposite(aligned_wrist_over_behind_front)
+    t383 = t119 & t382
+    t384 = R1_11 * t372 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t372
+    t385 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t385 - R1_13 * t379
+    t386 = ops.select(t119, t302 * R3_11_over_behind_front, 1.0)
+    t387 = t301 * t384 - t386
+    t388 = ops.select(t383, t387 * t387 + t381 * t381, 1.0)
+    t389 = 1.0 / ops.select(t383, ops.sqrt(t388), 1.0)
+    t390 = ops.select(aligned_wrist_over_behind_front, 0.0, t381 * t389)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t387 * t389))
+    t391 = ops.select(t119, c_wrist_over_behind_front, 1.0)
+    t392 = ops.atan2(t390, t391)
+    t393 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t392))
+    t394 = t387 * c_wrist_over_behind_front - t381 * t390
+    t395 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t372)
+    t396 = ops.select(t119, t302 * (t395 - R1_33 * t379), 1.0)
+    t397 = t301 * (R1_31 * t372 + T33 * c6_over_behind_front_2)
+    t398 = ops.atan2(t394, ops.select(t119, t396 - t397, 1.0))
+    t399 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t398))
+    t400 = ops.select(t119, t301 * R3_11_over_behind_front, 1.0)
+    t401 = ops.select(t119, t301 * R3_21_over_behind_front, 1.0)
+    t402 = c_wrist_over_behind_front * (t302 * t373 + t401)
+    R3_13_over_behind_front = R2_11_over_behind_front * t379 + R1_13 * c5_over_behind_front_2
+    t403 = ops.select(t119, t390 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t379 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t404 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t405 = ops.select(t119, -(t403 + ops.select(t119, t404, 1.0)), 1.0)
+    t406 = ops.atan2(t390 * (t302 * t384 + t400) + t402, t405)
+    t407 = ops.select(failed_2, ops.nan, ops.wrap_cut(t406))
+    t408 = ops.select(t119, c5_over_behind_front_2, 1.0)
+    t409 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t379, t408)))
+    t410 = ops.select(t119, c6_over_behind_front_2, 1.0)
+    t411 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t372, t410)))
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t423 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_over_behind_back - t403))
-    t424 = ops.select(failed_2, ops.nan, ops.wrap_cut(t409))
-    t425 = ops.select(failed_2, ops.nan, ops.wrap(t417 + flip_wrist_over_behind_back))
-    t426 = no_link_elbow | free6
-    t427 = ops.status(invalid, unreachable, t426 | on_axis_5 | aligned_wrist)
-    t428 = t426 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t429 = ops.status(invalid, unreachable, t428)
-    t430 = t426 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t431 = ops.status(invalid, unreachable_2, t430)
-    t432 = t426 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t433 = ops.status(invalid, unreachable_2, t432)
+    t412 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_over_behind_back - t392))
+    t413 = ops.select(failed_2, ops.nan, ops.wrap_cut(t398))
+    t414 = ops.select(failed_2, ops.nan, ops.wrap(t406 + flip_wrist_over_behind_back))
+    t415 = no_link_elbow | free6
+    t416 = ops.status(invalid, unreachable, t415 | on_axis_5 | aligned_wrist)
+    t417 = t415 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t418 = ops.status(invalid, unreachable, t417)
+    t419 = t415 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t420 = ops.status(invalid, unreachable_2, t419)
+    t421 = t415 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t422 = ops.status(invalid, unreachable_2, t421)
     return (
-        t206,
-        t208,
+        t197,
+        t199,
+        t203,
+        t205,
+        t207,
+        t209,
         t212,
+        t213,
         t214,
-        t216,
-        t218,
-        t221,
-        t222,
-        t223,
-        t224,
-        t214,
-        t216,
-        t218,
-        t221,
-        t257,
-        t263,
-        t271,
-        t214,
-        t273,
-        t275,
-        t221,
-        t276,
-        t277,
-        t278,
-        t214,
-        t273,
-        t275,
-        t221,
-        t345,
+        t215,
+        t205,
+        t207,
+        t209,
+        t212,
+        t248,
+        t254,
+        t262,
+        t205,
+        t264,
+        t266,
+        t212,
+        t267,
+        t268,
+        t269,
+        t205,
+        t264,
+        t266,
+        t212,
+        t334,
+        t341,
+        t350,
         t352,
-        t361,
-        t363,
-        t365,
-        t367,
-        t368,
-        t369,
-        t370,
-        t371,
-        t363,
-        t365,
-        t367,
-        t368,
-        t404,
-        t410,
+        t354,
+        t356,
+        t357,
+        t358,
+        t359,
+        t360,
+        t352,
+        t354,
+        t356,
+        t357,
+        t393,
+        t399,
+        t407,
+        t352,
+        t409,
+        t411,
+        t357,
+        t412,
+        t413,
+        t414,
+        t352,
+        t409,
+        t411,
+        t357,
+        t416,
+        t416,
         t418,
-        t363,
+        t418,
+        t420,
         t420,
         t422,
-        t368,
-        t423,
-        t424,
-        t425,
-        t363,
-        t420,
         t422,
-        t368,
-        t427,
-        t427,
-        t429,
-        t429,
-        t431,
-        t431,
-        t433,
-        t433,
     )
 
 

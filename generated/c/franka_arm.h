@@ -12,7 +12,7 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 233 compare and select, 267 add, 23 atan2, 28 divide, 379 multiply, 1 sincos, 28 sqrt
+ *   ik: 226 compare and select, 261 add, 23 atan2, 27 divide, 374 multiply, 1 sincos, 28 sqrt
  *   ik where nothing vanishes: 140 compare and select, 220 add, 23 atan2, 17 divide, 310 multiply,
  *     1 sincos, 22 sqrt
  *

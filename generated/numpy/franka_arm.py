@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 233 compare and select, 267 add, 23 atan2, 28 divide, 379 multiply, 1 sincos, 28 sqrt
+#   ik: 226 compare and select, 261 add, 23 atan2, 27 divide, 374 multiply, 1 sincos, 28 sqrt
 #   ik where nothing vanishes: 140 compare and select, 220 add, 23 atan2, 17 divide, 310 multiply,
 #     1 sincos, 22 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
@@ -1188,516 +1188,506 @@ def _ik(
     tangent6 = root6 - t53 <= t54
     v_x = a5 - a4 * t46 + d3 * t48
     t55 = np.abs(v_x)
-    t56 = size * 8.881784197001252e-16
-    t57 = np.maximum(0.0, t55 - t56)
-    t58 = t56 + t55
-    del t55
-    wanted6 = np.maximum(np.maximum(0.0, t57 * t57 - t8), np.minimum(t52, t58 * t58 - t8))
-    del t57, t58
-    t59 = reach * size
-    t60 = 8796093022208.0 * np.abs(t52 - wanted6) <= t59
-    held6 = _runtime.select(t60, wanted6, t52)
-    del t52, t60, wanted6
+    t56 = np.abs(w_y)
+    t57 = np.maximum(0.0, -((t56 - t55) * (t56 + t55)))
+    held6 = _runtime.select(t55 < reach, t57, t52)
+    del t52, t55, t57
     kept6 = _runtime.select(tangent6, np.sqrt(held6), root6)
     del root6
-    t61 = above6 - below6
-    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t61 * t61), above6 + below6)
+    t58 = above6 - below6
+    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t58 * t58), above6 + below6)
     del above6, below6, held6, tangent6
-    t62 = 1.0 / (reach * span6)
+    t59 = 1.0 / (reach * span6)
     del span6
-    t63 = t47 * kept6 * t62
-    t64 = t62 * (p_x * t61)
-    s6 = _runtime.select(free6, 0.0, t63 + t64)
-    t65 = p_x * 2.0
-    t66 = t62 * (t65 * kept6)
+    t60 = t47 * kept6 * t59
+    t61 = t59 * (p_x * t58)
+    s6 = _runtime.select(free6, 0.0, t60 + t61)
+    t62 = p_x * 2.0
+    t63 = t59 * (t62 * kept6)
     del kept6
-    t67 = t62 * (s_z * t61)
-    del t61, t62
-    c6 = _runtime.select(free6, 1.0, t66 - t67)
+    t64 = t59 * (s_z * t58)
+    del t58, t59
+    c6 = _runtime.select(free6, 1.0, t63 - t64)
     R2_13 = R1_11 * s6 - T13 * c6
-    t68 = np.sqrt(v_x * v_x)
+    t65 = np.sqrt(v_x * v_x)
     w_x = p_x * c6 + s_z * s6
-    on_axis_5 = np.minimum(t68, np.sqrt(t8 + w_x * w_x)) <= t16
+    on_axis_5 = np.minimum(t65, np.sqrt(t8 + w_x * w_x)) <= t16
     dot_5 = v_x * w_x
     del w_x
-    t69 = w_y * v_x
-    t70 = t69 * t69
-    t71 = 1.0 / np.sqrt(t70 + dot_5 * dot_5)
-    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t71)
+    t66 = w_y * v_x
+    t67 = t66 * t66
+    t68 = 1.0 / np.sqrt(t67 + dot_5 * dot_5)
+    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t68)
     del dot_5
     R2_11 = R1_11 * c6 + T13 * s6
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t72 = _runtime.select(on_axis_5, 0.0, t69 * t71)
-    del t71
-    R3_11 = c5 * R2_11 - R1_13 * t72
+    t69 = _runtime.select(on_axis_5, 0.0, t66 * t68)
+    del t68
+    R3_11 = c5 * R2_11 - R1_13 * t69
     R4_13 = t46 * R2_13 - t48 * R3_11
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R2_23 = R1_21 * s6 - T23 * c6
     R2_21 = R1_21 * c6 + T23 * s6
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    R3_21 = c5 * R2_21 - R1_23 * t72
+    R3_21 = c5 * R2_21 - R1_23 * t69
     R4_23 = t46 * R2_23 - t48 * R3_21
     h_wrist = np.sqrt(R4_13 * R4_13 + R4_23 * R4_23)
-    t73 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t73
-    t74 = 1.0 / h_wrist
+    t70 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t70
+    t71 = 1.0 / h_wrist
     del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t74)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t74)
-    del t74
-    t75 = np.arctan2(s_wrist, c_wrist)
-    t76 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
-    t77 = t76 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
-    del t76
-    t78 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
-    t79 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t80 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t81 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t82 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t83 = t77 & (0.0 <= d5) & t78 & t79 & t80 & t81 & (t82 <= _runtime.ROTATION)
-    del t77, t78, t79, t80, t81, t82
-    t84 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t85 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t86 = t83 & (t84 <= _runtime.ROTATION) & t85 & (np.abs(T41) <= _runtime.ROTATION)
-    del t83, t84, t85
-    t87 = t86 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t86
-    t88 = t87 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t87
-    invalid = np.logical_not(t88)
-    del t88
-    t89 = -(_runtime.FEASIBILITY * (size * 0.5))
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t71)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t71)
+    del t71
+    t72 = np.arctan2(s_wrist, c_wrist)
+    t73 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
+    t74 = t73 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
+    del t73
+    t75 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
+    t76 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t77 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t78 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t79 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t80 = t74 & (0.0 <= d5) & t75 & t76 & t77 & t78 & (t79 <= _runtime.ROTATION)
+    del t74, t75, t76, t77, t78, t79
+    t81 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t82 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t83 = t80 & (t81 <= _runtime.ROTATION) & t82 & (np.abs(T41) <= _runtime.ROTATION)
+    del t80, t81, t82
+    t84 = t83 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t83
+    t85 = t84 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t84
+    invalid = np.logical_not(t85)
+    del t85
+    t86 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
-    t90 = (t89 <= t10) & (t89 <= t13) & (t89 <= t14)
+    t87 = (t86 <= t10) & (t86 <= t13) & (t86 <= t14)
     del t10, t13, t14
-    unreachable = np.logical_not(t90 & (t89 <= t51) & (t89 <= t50))
+    unreachable = np.logical_not(t87 & (t86 <= t51) & (t86 <= t50))
     del t50, t51
-    t91 = _runtime.poison(invalid | unreachable)
+    t88 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t92 = t48 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t72)
-    t93 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t46 * (R1_31 * s6 - T33 * c6) - t92)
-    del R4_13, R4_23, t92
-    t94 = s_wrist * (t48 * R2_13 + t46 * R3_11) - c_wrist * (t48 * R2_23 + t46 * R3_21)
+    t89 = t48 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t69)
+    t90 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t46 * (R1_31 * s6 - T33 * c6) - t89)
+    del R4_13, R4_23, t89
+    t91 = s_wrist * (t48 * R2_13 + t46 * R3_11) - c_wrist * (t48 * R2_23 + t46 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t95 = s_wrist * (R2_11 * t72 + R1_13 * c5) - c_wrist * (t72 * R2_21 + R1_23 * c5)
+    t92 = s_wrist * (R2_11 * t69 + R1_13 * c5) - c_wrist * (t69 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t96 = np.arctan2(t94, t95)
-    del t94, t95
-    t97 = _runtime.wrap_cut(-np.arctan2(t48, t46)) + t91
-    t98 = _runtime.wrap_cut(-np.arctan2(t72, c5)) + t91
-    del c5, t72
-    t99 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t91
+    t93 = np.arctan2(t91, t92)
+    del t91, t92
+    t94 = _runtime.wrap_cut(-np.arctan2(t48, t46)) + t88
+    t95 = _runtime.wrap_cut(-np.arctan2(t69, c5)) + t88
+    del c5, t69
+    t96 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t88
     del c6, s6
-    t100 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t97 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t101 = t100 + t91
+    t98 = t97 + t88
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t102 = _runtime.select(free6, 0.0, t63 - t64)
+    t99 = _runtime.select(free6, 0.0, t60 - t61)
+    del t60, t61
+    c6_bent_behind_front = _runtime.select(free6, 1.0, -(t63 + t64))
     del t63, t64
-    c6_bent_behind_front = _runtime.select(free6, 1.0, -(t66 + t67))
-    del t66, t67
-    t103 = R1_11 * t102 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t102
-    t104 = w_x_bent_behind_front * w_x_bent_behind_front
-    on_axis_5_bent_behind_front = np.minimum(t68, np.sqrt(t8 + t104)) <= t16
-    del t104, t68
+    t100 = R1_11 * t99 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t99
+    t101 = w_x_bent_behind_front * w_x_bent_behind_front
+    on_axis_5_bent_behind_front = np.minimum(t65, np.sqrt(t8 + t101)) <= t16
+    del t101, t65
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t105 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t106 = 1.0 / np.sqrt(t70 + t105)
-    del t105, t70
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t106)
+    t102 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t103 = 1.0 / np.sqrt(t67 + t102)
+    del t102, t67
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t103)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t102
-    t107 = c5_bent_behind_front * R2_11_bent_behind_front
-    t108 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t69 * t106)
-    del t106, t69
-    R3_11_bent_behind_front = t107 - R1_13 * t108
-    del t107
-    t109 = t46 * t103 + t48 * R3_11_bent_behind_front
-    t110 = R1_21 * t102 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t102
-    t111 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t111 - R1_23 * t108
-    del t111
-    t112 = t46 * t110 + t48 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t109 * t109 + t112 * t112)
-    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t73
-    t113 = 1.0 / h_wrist_bent_behind_front
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t99
+    t104 = c5_bent_behind_front * R2_11_bent_behind_front
+    t105 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t66 * t103)
+    del t103, t66
+    R3_11_bent_behind_front = t104 - R1_13 * t105
+    del t104
+    t106 = t46 * t100 + t48 * R3_11_bent_behind_front
+    t107 = R1_21 * t99 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t99
+    t108 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t108 - R1_23 * t105
+    del t108
+    t109 = t46 * t107 + t48 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t106 * t106 + t109 * t109)
+    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t70
+    t110 = 1.0 / h_wrist_bent_behind_front
     del h_wrist_bent_behind_front
-    t114 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t112 * t113)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t109 * t113))
-    del t113
-    t115 = np.arctan2(t114, c_wrist_bent_behind_front)
-    t116 = t109 * c_wrist_bent_behind_front - t112 * t114
-    del t109, t112
-    t117 = t46 * (R1_31 * t102 + T33 * c6_bent_behind_front)
-    t118 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t102)
-    t119 = np.arctan2(t116, -(t117 + t48 * (t118 - R1_33 * t108)))
-    del t116, t117, t118
-    t120 = t114 * (t48 * t103 - t46 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t103
-    t121 = c_wrist_bent_behind_front * (t48 * t110 - t46 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t110, t46, t48
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t108 + R1_13 * c5_bent_behind_front
+    t111 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t109 * t110)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t106 * t110))
+    del t110
+    t112 = np.arctan2(t111, c_wrist_bent_behind_front)
+    t113 = t106 * c_wrist_bent_behind_front - t109 * t111
+    del t106, t109
+    t114 = t46 * (R1_31 * t99 + T33 * c6_bent_behind_front)
+    t115 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t99)
+    t116 = np.arctan2(t113, -(t114 + t48 * (t115 - R1_33 * t105)))
+    del t113, t114, t115
+    t117 = t111 * (t48 * t100 - t46 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t100
+    t118 = c_wrist_bent_behind_front * (t48 * t107 - t46 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t107, t46, t48
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t105 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t108 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    R3_23_bent_behind_front = t105 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
     del R2_21_bent_behind_front
-    t122 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t119 = c_wrist_bent_behind_front * R3_23_bent_behind_front
     del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t123 = np.arctan2(t120 + t121, -(t114 * R3_13_bent_behind_front + t122))
-    del R3_13_bent_behind_front, t114, t120, t121, t122
-    t124 = _runtime.wrap_cut(-np.arctan2(t108, c5_bent_behind_front))
-    del c5_bent_behind_front, t108
-    t125 = t124 + t91
-    del t124
-    t126 = _runtime.wrap_cut(-np.arctan2(t102, c6_bent_behind_front))
-    del c6_bent_behind_front, t102
-    t127 = t126 + t91
-    del t126
+    t120 = np.arctan2(t117 + t118, -(t111 * R3_13_bent_behind_front + t119))
+    del R3_13_bent_behind_front, t111, t117, t118, t119
+    t121 = _runtime.wrap_cut(-np.arctan2(t105, c5_bent_behind_front))
+    del c5_bent_behind_front, t105
+    t122 = t121 + t88
+    del t121
+    t123 = _runtime.wrap_cut(-np.arctan2(t99, c6_bent_behind_front))
+    del c6_bent_behind_front, t99
+    t124 = t123 + t88
+    del t123
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t128 = _runtime.wrap(flip_wrist_bent_behind_back - t115)
-    t129 = _runtime.wrap(flip_wrist_bent_behind_back - t123)
+    t125 = _runtime.wrap(flip_wrist_bent_behind_back - t112)
+    t126 = _runtime.wrap(flip_wrist_bent_behind_back - t120)
     del flip_wrist_bent_behind_back
-    t130 = d5 - a4 * (t21 + t22) - d3 * (t23 - t24)
+    t127 = d5 - a4 * (t21 + t22) - d3 * (t23 - t24)
     del t21, t22, t23, t24
-    t131 = t26 - t27
+    t128 = t26 - t27
     del t26, t27
-    slope__elbow_1_over_ahead_front = t130 * t131
-    t132 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
-    square__elbow_1_over_ahead_front = t130 * t130
-    del t130
-    t133 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
+    slope__elbow_1_over_ahead_front = t127 * t128
+    t129 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
+    square__elbow_1_over_ahead_front = t127 * t127
+    del t127
+    t130 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
     del high__elbow_1
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t133)
-    del low__elbow_1, square__elbow_1_over_ahead_front, t133
-    bend__elbow_1_over_ahead_front = t131 * t131
-    del t131
-    t134 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t132 - t134
-    del t132, t134
-    t135 = inner__elbow_1_over_ahead_front < 0.0
-    t136 = _runtime.sign(slope__elbow_1_over_ahead_front)
-    t137 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t130)
+    del low__elbow_1, square__elbow_1_over_ahead_front, t130
+    bend__elbow_1_over_ahead_front = t128 * t128
+    del t128
+    t131 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t129 - t131
+    del t129, t131
+    t132 = inner__elbow_1_over_ahead_front < 0.0
+    t133 = _runtime.sign(slope__elbow_1_over_ahead_front)
+    t134 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
     del inner__elbow_1_over_ahead_front
-    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t136 * np.sqrt(t137)
-    del t136, t137
-    below__elbow_1_over_ahead_front = _runtime.select(t135, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
+    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t133 * np.sqrt(t134)
+    del t133, t134
+    below__elbow_1_over_ahead_front = _runtime.select(t132, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
     del bend__elbow_1_over_ahead_front, outer__elbow_1_over_ahead_front
-    above__elbow_1_over_ahead_front = _runtime.select(t135, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
-    del miss__elbow_1_over_ahead_front, slope__elbow_1_over_ahead_front, t135
-    t138 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
-    t139 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    above__elbow_1_over_ahead_front = _runtime.select(t132, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
+    del miss__elbow_1_over_ahead_front, slope__elbow_1_over_ahead_front, t132
+    t135 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
+    t136 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
     del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front
-    t140 = _runtime.select(t138, 0.0, t139)
+    t137 = _runtime.select(t135, 0.0, t136)
+    del t135, t136
+    t138 = t137 * t137
+    t139 = 1.0 / (1.0 + t138)
+    t140 = 2.0 * t137 * t139
+    del t137
+    by_c__elbow_1_over_ahead_front = t139 * (1.0 - t138)
     del t138, t139
-    t141 = t140 * t140
-    t142 = 1.0 / (1.0 + t141)
-    t143 = 2.0 * t140 * t142
-    del t140
-    by_c__elbow_1_over_ahead_front = t142 * (1.0 - t141)
-    del t141, t142
-    t144 = t143 * t143 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t144, 1.0 - by_c__elbow_1_over_ahead_front)
-    del t144
-    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t143) + t40 * versine__elbow_1_over_ahead_front
+    t141 = t140 * t140 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t141, 1.0 - by_c__elbow_1_over_ahead_front)
+    del t141
+    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t140) + t40 * versine__elbow_1_over_ahead_front
     del lever_elbow, t40, versine__elbow_1_over_ahead_front
-    t145 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    t142 = cost__elbow_1_over_ahead_front <= whole__elbow_1
     del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t145, by_c__elbow_1_over_ahead_front, 1.0)
+    cosine__elbow_1_over_ahead_front = _runtime.select(t142, by_c__elbow_1_over_ahead_front, 1.0)
     del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t145, -t143, 0.0)
-    del t143, t145
-    t146 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t147 = t20 * cosine__elbow_1_over_ahead_front + t146
-    del t146
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, 1.0, -_runtime.select(tangent_elbow, t147, t20))
-    del t147
-    t148 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t142, -t140, 0.0)
+    del t140, t142
+    t143 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t144 = t20 * cosine__elbow_1_over_ahead_front + t143
+    del t143
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, 1.0, -_runtime.select(tangent_elbow, t144, t20))
+    del t144
+    t145 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
     del cosine__elbow_1_over_ahead_front
-    t149 = _runtime.select(tangent_elbow, t148 - t20 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t148, t20, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, 0.0, t149)
-    del t149
-    t150 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t151 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t146 = _runtime.select(tangent_elbow, t145 - t20 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t145, t20, tangent_elbow
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, 0.0, t146)
+    del t146
+    t147 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t148 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t152 = d5 - a4 * t151 + d3 * t150
-    t153 = reach - t152
-    above6_over_ahead_front = np.maximum(t153, 0.0)
-    t154 = reach + t152
-    del t152
-    below6_over_ahead_front = np.maximum(t154, 0.0)
-    t155 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = np.sqrt(t155)
+    t149 = d5 - a4 * t148 + d3 * t147
+    t150 = reach - t149
+    above6_over_ahead_front = np.maximum(t150, 0.0)
+    t151 = reach + t149
+    del t149
+    below6_over_ahead_front = np.maximum(t151, 0.0)
+    t152 = above6_over_ahead_front * below6_over_ahead_front
+    root6_over_ahead_front = np.sqrt(t152)
     tangent6_over_ahead_front = root6_over_ahead_front - t53 <= t54
     del t53, t54
-    v_x_over_ahead_front = a5 - a4 * t150 - d3 * t151
-    t156 = np.abs(v_x_over_ahead_front)
-    t157 = np.maximum(0.0, t156 - t56)
-    t158 = t56 + t156
-    del t156, t56
-    wanted6_over_ahead_front = np.maximum(np.maximum(0.0, t157 * t157 - t8), np.minimum(t155, t158 * t158 - t8))
-    del t157, t158
-    t159 = 8796093022208.0 * np.abs(t155 - wanted6_over_ahead_front)
-    held6_over_ahead_front = _runtime.select(t159 <= t59, wanted6_over_ahead_front, t155)
-    del t155, t159, t59, wanted6_over_ahead_front
+    v_x_over_ahead_front = a5 - a4 * t147 - d3 * t148
+    t153 = np.abs(v_x_over_ahead_front)
+    t154 = np.maximum(0.0, -((t56 - t153) * (t56 + t153)))
+    del t56
+    held6_over_ahead_front = _runtime.select(t153 < reach, t154, t152)
+    del t152, t153, t154
     kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), root6_over_ahead_front)
     del root6_over_ahead_front
-    t160 = above6_over_ahead_front - below6_over_ahead_front
-    t161 = np.sqrt(4.0 * held6_over_ahead_front + t160 * t160)
+    t155 = above6_over_ahead_front - below6_over_ahead_front
+    t156 = np.sqrt(4.0 * held6_over_ahead_front + t155 * t155)
     del held6_over_ahead_front
     width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t161, width6_over_ahead_front)
-    del t161, tangent6_over_ahead_front, width6_over_ahead_front
-    t162 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t156, width6_over_ahead_front)
+    del t156, tangent6_over_ahead_front, width6_over_ahead_front
+    t157 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t163 = t47 * kept6_over_ahead_front * t162
+    t158 = t47 * kept6_over_ahead_front * t157
     del t47
-    t164 = t162 * (p_x * t160)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t163 + t164)
-    t165 = t162 * (t65 * kept6_over_ahead_front)
-    del kept6_over_ahead_front, t65
-    t166 = t162 * (s_z * t160)
-    del t160, t162
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t165 - t166)
+    t159 = t157 * (p_x * t155)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t158 + t159)
+    t160 = t157 * (t62 * kept6_over_ahead_front)
+    del kept6_over_ahead_front, t62
+    t161 = t157 * (s_z * t155)
+    del t155, t157
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t160 - t161)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t167 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t162 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t168 = t8 + w_x_over_ahead_front * w_x_over_ahead_front
-    on_axis_5_over_ahead_front = np.minimum(t167, np.sqrt(t168)) <= t16
-    del t168
+    t163 = t8 + w_x_over_ahead_front * w_x_over_ahead_front
+    on_axis_5_over_ahead_front = np.minimum(t162, np.sqrt(t163)) <= t16
+    del t163
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t169 = w_y * v_x_over_ahead_front
+    t164 = w_y * v_x_over_ahead_front
     del w_y
-    t170 = t169 * t169
-    t171 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t172 = 1.0 / np.sqrt(t170 + t171)
-    del t171
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t172)
+    t165 = t164 * t164
+    t166 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t167 = 1.0 / np.sqrt(t165 + t166)
+    del t166
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t167)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t173 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t169 * t172)
-    del t172
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t173
-    R4_13_over_ahead_front = t150 * R2_13_over_ahead_front + t151 * R3_11_over_ahead_front
-    t174 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t168 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t164 * t167)
+    del t167
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t168
+    R4_13_over_ahead_front = t147 * R2_13_over_ahead_front + t148 * R3_11_over_ahead_front
+    t169 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t173
-    R4_23_over_ahead_front = t150 * R2_23_over_ahead_front + t151 * R3_21_over_ahead_front
-    t175 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t174 + t175)
-    del t174, t175
-    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t73
-    t176 = 1.0 / h_wrist_over_ahead_front
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t168
+    R4_23_over_ahead_front = t147 * R2_23_over_ahead_front + t148 * R3_21_over_ahead_front
+    t170 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t169 + t170)
+    del t169, t170
+    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t70
+    t171 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t176)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t176)
-    del t176
-    t177 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    unreachable_2 = np.logical_not(t90 & (t89 <= t154) & (t89 <= t153))
-    del t153, t154, t89, t90
-    t178 = _runtime.poison(invalid | unreachable_2)
-    t179 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t171)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t171)
+    del t171
+    t172 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    unreachable_2 = np.logical_not(t87 & (t86 <= t151) & (t86 <= t150))
+    del t150, t151, t86, t87
+    t173 = _runtime.poison(invalid | unreachable_2)
+    t174 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t180 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t175 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t173
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t168
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t150 * R2_33_over_ahead_front + t151 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t147 * R2_33_over_ahead_front + t148 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t181 = np.arctan2(t179 + t180, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t179, t180
-    t182 = t151 * R2_13_over_ahead_front - t150 * R3_11_over_ahead_front
+    t176 = np.arctan2(t174 + t175, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t174, t175
+    t177 = t148 * R2_13_over_ahead_front - t147 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t183 = t151 * R2_23_over_ahead_front - t150 * R3_21_over_ahead_front
+    t178 = t148 * R2_23_over_ahead_front - t147 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t184 = s_wrist_over_ahead_front * t182 - c_wrist_over_ahead_front * t183
-    del t182, t183
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t173 + R1_13 * c5_over_ahead_front
+    t179 = s_wrist_over_ahead_front * t177 - c_wrist_over_ahead_front * t178
+    del t177, t178
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t168 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t185 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t180 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t173 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t168 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t186 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t181 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t187 = np.arctan2(t184, t185 - t186)
-    del t184, t185, t186
-    t188 = _runtime.wrap_cut(np.arctan2(t151, t150)) + t178
-    t189 = _runtime.wrap_cut(-np.arctan2(t173, c5_over_ahead_front))
-    del c5_over_ahead_front, t173
-    t190 = t189 + t178
-    del t189
-    t191 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t182 = np.arctan2(t179, t180 - t181)
+    del t179, t180, t181
+    t183 = _runtime.wrap_cut(np.arctan2(t148, t147)) + t173
+    t184 = _runtime.wrap_cut(-np.arctan2(t168, c5_over_ahead_front))
+    del c5_over_ahead_front, t168
+    t185 = t184 + t173
+    del t184
+    t186 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t192 = _runtime.wrap_cut(t191) + t178
-    del t191
-    t193 = t100 + t178
-    del t100
+    t187 = _runtime.wrap_cut(t186) + t173
+    del t186
+    t188 = t97 + t173
+    del t97
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t194 = _runtime.wrap(t177 + flip_wrist_over_ahead_back)
-    t195 = _runtime.wrap(t187 + flip_wrist_over_ahead_back)
+    t189 = _runtime.wrap(t172 + flip_wrist_over_ahead_back)
+    t190 = _runtime.wrap(t182 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t196 = _runtime.select(free6, 0.0, t163 - t164)
-    del t163, t164
-    c6_over_behind_front = _runtime.select(free6, 1.0, -(t165 + t166))
-    del t165, t166
-    t197 = R1_11 * t196 + T13 * c6_over_behind_front
-    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t196
+    t191 = _runtime.select(free6, 0.0, t158 - t159)
+    del t158, t159
+    c6_over_behind_front = _runtime.select(free6, 1.0, -(t160 + t161))
+    del t160, t161
+    t192 = R1_11 * t191 + T13 * c6_over_behind_front
+    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t191
     del p_x, s_z
-    t198 = w_x_over_behind_front * w_x_over_behind_front
-    on_axis_5_over_behind_front = np.minimum(t167, np.sqrt(t8 + t198)) <= t16
-    del t16, t167, t198, t8
+    t193 = w_x_over_behind_front * w_x_over_behind_front
+    on_axis_5_over_behind_front = np.minimum(t162, np.sqrt(t8 + t193)) <= t16
+    del t16, t162, t193, t8
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t199 = dot_5_over_behind_front * dot_5_over_behind_front
-    t200 = 1.0 / np.sqrt(t170 + t199)
-    del t170, t199
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t200)
+    t194 = dot_5_over_behind_front * dot_5_over_behind_front
+    t195 = 1.0 / np.sqrt(t165 + t194)
+    del t165, t194
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t195)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t196
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t191
     del R1_11
-    t201 = c5_over_behind_front * R2_11_over_behind_front
-    t202 = _runtime.select(on_axis_5_over_behind_front, 0.0, t169 * t200)
-    del t169, t200
-    R3_11_over_behind_front = t201 - R1_13 * t202
-    del t201
-    t203 = t150 * t197 - t151 * R3_11_over_behind_front
-    t204 = R1_21 * t196 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t196
+    t196 = c5_over_behind_front * R2_11_over_behind_front
+    t197 = _runtime.select(on_axis_5_over_behind_front, 0.0, t164 * t195)
+    del t164, t195
+    R3_11_over_behind_front = t196 - R1_13 * t197
+    del t196
+    t198 = t147 * t192 - t148 * R3_11_over_behind_front
+    t199 = R1_21 * t191 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t191
     del R1_21
-    t205 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t205 - R1_23 * t202
-    del t205
-    t206 = t150 * t204 - t151 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t203 * t203 + t206 * t206)
-    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t73
-    del t73
-    t207 = 1.0 / h_wrist_over_behind_front
+    t200 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t200 - R1_23 * t197
+    del t200
+    t201 = t147 * t199 - t148 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t198 * t198 + t201 * t201)
+    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t70
+    del t70
+    t202 = 1.0 / h_wrist_over_behind_front
     del h_wrist_over_behind_front
-    t208 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t206 * t207)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t203 * t207))
-    del t207
-    t209 = np.arctan2(t208, c_wrist_over_behind_front)
-    t210 = t203 * c_wrist_over_behind_front - t206 * t208
-    del t203, t206
-    t211 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t196)
-    t212 = t150 * (R1_31 * t196 + T33 * c6_over_behind_front)
+    t203 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t201 * t202)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t198 * t202))
+    del t202
+    t204 = np.arctan2(t203, c_wrist_over_behind_front)
+    t205 = t198 * c_wrist_over_behind_front - t201 * t203
+    del t198, t201
+    t206 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t191)
+    t207 = t147 * (R1_31 * t191 + T33 * c6_over_behind_front)
     del R1_31
-    t213 = np.arctan2(t210, t151 * (t211 - R1_33 * t202) - t212)
-    del R1_33, t210, t211, t212
-    t214 = t208 * (t151 * t197 + t150 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t197
-    t215 = c_wrist_over_behind_front * (t151 * t204 + t150 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t150, t151, t204
-    R3_13_over_behind_front = R2_11_over_behind_front * t202 + R1_13 * c5_over_behind_front
+    t208 = np.arctan2(t205, t148 * (t206 - R1_33 * t197) - t207)
+    del R1_33, t205, t206, t207
+    t209 = t203 * (t148 * t192 + t147 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t192
+    t210 = c_wrist_over_behind_front * (t148 * t199 + t147 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t147, t148, t199
+    R3_13_over_behind_front = R2_11_over_behind_front * t197 + R1_13 * c5_over_behind_front
     del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t202 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    R3_23_over_behind_front = t197 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
     del R1_23, R2_21_over_behind_front
-    t216 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t211 = c_wrist_over_behind_front * R3_23_over_behind_front
     del R3_23_over_behind_front, c_wrist_over_behind_front
-    t217 = np.arctan2(t214 + t215, -(t208 * R3_13_over_behind_front + t216))
-    del R3_13_over_behind_front, t208, t214, t215, t216
-    t218 = _runtime.wrap_cut(-np.arctan2(t202, c5_over_behind_front))
-    del c5_over_behind_front, t202
-    t219 = t218 + t178
-    del t218
-    t220 = _runtime.wrap_cut(-np.arctan2(t196, c6_over_behind_front))
-    del c6_over_behind_front, t196
-    t221 = t220 + t178
-    del t220
+    t212 = np.arctan2(t209 + t210, -(t203 * R3_13_over_behind_front + t211))
+    del R3_13_over_behind_front, t203, t209, t210, t211
+    t213 = _runtime.wrap_cut(-np.arctan2(t197, c5_over_behind_front))
+    del c5_over_behind_front, t197
+    t214 = t213 + t173
+    del t213
+    t215 = _runtime.wrap_cut(-np.arctan2(t191, c6_over_behind_front))
+    del c6_over_behind_front, t191
+    t216 = t215 + t173
+    del t215
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t222 = _runtime.wrap(flip_wrist_over_behind_back - t209)
-    t223 = _runtime.wrap(t217 + flip_wrist_over_behind_back)
+    t217 = _runtime.wrap(flip_wrist_over_behind_back - t204)
+    t218 = _runtime.wrap(t212 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t224 = no_link_elbow | free6
+    t219 = no_link_elbow | free6
     del free6, no_link_elbow
-    t225 = _runtime.status(invalid, unreachable, t224 | on_axis_5 | aligned_wrist)
+    t220 = _runtime.status(invalid, unreachable, t219 | on_axis_5 | aligned_wrist)
     del aligned_wrist, on_axis_5
-    t226 = t224 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t221 = t219 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t227 = _runtime.status(invalid, unreachable, t226)
-    del t226, unreachable
-    t228 = t224 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t222 = _runtime.status(invalid, unreachable, t221)
+    del t221, unreachable
+    t223 = t219 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t229 = _runtime.status(invalid, unreachable_2, t228)
-    del t228
-    t230 = t224 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t224
-    t231 = _runtime.status(invalid, unreachable_2, t230)
-    del invalid, t230, unreachable_2
+    t224 = _runtime.status(invalid, unreachable_2, t223)
+    del t223
+    t225 = t219 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t219
+    t226 = _runtime.status(invalid, unreachable_2, t225)
+    del invalid, t225, unreachable_2
     return (
-        _runtime.wrap_cut(t75) + t91,
-        _runtime.wrap_cut(t93) + t91,
-        _runtime.wrap_cut(-t96) + t91,
-        t97,
+        _runtime.wrap_cut(t72) + t88,
+        _runtime.wrap_cut(t90) + t88,
+        _runtime.wrap_cut(-t93) + t88,
+        t94,
+        t95,
+        t96,
         t98,
-        t99,
-        t101,
-        _runtime.wrap(t75 + flip_wrist) + t91,
-        _runtime.wrap_cut(-t93) + t91,
-        _runtime.wrap(flip_wrist - t96) + t91,
-        t97,
+        _runtime.wrap(t72 + flip_wrist) + t88,
+        _runtime.wrap_cut(-t90) + t88,
+        _runtime.wrap(flip_wrist - t93) + t88,
+        t94,
+        t95,
+        t96,
         t98,
-        t99,
-        t101,
-        _runtime.wrap_cut(-t115) + t91,
-        _runtime.wrap_cut(-t119) + t91,
-        _runtime.wrap_cut(-t123) + t91,
-        t97,
-        t125,
-        t127,
-        t101,
-        t128 + t91,
-        _runtime.wrap_cut(t119) + t91,
-        t129 + t91,
-        t97,
-        t125,
-        t127,
-        t101,
-        _runtime.wrap_cut(t177) + t178,
-        _runtime.wrap_cut(t181) + t178,
-        _runtime.wrap_cut(t187) + t178,
+        _runtime.wrap_cut(-t112) + t88,
+        _runtime.wrap_cut(-t116) + t88,
+        _runtime.wrap_cut(-t120) + t88,
+        t94,
+        t122,
+        t124,
+        t98,
+        t125 + t88,
+        _runtime.wrap_cut(t116) + t88,
+        t126 + t88,
+        t94,
+        t122,
+        t124,
+        t98,
+        _runtime.wrap_cut(t172) + t173,
+        _runtime.wrap_cut(t176) + t173,
+        _runtime.wrap_cut(t182) + t173,
+        t183,
+        t185,
+        t187,
         t188,
-        t190,
-        t192,
-        t193,
-        t194 + t178,
-        _runtime.wrap_cut(-t181) + t178,
-        t195 + t178,
+        t189 + t173,
+        _runtime.wrap_cut(-t176) + t173,
+        t190 + t173,
+        t183,
+        t185,
+        t187,
         t188,
-        t190,
-        t192,
-        t193,
-        _runtime.wrap_cut(-t209) + t178,
-        _runtime.wrap_cut(-t213) + t178,
-        _runtime.wrap_cut(t217) + t178,
+        _runtime.wrap_cut(-t204) + t173,
+        _runtime.wrap_cut(-t208) + t173,
+        _runtime.wrap_cut(t212) + t173,
+        t183,
+        t214,
+        t216,
         t188,
-        t219,
-        t221,
-        t193,
-        t222 + t178,
-        _runtime.wrap_cut(t213) + t178,
-        t223 + t178,
+        t217 + t173,
+        _runtime.wrap_cut(t208) + t173,
+        t218 + t173,
+        t183,
+        t214,
+        t216,
         t188,
-        t219,
-        t221,
-        t193,
-        t225,
-        t225,
-        t227,
-        t227,
-        t229,
-        t229,
-        t231,
-        t231,
+        t220,
+        t220,
+        t222,
+        t222,
+        t224,
+        t224,
+        t226,
+        t226,
     )
 
 

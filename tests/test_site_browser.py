@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from libraries import FORWARD
+from libraries import EXPLORED
 
 if find_spec("playwright") is None:  # each worker would import it to collect this file
     pytest.skip("Playwright is not installed", allow_module_level=True)
@@ -22,7 +22,7 @@ CHROMIUM = (
     shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 )
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-NAMES = FORWARD
+NAMES = EXPLORED
 """The mechanisms that have an explorer."""
 HEAVIEST = 1_000_000
 """Bytes of a page with all that it loads, but the figures."""

@@ -125,7 +125,8 @@ def page(mechanism: Mechanism) -> str:
         "link": md.section,
         "anchor": anchor,
         "plain": plain,
-        "explorer": explorer(info(derivation)) if derivation.has_forward_map else "",
+        "unexplored": unexplored(derivation),
+        "explorer": "" if unexplored(derivation) else explorer(info(derivation)),
         "graph": fenced("graph", rests_on(derivation, proof)),
         "operations": {n: describe_operations(p) for n, p in mechanism.lowered.items()},
         "parameter_rows": [
@@ -197,6 +198,15 @@ def info(derivation: Derivation) -> dict[str, Any]:
         "joints": {j.name: {"label": label(j.name)} for j in derivation.joints},
         "task": [label(name) for name in derivation.task],
     }
+
+
+def unexplored(derivation: Derivation) -> str:
+    """Why a mechanism has no explorer, or an empty string."""
+    if not derivation.has_forward_map:
+        return "This mechanism has no forward map in closed form"
+    if any(f.name == "ik" and len(f.inputs) > 1 for f in derivation.functions):
+        return "The inverse of this mechanism takes more than the pose of the hand"
+    return ""
 
 
 def explorer(told: Mapping[str, Any]) -> str:

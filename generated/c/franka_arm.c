@@ -1740,7 +1740,7 @@ CF_INLINE void franka_arm_ik_whole_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void franka_arm_ik_whole(const franka_arm_params *params, const real_t T[16],
+CF_OUT_OF_LINE void franka_arm_ik_whole(const franka_arm_params *params, const real_t T[16],
     const real_t theta7[1], real_t q[56],
     uint8_t status[8])
 {

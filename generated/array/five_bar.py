@@ -229,7 +229,7 @@ def _passive_angles(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6
@@ -333,7 +333,7 @@ def _skeleton(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     c1_x = L1 * c1
     c2_x = L0 + L2 * c2
     t5 = c1_x - c2_x
@@ -466,7 +466,7 @@ def _jacobian_parallel(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6
@@ -567,7 +567,7 @@ def _jacobian_serial(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -672,7 +672,7 @@ def _jacobian(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -793,7 +793,7 @@ def _determinant(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -894,7 +894,7 @@ def _singularities(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -1001,7 +1001,7 @@ def _condition_number(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.75 * size))
+    t4 = -(ops.feasibility * (0.9375 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6

@@ -318,7 +318,7 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t13
     t23 = t14 * (d_y - t14) + t16 * (t15 - t16)
     t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t12 * ops.feasibility
-    t25 = l * size * 0.1875
+    t25 = l * size * 0.234375
     t26 = l * l
     t27 = mu * t23
     t28 = size * t15
@@ -614,7 +614,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     s_w = ops.sign(d_y * a_x)
@@ -760,7 +760,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
@@ -880,7 +880,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     s_w = ops.sign(a_x * d_y)
@@ -1060,7 +1060,7 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
@@ -1181,7 +1181,7 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
@@ -1306,7 +1306,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     s_w = ops.sign(d_y * a_x)
@@ -1483,7 +1483,7 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     t21 = l * l
     t22 = size * t10
     s_w = ops.sign(d_y * a_x)

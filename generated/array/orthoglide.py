@@ -291,7 +291,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -540,7 +540,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -685,7 +685,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -810,7 +810,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -982,7 +982,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -1103,7 +1103,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -1232,7 +1232,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)
@@ -1404,7 +1404,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.1875
+    t14 = L * size * 0.234375
     t15 = L * L
     g_1 = size * d_z
     s_w = ops.sign(d_y * a_x)

@@ -190,7 +190,7 @@ def _passive_angles(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -275,7 +275,7 @@ def _skeleton(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -370,7 +370,7 @@ def _jacobian_parallel(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -456,7 +456,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_serial(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = -(ops.feasibility * (0.1875 * (b + t2)))
+    t3 = -(ops.feasibility * (0.234375 * (b + t2)))
     t4 = rho1 - rho2
     t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
     failed = ops.opposite(t1) | ops.opposite(t5)
@@ -514,7 +514,7 @@ def _jacobian(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -603,7 +603,7 @@ def _determinant(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -674,7 +674,7 @@ def _singularities(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -751,7 +751,7 @@ def _condition_number(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * (0.1875 * size))
+    t3 = -(ops.feasibility * (0.234375 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5

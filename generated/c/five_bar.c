@@ -219,7 +219,7 @@ CF_INLINE void five_bar_passive_angles_kernel(const int single, const five_bar_p
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t22 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t23 <= t9) & (-t23 <= t7) & (-t23 <= t8));
     const int failed = (!(t21 & (CLOSEDFORM_C(0.0) <= L4) & t22)) | unreachable;
     const real_t t24 = cf_poison(single, failed);
@@ -331,7 +331,7 @@ CF_INLINE void five_bar_skeleton_kernel(const int single, const five_bar_params 
     const int t4 = cf_nought(theta1) + cf_nought(theta2) == 0;
     const real_t t5 = L3 + L4;
     const real_t size = L0 + L1 + L2 + t5;
-    const real_t t6 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t6 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const real_t c1_x = L1 * c1;
     const real_t c2_x = L0 + L2 * c2;
     const real_t t7 = c1_x - c2_x;
@@ -542,7 +542,7 @@ CF_INLINE void five_bar_jacobian_parallel_kernel(const int single, const five_ba
     const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t19 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t20 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t20 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t20 <= t8) & (-t20 <= t6) & (-t20 <= t7));
     const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L4) & t19)) | unreachable;
     const real_t t21 = cf_poison(single, failed);
@@ -688,7 +688,7 @@ CF_INLINE void five_bar_jacobian_serial_kernel(const int single, const five_bar_
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t23 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t24 <= t9) & (-t24 <= t7) & (-t24 <= t8));
     const int failed = (!(t22 & (CLOSEDFORM_C(0.0) <= L4) & t23)) | unreachable;
     const real_t t25 = cf_poison(single, failed);
@@ -828,7 +828,7 @@ CF_INLINE void five_bar_jacobian_kernel(const int single, const five_bar_params 
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t24 = t23 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t25 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t26 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t26 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t26 <= t10) & (-t26 <= t8) & (-t26 <= t9));
     const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= L4) & t25)) | unreachable;
     const real_t t27 = cf_poison(single, failed);
@@ -979,7 +979,7 @@ CF_INLINE void five_bar_determinant_kernel(const int single, const five_bar_para
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t24 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t25 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t25 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t25 <= t9) & (-t25 <= t7) & (-t25 <= t8));
     const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= L4) & t24)) | unreachable;
     const real_t t26 = cf_poison(single, failed);
@@ -1111,7 +1111,7 @@ CF_INLINE void five_bar_singularities_kernel(const int single, const five_bar_pa
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t23 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t24 <= t9) & (-t24 <= t7) & (-t24 <= t8));
     const int failed = (!(t22 & (CLOSEDFORM_C(0.0) <= L4) & t23)) | unreachable;
     const real_t t25 = cf_poison(single, failed);
@@ -1257,7 +1257,7 @@ CF_INLINE void five_bar_condition_number_kernel(const int single, const five_bar
     const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L2) & (CLOSEDFORM_C(0.0) <= L3);
     const int t27 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t28 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.9375) * size);
     const int unreachable = !((-t28 <= t8) & (-t28 <= t6) & (-t28 <= t7));
     const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= L4) & t27)) | unreachable;
     const real_t t29 = cf_poison(single, failed);

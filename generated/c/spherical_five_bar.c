@@ -4,12 +4,12 @@
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
- *   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
- *   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
- *   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
+ *   skeleton: 66 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 66 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 66 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
+ *   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  */
@@ -298,7 +298,7 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const int t3 = t2 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t5 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t6 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t6 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const real_t c1_x = r * c_alpha1;
     const real_t t7 = r * cf_abs(s_alpha2);
     const real_t t8 = c2 * t7;
@@ -334,7 +334,7 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const real_t t25 = t20 - t21;
     const real_t t26 = cf_rarely(single, same, r_2, r);
     const real_t t27 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t26;
-    const real_t t28 = CLOSEDFORM_FEASIBILITY * (r * t27 * CLOSEDFORM_C(0.5));
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t27);
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t29 = cf_rarely(single, same, c1_y, t15);
     const real_t t30 = cf_rarely(single, same, c1_x, t12);
@@ -672,10 +672,10 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
     const int t46 = t45 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t48 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t49 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t49 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t50 = (-t49 <= t30) & (-t49 <= t27) & (-t49 <= t29);
     const real_t t51 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
-    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * t51 * CLOSEDFORM_C(0.5));
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t51);
     const int failed = (!(t47 & t48)) | (!(t50 & (-t52 <= t36) & (-t52 <= t37)));
     const real_t t53 = cf_poison(single, failed);
     const real_t t54 = t11 * X + t18 * Y;
@@ -927,10 +927,10 @@ CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
     const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t53 = (-t52 <= t30) & (-t52 <= t27) & (-t52 <= t29);
     const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
-    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t54);
     const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t36) & (-t55 <= t37)));
     const real_t t56 = cf_poison(single, failed);
     const real_t t57 = s_gamma * c2_z;
@@ -1159,10 +1159,10 @@ CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
     const int t51 = t50 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t52 = t51 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t53 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t54 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t54 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t55 = (-t54 <= t30) & (-t54 <= t27) & (-t54 <= t29);
     const real_t t56 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
-    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * t56 * CLOSEDFORM_C(0.5));
+    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t56);
     const int failed = (!(t52 & t53)) | (!(t55 & (-t57 <= t36) & (-t57 <= t37)));
     const real_t t58 = cf_poison(single, failed);
     const real_t t59 = B_11 * (A_02 * t47 + A_03 * A_22) / t48 + t58;
@@ -1422,10 +1422,10 @@ CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
     const int t49 = t48 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t50 = t49 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t51 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t52 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t53 = (-t52 <= t30) & (-t52 <= t27) & (-t52 <= t29);
     const real_t t54 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
-    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * t54 * CLOSEDFORM_C(0.5));
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t54);
     const int failed = (!(t50 & t51)) | (!(t53 & (-t55 <= t36) & (-t55 <= t37)));
     const real_t t56 = cf_poison(single, failed);
     const real_t t57 = s_gamma * c2_z;
@@ -1681,10 +1681,10 @@ CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
     const int t62 = t61 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
     const int t63 = t62 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
     const int t64 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t65 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const real_t t65 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t66 = (-t65 <= t30) & (-t65 <= t27) & (-t65 <= t29);
     const real_t t67 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t38;
-    const real_t t68 = CLOSEDFORM_FEASIBILITY * (r * t67 * CLOSEDFORM_C(0.5));
+    const real_t t68 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t67);
     const int failed = (!(t63 & t64)) | (!(t66 & (-t68 <= t36) & (-t68 <= t37)));
     const real_t t69 = cf_poison(single, failed);
     const real_t t70 = t40 + t42;

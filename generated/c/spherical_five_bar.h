@@ -4,12 +4,12 @@
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
- *   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
- *   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
- *   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
+ *   skeleton: 66 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 66 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 66 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
+ *   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
  *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *

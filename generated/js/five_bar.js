@@ -247,7 +247,7 @@ function _passive_angles(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t22 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
     const t23 = failed ? NaN : 0;
     const t24 = Math.atan2(t2 - t15, t1 + A_11);
@@ -331,7 +331,7 @@ function _skeleton(v, o) {
     const t3 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t4 = L3 + L4;
     const size = L0 + L1 + L2 + t4;
-    const t5 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t5 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const c1_x = L1 * c1;
     const c2_x = L0 + L2 * c2;
     const t6 = c1_x - c2_x;
@@ -492,7 +492,7 @@ function _jacobian_parallel(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t16 = t15 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t17 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t18 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t18 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t16 && 0.0 <= L4 && t17) || !(t18 <= t8 && t18 <= t6 && t18 <= t7);
     const t19 = failed ? NaN : 0;
     const t20 = t10 * t12;
@@ -610,7 +610,7 @@ function _jacobian_serial(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t22 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
     const t23 = failed ? NaN : 0;
     const A_11_below = t12 - t15;
@@ -725,7 +725,7 @@ function _jacobian(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t23 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t23 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t10 && t23 <= t8 && t23 <= t9);
     const t24 = failed ? NaN : 0;
     const A_21 = t3 + A_11;
@@ -849,7 +849,7 @@ function _determinant(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t23 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t23 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t9 && t23 <= t7 && t23 <= t8);
     const t24 = failed ? NaN : 0;
     const A_11_below = t12 - t15;
@@ -959,7 +959,7 @@ function _singularities(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t22 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
     const t23 = failed ? NaN : 0;
     const Delta = apart * height;
@@ -1078,7 +1078,7 @@ function _condition_number(v, o) {
         Number.isFinite(L3) && Number.isFinite(L4);
     const t23 = t22 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
     const t24 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t25 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const t25 = -(_runtime.FEASIBILITY * (0.9375 * size));
     const failed = !(t23 && 0.0 <= L4 && t24) || !(t25 <= t8 && t25 <= t6 && t25 <= t7);
     const t26 = failed ? NaN : 0;
     const A_11_below = t11 - t14;

@@ -347,7 +347,7 @@ function _skeleton(v, o) {
     const in_line = nu <= t13;
     const t20 = t14 * (d_y - t14) + t16 * (t15 - t16);
     const t21 = Math.abs(in_line ? -t20 : 0.0) <= t12 * _runtime.FEASIBILITY;
-    const t22 = l * size * 0.1875;
+    const t22 = l * size * 0.234375;
     const t23 = size * t15;
     const s_w = d_y * a_x < 0 ? -1 : 1;
     const g_2 = size * (d_y + a_x * s_w);
@@ -637,7 +637,7 @@ function _jacobian_parallel(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.1875;
+    const t19 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t21 = t16 - t20;
@@ -772,7 +772,7 @@ function _jacobian_serial(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.1875;
+    const t19 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t16 - t20;
@@ -827,7 +827,7 @@ function _jacobian_serial_common(v, o) {
     const t19 = t17 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t18;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t20 = size * size;
-    const t21 = l * size * 0.1875;
+    const t21 = l * size * 0.234375;
     const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
         t14;
     const t23 = !t19 || !t22 ? NaN : 0;
@@ -939,7 +939,7 @@ function _jacobian(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.1875;
+    const t20 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1103,7 +1103,7 @@ function _determinant(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.1875;
+    const t20 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1216,7 +1216,7 @@ function _singularities(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.1875;
+    const t20 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1334,7 +1334,7 @@ function _condition_number(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.1875;
+    const t20 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t22 = t17 - t21;
@@ -1498,7 +1498,7 @@ function _constraint(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.1875;
+    const t19 = l * size * 0.234375;
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t21 = t16 - t20;

@@ -184,7 +184,7 @@ function _passive_angles(v, o) {
     const A_11 = n_1 * (coincide ? rho1 : t8);
     const t9 = Math.atan2(A_12, A_11);
     const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t11 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t11 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t3 && t11 <= t5 && t11
         <= t6);
     const t12 = failed ? NaN : 0;
@@ -254,7 +254,7 @@ function _skeleton(v, o) {
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
     const size = b + t2;
-    const t3 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t3 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const t4 = t2 - b;
     const t5 = rho1 - rho2;
     const t6 = b + t5;
@@ -366,7 +366,7 @@ function _jacobian_parallel(v, o) {
     const t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
     const A_11 = n_1 * (coincide ? rho1 : t7);
     const t8 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t9 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t9 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const failed = !(Number.isFinite(b) && 0.0 <= b && t8) || !(t9 <= t6 && t9 <= t4 && t9 <=
         t5);
     const t10 = failed ? NaN : 0;
@@ -443,7 +443,7 @@ function _jacobian_serial(v, o) {
     const b = v[2];
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
-    const t3 = -(_runtime.FEASIBILITY * (0.1875 * (b + t2)));
+    const t3 = -(_runtime.FEASIBILITY * (0.234375 * (b + t2)));
     const t4 = rho1 - rho2;
     const unreachable = !(t3 <= t2 - b && t3 <= b + t4 && t3 <= b - t4);
     const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || unreachable;
@@ -523,7 +523,7 @@ function _jacobian(v, o) {
     const A_12 = n_1 * height;
     const Delta = b * height;
     const t8 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t9 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t9 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const failed = !(Number.isFinite(b) && 0.0 <= b && t8) || !(t9 <= t3 && t9 <= t5 && t9 <=
         t6);
     const t10 = failed ? NaN : 0;
@@ -613,7 +613,7 @@ function _determinant(v, o) {
     const Delta = b * (slack <= t3 ? 0.0 : (b <= t3 ? 0.0 : t7));
     const t8 = rho1 * rho2 / Delta;
     const t9 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t10 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t10 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const failed = !(Number.isFinite(b) && 0.0 <= b && t9) || !(t10 <= t2 && t10 <= t5 && t10 <=
         t6);
     const t11 = failed ? NaN : 0;
@@ -679,7 +679,7 @@ function _singularities(v, o) {
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
     const size = b + t2;
-    const t3 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t3 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const t4 = t2 - b;
     const t5 = rho1 - rho2;
     const t6 = b + t5;
@@ -784,7 +784,7 @@ function _condition_number(v, o) {
     const t12 = t9 - A_11 * t10;
     const t13 = square1 + square2 + Math.sqrt(t11 * t11 + 4.0 * (t12 * t12));
     const t14 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t15 = -(_runtime.FEASIBILITY * (0.1875 * size));
+    const t15 = -(_runtime.FEASIBILITY * (0.234375 * size));
     const failed = !(Number.isFinite(b) && 0.0 <= b && t14) || !(t15 <= t6 && t15 <= t4 && t15
         <= t5);
     const t16 = t13 / (2.0 * (b * height)) + (failed ? NaN : 0);

@@ -273,7 +273,7 @@ def _passive_angles(theta1, theta2, L0, L1, L2, L3, L4):
     del t18
     t20 = t19 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t19
-    t21 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t21 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t21 <= t9) & (t21 <= t7) & (t21 <= t8))
     del t21, t7, t8, t9
@@ -351,7 +351,7 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
     del t2
     t4 = L3 + L4
     size = L0 + L1 + L2 + t4
-    t5 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t5 = -(_runtime.FEASIBILITY * (0.9375 * size))
     c1_x = L1 * c1
     del c1
     c2_x = L0 + L2 * c2
@@ -523,7 +523,7 @@ def _jacobian_parallel(theta1, theta2, L0, L1, L2, L3, L4):
     del t15
     t17 = t16 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t16
-    t18 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t18 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t18 <= t8) & (t18 <= t6) & (t18 <= t7))
     del t18, t6, t7, t8
@@ -643,7 +643,7 @@ def _jacobian_serial(theta1, theta2, L0, L1, L2, L3, L4):
     del t19
     t21 = t20 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t20
-    t22 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t22 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t22 <= t9) & (t22 <= t7) & (t22 <= t8))
     del t22, t7, t8, t9
@@ -759,7 +759,7 @@ def _jacobian(theta1, theta2, L0, L1, L2, L3, L4):
     del t20
     t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t21
-    t23 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t23 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t23 <= t10) & (t23 <= t8) & (t23 <= t9))
     del t10, t23, t8, t9
@@ -889,7 +889,7 @@ def _determinant(theta1, theta2, L0, L1, L2, L3, L4):
     del t20
     t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t21
-    t23 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t23 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t23 <= t9) & (t23 <= t7) & (t23 <= t8))
     del t23, t7, t8, t9
@@ -1000,7 +1000,7 @@ def _singularities(theta1, theta2, L0, L1, L2, L3, L4):
     del t19
     t21 = t20 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t20
-    t22 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t22 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t22 <= t9) & (t22 <= t7) & (t22 <= t8))
     del t22, t7, t8, t9
@@ -1121,7 +1121,7 @@ def _condition_number(theta1, theta2, L0, L1, L2, L3, L4):
     del t22
     t24 = t23 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t23
-    t25 = -(_runtime.FEASIBILITY * (0.75 * size))
+    t25 = -(_runtime.FEASIBILITY * (0.9375 * size))
     del size
     unreachable = np.logical_not((t25 <= t8) & (t25 <= t6) & (t25 <= t7))
     del t25, t6, t7, t8

@@ -407,7 +407,7 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     del t15, t17
     t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
     del t13
-    t23 = l * size * 0.1875
+    t23 = l * size * 0.234375
     t24 = size * t16
     s_w = _runtime.sign(d_y * a_x)
     g_2 = size * (d_y + a_x * s_w)
@@ -729,7 +729,7 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -885,7 +885,7 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     t18 = l * l - t17
     del t17
     slack = np.maximum(t18, 0.0)
-    t19 = l * size * 0.1875
+    t19 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -952,7 +952,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     del t17, t18
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t20 = size * size
-    t21 = l * size * 0.1875
+    t21 = l * size * 0.234375
     del size
     t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
     del t14
@@ -1070,7 +1070,7 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1265,7 +1265,7 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1392,7 +1392,7 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1519,7 +1519,7 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t20 = l * l - t19
     del t19
     slack = np.maximum(t20, 0.0)
-    t21 = l * size * 0.1875
+    t21 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1720,7 +1720,7 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.1875
+    t20 = l * size * 0.234375
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack

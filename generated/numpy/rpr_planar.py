@@ -216,7 +216,7 @@ def _passive_angles(rho1, rho2, b):
     del coincide, n_1, t8
     t9 = np.arctan2(A_12, A_11)
     t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t11 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t11 = -(_runtime.FEASIBILITY * (0.234375 * size))
     del size
     unreachable = np.logical_not((t11 <= t3) & (t11 <= t5) & (t11 <= t6))
     del t11, t3, t5, t6
@@ -280,7 +280,7 @@ def _skeleton(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t3 = -(_runtime.FEASIBILITY * (0.234375 * size))
     t4 = t2 - b
     del t2
     t5 = rho1 - rho2
@@ -398,7 +398,7 @@ def _jacobian_parallel(rho1, rho2, b):
     A_11 = n_1 * _runtime.select(coincide, rho1, t7)
     del t7
     t8 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t9 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t9 = -(_runtime.FEASIBILITY * (0.234375 * size))
     unreachable = np.logical_not((t9 <= t6) & (t9 <= t4) & (t9 <= t5))
     del t4, t5, t6, t9
     t10 = _runtime.poison(np.logical_not(t8) | unreachable)
@@ -474,7 +474,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 def _jacobian_serial(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
-    t3 = -(_runtime.FEASIBILITY * (0.1875 * (b + t2)))
+    t3 = -(_runtime.FEASIBILITY * (0.234375 * (b + t2)))
     t4 = rho1 - rho2
     t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
     del t2, t3, t4
@@ -556,7 +556,7 @@ def _jacobian(rho1, rho2, b):
     Delta = b * height
     del height
     t8 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t9 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t9 = -(_runtime.FEASIBILITY * (0.234375 * size))
     del size
     unreachable = np.logical_not((t9 <= t3) & (t9 <= t5) & (t9 <= t6))
     del t3, t5, t6, t9
@@ -649,7 +649,7 @@ def _determinant(rho1, rho2, b):
     t8 = rho1 * rho2 / (b * height)
     del height
     t9 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t10 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t10 = -(_runtime.FEASIBILITY * (0.234375 * size))
     del size
     unreachable = np.logical_not((t10 <= t2) & (t10 <= t5) & (t10 <= t6))
     del t10, t2, t5, t6
@@ -709,7 +709,7 @@ def _singularities(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t3 = -(_runtime.FEASIBILITY * (0.234375 * size))
     t4 = t2 - b
     del t2
     t5 = rho1 - rho2
@@ -825,7 +825,7 @@ def _condition_number(rho1, rho2, b):
     t13 = square1 + square2 + np.sqrt(t11 * t11 + 4.0 * (t12 * t12))
     del square1, square2, t11, t12
     t14 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t15 = -(_runtime.FEASIBILITY * (0.1875 * size))
+    t15 = -(_runtime.FEASIBILITY * (0.234375 * size))
     del size
     unreachable = np.logical_not((t15 <= t6) & (t15 <= t4) & (t15 <= t5))
     del t15, t4, t5, t6

@@ -3,12 +3,12 @@
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
-#   skeleton: 66 compare and select, 74 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel: 66 compare and select, 83 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial: 66 compare and select, 69 add, 11 divide, 108 multiply, 7 sincos, 4 sqrt
-#   jacobian: 66 compare and select, 95 add, 23 divide, 146 multiply, 7 sincos, 4 sqrt
-#   singularities: 66 compare and select, 71 add, 11 divide, 110 multiply, 7 sincos, 4 sqrt
-#   condition_number: 66 compare and select, 111 add, 19 divide, 155 multiply, 7 sincos, 8 sqrt
+#   skeleton: 66 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel: 66 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 66 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
+#   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
+#   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
+#   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
 #   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -352,7 +352,7 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t2
     t4 = t3 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t3
-    t5 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t5 = -(_runtime.FEASIBILITY * (r * 0.3125))
     c1_x = r * c_alpha1
     del c_alpha1
     t6 = r * np.abs(s_alpha2)
@@ -401,36 +401,38 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t24 = t19 - t20
     del t20
     t25 = _runtime.select(same, r_2, r)
-    t26 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t25) * 0.5)
+    t26 = r * 0.625 * (r * 2.2737367544323206e-13 + t25)
+    t27 = -(_runtime.FEASIBILITY * t26)
+    del t26
     over = 1.0 / mu
     del mu
-    t27 = _runtime.select(same, c1_y, t14)
-    t28 = _runtime.select(same, c1_x, t11)
-    a_x = _runtime.select(all_same, 1.0, -t28)
-    t29 = _runtime.select(same, t14, c1_y)
+    t28 = _runtime.select(same, c1_y, t14)
+    t29 = _runtime.select(same, c1_x, t11)
+    a_x = _runtime.select(all_same, 1.0, -t29)
+    t30 = _runtime.select(same, t14, c1_y)
     del t14
-    t30 = _runtime.select(same, t11, c1_x)
+    t31 = _runtime.select(same, t11, c1_x)
     del t11
-    t31 = a_x * t29 + t27 * t30
-    t32 = _runtime.select(same, c1_z, t15)
-    t33 = _runtime.select(same, t15, c1_z)
+    t32 = a_x * t30 + t28 * t31
+    t33 = _runtime.select(same, c1_z, t15)
+    t34 = _runtime.select(same, t15, c1_z)
     del t15
-    m_y = a_x * t33 + t30 * t32
-    t34 = over * (t27 * t31 + t32 * m_y)
-    m_x = t27 * t33 - t29 * t32
-    t35 = over * (a_x * t31 - t32 * m_x)
-    del t31
-    t36 = over * (a_x * m_y + t27 * m_x)
+    m_y = a_x * t34 + t31 * t33
+    t35 = over * (t28 * t32 + t33 * m_y)
+    m_x = t28 * t34 - t30 * t33
+    t36 = over * (a_x * t32 - t33 * m_x)
+    del t32
+    t37 = over * (a_x * m_y + t28 * m_x)
     del m_x, m_y
-    nu = t34 * t34 + t35 * t35 + t36 * t36
+    nu = t35 * t35 + t36 * t36 + t37 * t37
     in_line = nu <= t17
     del t17
-    t37 = _runtime.select(all_same, 1.0, r)
-    t38 = t32 * t37
-    s_w = _runtime.sign(-(t27 * a_x))
-    t39 = t37 * (t27 - a_x * s_w)
-    del t37
-    nu_w = _runtime.select(in_line, over * (2.0 * (t38 * t38) + t39 * t39), nu)
+    t38 = _runtime.select(all_same, 1.0, r)
+    t39 = t33 * t38
+    s_w = _runtime.sign(-(t28 * a_x))
+    t40 = t38 * (t28 - a_x * s_w)
+    del t38
+    nu_w = _runtime.select(in_line, over * (2.0 * (t39 * t39) + t40 * t40), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -440,118 +442,118 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     inner = np.maximum(t24, 0.0)
     share = 1.0 / (outer + inner)
     slack = np.maximum(t21, 0.0)
-    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t40)
-    del t40
-    t41 = over_a * (a_x * t30 - t27 * t29 - t32 * t33) + along
-    del t29, t30, t33
-    t42 = nu - _runtime.select(same, r_2 * r_2, t16) + t41 * t41
-    del nu, r_2, same, t16, t41
-    t43 = share * np.sqrt(outer * inner * slack * (t19 + t22))
+    along = _runtime.select(all_same, 0.0, t41)
+    del t41
+    t42 = over_a * (a_x * t31 - t28 * t30 - t33 * t34) + along
+    del t30, t31, t34
+    t43 = nu - _runtime.select(same, r_2 * r_2, t16) + t42 * t42
+    del nu, r_2, same, t16, t42
+    t44 = share * np.sqrt(outer * inner * slack * (t19 + t22))
     del inner, outer, share, slack, t19, t22
-    rho = _runtime.select(all_same, r_1, t43)
-    del all_same, r_1, t43
-    left = t42 + rho * rho
-    del t42
-    t44 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    rho = _runtime.select(all_same, r_1, t44)
+    del all_same, r_1, t44
+    left = t43 + rho * rho
+    del t43
+    t45 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t45 = t44 * rho
-    del t44
-    t46 = left + t45
-    t47 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (-t26 <= t46)
+    t46 = t45 * rho
+    del t45
+    t47 = left + t46
+    t48 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (t27 <= t47)
     del t21, t23, t24, t5
-    t48 = t45 - left
-    del left, t45
-    failed = np.logical_not(t4) | np.logical_not(t47 & (-t26 <= t48))
-    del t26, t4, t47
-    t49 = _runtime.poison(failed)
+    t49 = t46 - left
+    del left, t46
+    failed = np.logical_not(t4) | np.logical_not(t48 & (t27 <= t49))
+    del t27, t4, t48
+    t50 = _runtime.poison(failed)
     del failed
-    t50 = 0.0 + t49
-    t51 = c1_x + t49
-    t52 = c1_y + t49
-    t53 = c1_z + t49
-    t54 = t9 + t49
+    t51 = 0.0 + t50
+    t52 = c1_x + t50
+    t53 = c1_y + t50
+    t54 = c1_z + t50
+    t55 = t9 + t50
     del t9
-    t55 = t13 + t49
+    t56 = t13 + t50
     del t13
-    t56 = -t10 + t49
+    t57 = -t10 + t50
     del t10
-    t57 = c2_y + t49
+    t58 = c2_y + t50
     del c2_y
-    t58 = c2_z + t49
+    t59 = c2_z + t50
     del c2_z
     X = over_a * along
     del along, over_a
-    upper = np.maximum(t46, 0.0)
-    del t46
-    lower = np.maximum(t48, 0.0)
-    del t48
+    upper = np.maximum(t47, 0.0)
+    del t47
+    lower = np.maximum(t49, 0.0)
+    del t49
     both = upper + lower
-    t59 = (both <= _runtime.VANISHING * (r * t25)) | in_line
+    t60 = (both <= _runtime.VANISHING * (r * t25)) | in_line
     del t25
     half = rho / both
     del both
-    Y = _runtime.select(t59, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t60, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t60 = t28 * X + t34 * Y
-    del t28
-    w_x = _runtime.select(in_line, -(t38 * s_w), t27 * t36 - t32 * t35)
+    t61 = t29 * X + t35 * Y
+    del t29
+    w_x = _runtime.select(in_line, -(t39 * s_w), t28 * t37 - t33 * t36)
     del s_w
-    t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t59, upper
-    h = part * t61
-    del part, t61
-    t62 = w_x * h
+    t62 = _runtime.select(t60, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t60, upper
+    h = part * t62
+    del part, t62
+    t63 = w_x * h
     del w_x
-    t63 = t27 * X + t35 * Y
-    w_y = _runtime.select(in_line, -t38, a_x * t36 + t32 * t34)
-    del t38
-    t64 = w_y * h
+    t64 = t28 * X + t36 * Y
+    w_y = _runtime.select(in_line, -t39, a_x * t37 + t33 * t35)
+    del t39
+    t65 = w_y * h
     del w_y
-    t65 = t32 * X + t36 * Y
-    del X, Y, t32, t36
-    w_z = _runtime.select(in_line, t39, -(a_x * t35 + t27 * t34))
-    del a_x, in_line, t27, t34, t35, t39
-    t66 = w_z * h
+    t66 = t33 * X + t37 * Y
+    del X, Y, t33, t37
+    w_z = _runtime.select(in_line, t40, -(a_x * t36 + t28 * t35))
+    del a_x, in_line, t28, t35, t36, t40
+    t67 = w_z * h
     del h, w_z
     return (
-        t50,
-        t50,
-        t50,
         t51,
-        t50,
-        t50,
+        t51,
+        t51,
+        t52,
+        t51,
         t51,
         t52,
         t53,
         t54,
         t55,
-        t50,
         t56,
+        t51,
         t57,
         t58,
-        c1_x - (t60 - t62) + t49,
-        c1_y - (t63 - t64) + t49,
-        c1_z - (t65 - t66) + t49,
-        t50,
-        t50,
-        t50,
+        t59,
+        c1_x - (t61 - t63) + t50,
+        c1_y - (t64 - t65) + t50,
+        c1_z - (t66 - t67) + t50,
         t51,
-        t50,
-        t50,
+        t51,
+        t51,
+        t52,
+        t51,
         t51,
         t52,
         t53,
         t54,
         t55,
-        t50,
         t56,
+        t51,
         t57,
         t58,
-        c1_x - (t60 + t62) + t49,
-        c1_y - (t63 + t64) + t49,
-        c1_z - (t65 + t66) + t49,
+        t59,
+        c1_x - (t61 + t63) + t50,
+        c1_y - (t64 + t65) + t50,
+        c1_z - (t66 + t67) + t50,
     )
 
 
@@ -733,53 +735,55 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t45
     t47 = t46 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t46
-    t48 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t49 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    t48 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t49 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
     del t38
-    t50 = (t48 <= t29) & (t48 <= t26) & (t48 <= t28) & (-t49 <= t36)
+    t50 = -(_runtime.FEASIBILITY * t49)
+    del t49
+    t51 = (t48 <= t29) & (t48 <= t26) & (t48 <= t28) & (t50 <= t36)
     del t26, t28, t29, t36, t48
-    failed = np.logical_not(t47) | np.logical_not(t50 & (-t49 <= t37))
-    del t37, t47, t49, t50
-    t51 = _runtime.poison(failed)
+    failed = np.logical_not(t47) | np.logical_not(t51 & (t50 <= t37))
+    del t37, t47, t50, t51
+    t52 = _runtime.poison(failed)
     del failed
-    t52 = t11 * X + t18 * Y
+    t53 = t11 * X + t18 * Y
     w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
     del t21
-    t53 = w_y * h
+    t54 = w_y * h
     del w_y
-    t54 = t52 - t53
-    t55 = t15 * X + t19 * Y
+    t55 = t53 - t54
+    t56 = t15 * X + t19 * Y
     del X, Y, t15, t19
     w_z = _runtime.select(in_line, t22, -(a_x * t18 + t11 * t17))
     del a_x, in_line, t11, t17, t18, t22
-    t56 = w_z * h
+    t57 = w_z * h
     del h, w_z
-    t57 = t55 - t56
-    t58 = t40 + t42
+    t58 = t56 - t57
+    t59 = t40 + t42
     del t40, t42
-    t59 = t52 + t53
-    del t52, t53
-    t60 = t55 + t56
-    del t55, t56
+    t60 = t53 + t54
+    del t53, t54
+    t61 = t56 + t57
+    del t56, t57
     return (
-        c1_x - t43 + t51,
-        c1_y - t54 + t51,
-        c1_z - t57 + t51,
-        -t43 + t51,
-        -t54 + t51,
-        -t57 + t51,
-        t4 - t43 + t51,
-        t6 - t54 + t51,
-        t7 - t57 + t51,
-        c1_x - t58 + t51,
-        c1_y - t59 + t51,
-        c1_z - t60 + t51,
-        -t58 + t51,
-        -t59 + t51,
-        -t60 + t51,
-        t4 - t58 + t51,
-        t6 - t59 + t51,
-        t7 - t60 + t51,
+        c1_x - t43 + t52,
+        c1_y - t55 + t52,
+        c1_z - t58 + t52,
+        -t43 + t52,
+        -t55 + t52,
+        -t58 + t52,
+        t4 - t43 + t52,
+        t6 - t55 + t52,
+        t7 - t58 + t52,
+        c1_x - t59 + t52,
+        c1_y - t60 + t52,
+        c1_z - t61 + t52,
+        -t59 + t52,
+        -t60 + t52,
+        -t61 + t52,
+        t4 - t59 + t52,
+        t6 - t60 + t52,
+        t7 - t61 + t52,
     )
 
 
@@ -967,37 +971,39 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t48
     t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t49
-    t51 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t52 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
     del t38
-    t53 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (-t52 <= t36)
+    t53 = -(_runtime.FEASIBILITY * t52)
+    del t52
+    t54 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (t53 <= t36)
     del t26, t28, t29, t36, t51
-    failed = np.logical_not(t50) | np.logical_not(t53 & (-t52 <= t37))
-    del t37, t50, t52, t53
-    t54 = _runtime.poison(failed)
+    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t37))
+    del t37, t50, t53, t54
+    t55 = _runtime.poison(failed)
     del failed
-    t55 = s_gamma * c2_z
+    t56 = s_gamma * c2_z
     del s_gamma
-    t56 = t11 * X + t17 * Y
+    t57 = t11 * X + t17 * Y
     del X, Y, t11, t17
     w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
     del in_line, s_w, t10, t15, t18, t19, t21
-    t57 = w_x * h
+    t58 = w_x * h
     del h, w_x
-    t58 = c_gamma * c2_z
+    t59 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t43) - t3 * (t7 + t46)
-    t59 = t40 + t42
+    B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t43) - t3 * (t7 + t46)
+    t60 = t40 + t42
     del t40, t42
-    t60 = t44 + t45
+    t61 = t44 + t45
     del t44, t45
-    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
-    del t3, t5, t55, t56, t57, t58, t6, t7
+    B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61)
+    del t3, t5, t56, t57, t58, t59, t6, t7
     return (
-        c1_z * t43 - c1_y * t46 + t54,
-        B_22 + t54,
-        c1_z * t59 - c1_y * t60 + t54,
-        B_22_below + t54,
+        c1_z * t43 - c1_y * t46 + t55,
+        B_22 + t55,
+        c1_z * t60 - c1_y * t61 + t55,
+        B_22_below + t55,
     )
 
 
@@ -1190,83 +1196,85 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t49
     t51 = t50 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t50
-    t52 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t53 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    t52 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t53 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
     del t38
-    t54 = (t52 <= t29) & (t52 <= t26) & (t52 <= t28) & (-t53 <= t36)
+    t54 = -(_runtime.FEASIBILITY * t53)
+    del t53
+    t55 = (t52 <= t29) & (t52 <= t26) & (t52 <= t28) & (t54 <= t36)
     del t26, t28, t29, t36, t52
-    failed = np.logical_not(t51) | np.logical_not(t54 & (-t53 <= t37))
-    del t37, t51, t53, t54
-    t55 = _runtime.poison(failed)
+    failed = np.logical_not(t51) | np.logical_not(t55 & (t54 <= t37))
+    del t37, t51, t54, t55
+    t56 = _runtime.poison(failed)
     del failed
-    t56 = B_11 * (A_02 * t47 + A_03 * A_22) / Delta + t55
-    t57 = s_gamma * c2_z
+    t57 = B_11 * (A_02 * t47 + A_03 * A_22) / Delta + t56
+    t58 = s_gamma * c2_z
     del s_gamma
-    t58 = t11 * X + t17 * Y
+    t59 = t11 * X + t17 * Y
     del X, Y, t11, t17
     w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
     del in_line, s_w, t10, t15, t18, t19, t21
-    t59 = w_x * h
+    t60 = w_x * h
     del h, w_x
-    t60 = t58 - t59
-    A_21 = t5 - t60
-    t61 = c_gamma * c2_z
+    t61 = t59 - t60
+    A_21 = t5 - t61
+    t62 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t57 * A_21 - t61 * A_22 - t3 * t47
-    t62 = -(B_22 * (t46 * A_02 - t43 * A_03) / Delta) + t55
-    A_01 = c1_x - t60
-    t63 = -(B_11 * (t47 * A_01 + A_03 * A_21) / Delta) + t55
+    B_22 = t58 * A_21 - t62 * A_22 - t3 * t47
+    t63 = -(B_22 * (t46 * A_02 - t43 * A_03) / Delta) + t56
+    A_01 = c1_x - t61
+    t64 = -(B_11 * (t47 * A_01 + A_03 * A_21) / Delta) + t56
     del t47
-    t64 = B_22 * (t46 * A_01 - A_03 * t60) / Delta + t55
+    t65 = B_22 * (t46 * A_01 - A_03 * t61) / Delta + t56
     del A_03, t46
-    t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    t66 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t66 = -(B_22 * (t43 * A_01 - A_02 * t60) / Delta) + t55
-    del A_01, A_02, B_22, t43, t60
-    t67 = t40 + t42
+    t67 = -(B_22 * (t43 * A_01 - A_02 * t61) / Delta) + t56
+    del A_01, A_02, B_22, t43, t61
+    t68 = t40 + t42
     del t40, t42
-    t68 = t44 + t45
+    t69 = t44 + t45
     del t44, t45
-    B_11_below = c1_z * t67 - c1_y * t68
-    A_02_below = c1_y - t67
+    B_11_below = c1_z * t68 - c1_y * t69
+    A_02_below = c1_y - t68
     del c1_y
-    t69 = t7 + t68
+    t70 = t7 + t69
     del t7
-    A_03_below = c1_z - t68
+    A_03_below = c1_z - t69
     del c1_z
-    A_22_below = t6 - t67
+    A_22_below = t6 - t68
     del t6
-    t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below)
-    t71 = t58 + t59
-    del t58, t59
-    A_21_below = t5 - t71
+    t71 = B_11_below * (A_02_below * t70 + A_03_below * A_22_below)
+    t72 = t59 + t60
+    del t59, t60
+    A_21_below = t5 - t72
     del t5
-    B_22_below = t57 * A_21_below - t61 * A_22_below - t3 * t69
-    del t3, t57, t61
-    t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below)
-    A_01_below = c1_x - t71
+    B_22_below = t58 * A_21_below - t62 * A_22_below - t3 * t70
+    del t3, t58, t62
+    t73 = B_22_below * (t69 * A_02_below - t68 * A_03_below)
+    A_01_below = c1_x - t72
     del c1_x
-    t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below)
-    del t69
-    t74 = B_22_below * (t68 * A_01_below - A_03_below * t71)
-    del A_03_below, t68
-    t75 = A_22_below * A_01_below - A_02_below * A_21_below
+    t74 = B_11_below * (t70 * A_01_below + A_03_below * A_21_below)
+    del t70
+    t75 = B_22_below * (t69 * A_01_below - A_03_below * t72)
+    del A_03_below, t69
+    t76 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t76 = B_22_below * (t67 * A_01_below - A_02_below * t71)
-    del A_01_below, A_02_below, B_22_below, t67, t71
+    t77 = B_22_below * (t68 * A_01_below - A_02_below * t72)
+    del A_01_below, A_02_below, B_22_below, t68, t72
     return (
-        t56,
-        t62,
+        t57,
         t63,
         t64,
-        t65 + t55,
-        t66,
-        -(t70 / Delta) + t55,
-        t72 / Delta + t55,
-        t73 / Delta + t55,
-        -(t74 / Delta) + t55,
-        B_11_below * t75 / Delta + t55,
-        t76 / Delta + t55,
+        t65,
+        t66 + t56,
+        t67,
+        -(t71 / Delta) + t56,
+        t73 / Delta + t56,
+        t74 / Delta + t56,
+        -(t75 / Delta) + t56,
+        B_11_below * t76 / Delta + t56,
+        t77 / Delta + t56,
     )
 
 
@@ -1454,41 +1462,43 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t48
     t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t49
-    t51 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t52 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
     del t38
-    t53 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (-t52 <= t36)
+    t53 = -(_runtime.FEASIBILITY * t52)
+    del t52
+    t54 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (t53 <= t36)
     del t26, t28, t29, t36, t51
-    failed = np.logical_not(t50) | np.logical_not(t53 & (-t52 <= t37))
-    del t37, t50, t52, t53
-    t54 = _runtime.poison(failed)
+    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t37))
+    del t37, t50, t53, t54
+    t55 = _runtime.poison(failed)
     del failed
-    t55 = s_gamma * c2_z
+    t56 = s_gamma * c2_z
     del s_gamma
-    t56 = t11 * X + t17 * Y
+    t57 = t11 * X + t17 * Y
     del X, Y, t11, t17
     w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
     del in_line, s_w, t10, t15, t18, t19, t21
-    t57 = w_x * h
+    t58 = w_x * h
     del w_x
-    t58 = c_gamma * c2_z
+    t59 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t43) - t3 * (t7 + t46)
+    B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t43) - t3 * (t7 + t46)
     Delta = mu * nu * h
     del h, mu, nu
-    t59 = t40 + t42
+    t60 = t40 + t42
     del t40, t42
-    t60 = t44 + t45
+    t61 = t44 + t45
     del t44, t45
-    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
-    del t3, t5, t55, t56, t57, t58, t6, t7
+    B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61)
+    del t3, t5, t56, t57, t58, t59, t6, t7
     return (
-        c1_z * t43 - c1_y * t46 + t54,
-        B_22 + t54,
-        Delta + t54,
-        c1_z * t59 - c1_y * t60 + t54,
-        B_22_below + t54,
-        -Delta + t54,
+        c1_z * t43 - c1_y * t46 + t55,
+        B_22 + t55,
+        Delta + t55,
+        c1_z * t60 - c1_y * t61 + t55,
+        B_22_below + t55,
+        -Delta + t55,
     )
 
 
@@ -1719,68 +1729,70 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t59
     t61 = t60 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t60
-    t62 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t63 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
+    t62 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t63 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
     del t38
-    t64 = (t62 <= t29) & (t62 <= t26) & (t62 <= t28) & (-t63 <= t36)
+    t64 = -(_runtime.FEASIBILITY * t63)
+    del t63
+    t65 = (t62 <= t29) & (t62 <= t26) & (t62 <= t28) & (t64 <= t36)
     del t26, t28, t29, t36, t62
-    failed = np.logical_not(t61) | np.logical_not(t64 & (-t63 <= t37))
-    del t37, t61, t63, t64
-    t65 = _runtime.poison(failed)
+    failed = np.logical_not(t61) | np.logical_not(t65 & (t64 <= t37))
+    del t37, t61, t64, t65
+    t66 = _runtime.poison(failed)
     del failed
-    t66 = t40 + t42
+    t67 = t40 + t42
     del t40, t42
-    A_01_below = c1_x - t66
+    A_01_below = c1_x - t67
     del c1_x
-    t67 = t44 + t45
+    t68 = t44 + t45
     del t44, t45
-    A_02_below = c1_y - t67
+    A_02_below = c1_y - t68
     del c1_y
-    t68 = A_01_below * A_01_below + A_02_below * A_02_below
-    t69 = t47 + t48
+    t69 = A_01_below * A_01_below + A_02_below * A_02_below
+    t70 = t47 + t48
     del t47, t48
-    A_03_below = c1_z - t69
+    A_03_below = c1_z - t70
     del c1_z
-    strut_below = np.sqrt(t68 + A_03_below * A_03_below)
-    del t68
+    strut_below = np.sqrt(t69 + A_03_below * A_03_below)
+    del t69
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t70 = t66 * radial_x_below + t67 * radial_y_below + t69 * radial_z_below
-    t71 = t66 - radial_x_below * t70
-    t72 = t67 - radial_y_below * t70
-    t73 = t69 - radial_z_below * t70
-    del t70
-    square1_below = t71 * t71 + t72 * t72 + t73 * t73
-    A_21_below = t4 - t66
-    del t4, t66
-    A_22_below = t6 - t67
-    del t6, t67
-    t74 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t7 - t69
-    del t69, t7
-    off2_below = t74 + radial_z_below * A_23_below
-    del t74
+    t71 = t67 * radial_x_below + t68 * radial_y_below + t70 * radial_z_below
+    t72 = t67 - radial_x_below * t71
+    t73 = t68 - radial_y_below * t71
+    t74 = t70 - radial_z_below * t71
+    del t71
+    square1_below = t72 * t72 + t73 * t73 + t74 * t74
+    A_21_below = t4 - t67
+    del t4, t67
+    A_22_below = t6 - t68
+    del t6, t68
+    t75 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t70
+    del t7, t70
+    off2_below = t75 + radial_z_below * A_23_below
+    del t75
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t75 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t76 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t75 + t2_z_below * t2_z_below
-    del t75
-    t76 = square1_below - square2_below
-    t77 = t71 * t2_x_below + t72 * t2_y_below + t73 * t2_z_below
-    del t2_x_below, t2_y_below, t2_z_below, t71, t72, t73
-    t78 = square1_below + square2_below + np.sqrt(t76 * t76 + 4.0 * (t77 * t77))
-    del square1_below, square2_below, t76, t77
+    square2_below = t76 + t2_z_below * t2_z_below
+    del t76
+    t77 = square1_below - square2_below
+    t78 = t72 * t2_x_below + t73 * t2_y_below + t74 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t72, t73, t74
+    t79 = square1_below + square2_below + np.sqrt(t77 * t77 + 4.0 * (t78 * t78))
+    del square1_below, square2_below, t77, t78
     return (
-        strut * t56 / t57 + t65,
-        strut_below * t78 / t57 + t65,
+        strut * t56 / t57 + t66,
+        strut_below * t79 / t57 + t66,
     )
 
 

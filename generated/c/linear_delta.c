@@ -47,10 +47,10 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = cf_rounded(single, one, a_x * t9) + cf_rounded(single, one, t2 * d_y);
     const real_t t10 = cf_rarely(single, same, t6, t1);
@@ -74,42 +74,43 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t21), t22);
     const real_t t23 = cf_rounded(single, one, t9 * (d_y - t9)) + cf_rounded(single, one, t11 * (t10 - t11));
-    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t23 * CLOSEDFORM_C(0.5));
+    const real_t t24 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t23 * CLOSEDFORM_C(0.5));
     const real_t t25 = cf_rounded(single, one, nu * (t24 * t24)) + mu * CLOSEDFORM_C(0.25);
-    const real_t t26 = cf_rounded(single, one, l * l) - cf_select(all_same, CLOSEDFORM_C(0.0), t25);
-    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = l * size * CLOSEDFORM_C(0.1875);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t28 = t20 * h;
-    const real_t t29 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
-    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t31 & (CLOSEDFORM_C(0.0) <= l) & t32);
-    const real_t t33 = cf_rarely(single, in_line, -t23, CLOSEDFORM_C(0.0));
-    const int t34 = cf_abs(t33) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t35 = t34 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t26);
-    const int unreachable = !t35;
-    const real_t t36 = cf_poison(single, invalid | unreachable);
-    const real_t t37 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
+    const real_t t26 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t25);
+    const real_t t27 = cf_rounded(single, one, l * l) - t26;
+    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = l * size * CLOSEDFORM_C(0.1875);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t28, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t29 = t20 * h;
+    const real_t t30 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
+    const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t32 & (CLOSEDFORM_C(0.0) <= l) & t33);
+    const real_t t34 = cf_rarely(single, in_line, -t23, CLOSEDFORM_C(0.0));
+    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t27);
+    const int unreachable = !t36;
+    const real_t t37 = cf_poison(single, invalid | unreachable);
+    const real_t t38 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_y = cf_rarely(single, in_line, -t19, a_x * t18 + t10 * t13);
-    const real_t t38 = h * w_y;
-    const real_t t39 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t24);
+    const real_t t39 = h * w_y;
+    const real_t t40 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t24);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t13);
-    const real_t t40 = h * w_z;
-    const real_t t41 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t28 - t29 + t36;
-    p[1] = -(t37 + t38) + t36;
-    p[2] = -(t39 + t40) + t36;
-    p[3] = -(t29 + t28) + t36;
-    p[4] = t38 - t37 + t36;
-    p[5] = t40 - t39 + t36;
-    status[0] = t41;
-    status[1] = t41;
+    const real_t t41 = h * w_z;
+    const real_t t42 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t29 - t30 + t37;
+    p[1] = -(t38 + t39) + t37;
+    p[2] = -(t40 + t41) + t37;
+    p[3] = -(t30 + t29) + t37;
+    p[4] = t39 - t38 + t37;
+    p[5] = t41 - t40 + t37;
+    status[0] = t42;
+    status[1] = t42;
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void linear_delta_fk_whole(const linear_delta_params *params,
+CF_OUT_OF_LINE void linear_delta_fk_whole(const linear_delta_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
     const real_t one = cf_one();
@@ -364,10 +365,10 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
     const int all_same = u_u + v_v <= t14;
     const int same = u_u <= t14;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t7);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t7);
     const real_t t15 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t15 + t7 * d_y;
     const real_t t16 = cf_rarely(single, same, t12, t4);
@@ -389,8 +390,8 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t25 * t25) + g_2 * g_2);
     const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t26, t27);
-    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
-    const real_t t29 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t28 * t28) + mu * CLOSEDFORM_C(0.25));
+    const real_t t28 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
+    const real_t t29 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t28 * t28) + mu * CLOSEDFORM_C(0.25));
     const real_t t30 = l * l - t29;
     const int t31 = t23 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t30);
     const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t31);
@@ -810,10 +811,10 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -832,10 +833,10 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);
     const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
     const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
     const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
@@ -998,9 +999,9 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1019,10 +1020,10 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);
     const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
     const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t21 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t22 = l * l - t21;
     const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
     const real_t t23 = l * size * CLOSEDFORM_C(0.234375);
@@ -1047,7 +1048,7 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void linear_delta_jacobian_serial_whole(const linear_delta_params *params,
+CF_OUT_OF_LINE void linear_delta_jacobian_serial_whole(const linear_delta_params *params,
     const real_t q[3], real_t B[6])
 {
     linear_delta_jacobian_serial_whole_kernel(1, params, q, B);
@@ -1262,9 +1263,9 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1285,14 +1286,14 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
     const real_t part = cf_rarely(single, in_line, t16, t18);
     const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
     const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
     const real_t t26 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
@@ -1474,9 +1475,9 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1496,14 +1497,14 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
     const real_t part = cf_rarely(single, in_line, t16, t18);
     const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
     const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
     const real_t Delta = t17 * h;
@@ -1616,9 +1617,9 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1638,10 +1639,10 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
     const real_t part = cf_rarely(single, in_line, t16, t18);
     const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
     const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
@@ -1772,10 +1773,10 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -1795,14 +1796,14 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
     const real_t part = cf_rarely(single, in_line, t16, t18);
     const real_t t19 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
     const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t12 * t20;
     const real_t t22 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t23 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t24 = l * l - t23;
     const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
     const real_t t25 = l * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t26 = t22 * h;
     const real_t t27 = t21 - t26;
     const real_t t28 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
@@ -1967,10 +1968,10 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
     const int same = u_u <= t8;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -1989,14 +1990,14 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);
     const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t19 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
     const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
     const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t22 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = t21 * h;
     const real_t t26 = t20 - t25;
     const real_t t27 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);

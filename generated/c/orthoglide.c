@@ -49,14 +49,14 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = cf_rounded(single, one, a_x * t4) + cf_rounded(single, one, rho1 * d_y);
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = cf_rounded(single, one, a_x * t5) + cf_rounded(single, one, rho1 * d_z);
     const real_t t7 = cf_rounded(single, one, d_y * m_z) + cf_rounded(single, one, d_z * t6);
     const real_t t8 = over * t7;
@@ -76,41 +76,42 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t12), t13);
     const real_t t14 = cf_rounded(single, one, t4 * (d_y - t4)) + cf_rounded(single, one, t5 * (d_z - t5));
-    const real_t t15 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t14 * CLOSEDFORM_C(0.5));
+    const real_t t15 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t14 * CLOSEDFORM_C(0.5));
     const real_t t16 = cf_rounded(single, one, nu * (t15 * t15)) + mu * CLOSEDFORM_C(0.25);
-    const real_t t17 = cf_rounded(single, one, L * L) - cf_select(all_same, CLOSEDFORM_C(0.0), t16);
-    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t t18 = L * size * CLOSEDFORM_C(0.1875);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t18, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t19 = w_x * h;
-    const real_t t20 = rho1 * CLOSEDFORM_C(0.5) - (rho1 + t8 * t15);
-    const int t21 = cf_nought(L) == 0;
-    const int t22 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t21 & (CLOSEDFORM_C(0.0) <= L) & t22);
-    const real_t t23 = cf_rarely(single, in_line, -t14, CLOSEDFORM_C(0.0));
-    const int t24 = cf_abs(t23) <= t2 * CLOSEDFORM_FEASIBILITY;
-    const int t25 = t24 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t17);
-    const int unreachable = !t25;
-    const real_t t26 = cf_poison(single, invalid | unreachable);
+    const real_t t17 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t16);
+    const real_t t18 = cf_rounded(single, one, L * L) - t17;
+    const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t t19 = L * size * CLOSEDFORM_C(0.1875);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t19, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t20 = w_x * h;
+    const real_t t21 = rho1 * CLOSEDFORM_C(0.5) - (rho1 + t8 * t15);
+    const int t22 = cf_nought(L) == 0;
+    const int t23 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t22 & (CLOSEDFORM_C(0.0) <= L) & t23);
+    const real_t t24 = cf_rarely(single, in_line, -t14, CLOSEDFORM_C(0.0));
+    const int t25 = cf_abs(t24) <= t2 * CLOSEDFORM_FEASIBILITY;
+    const int t26 = t25 & (-(CLOSEDFORM_FEASIBILITY * t19) <= t18);
+    const int unreachable = !t26;
+    const real_t t27 = cf_poison(single, invalid | unreachable);
     const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t8));
-    const real_t t27 = w_y * h;
-    const real_t t28 = n_y * t15 - d_y * CLOSEDFORM_C(0.5);
+    const real_t t28 = w_y * h;
+    const real_t t29 = n_y * t15 - d_y * CLOSEDFORM_C(0.5);
     const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t8);
-    const real_t t29 = w_z * h;
-    const real_t t30 = n_z * t15 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t31 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t19 - t20 + t26;
-    p[1] = t27 - t28 + t26;
-    p[2] = t29 - t30 + t26;
-    p[3] = -(t19 + t20) + t26;
-    p[4] = -(t27 + t28) + t26;
-    p[5] = -(t29 + t30) + t26;
-    status[0] = t31;
-    status[1] = t31;
+    const real_t t30 = w_z * h;
+    const real_t t31 = n_z * t15 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t32 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t20 - t21 + t27;
+    p[1] = t28 - t29 + t27;
+    p[2] = t30 - t31 + t27;
+    p[3] = -(t20 + t21) + t27;
+    p[4] = -(t28 + t29) + t27;
+    p[5] = -(t30 + t31) + t27;
+    status[0] = t32;
+    status[1] = t32;
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_fk_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_fk_whole(const orthoglide_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
     const real_t one = cf_one();
@@ -332,14 +333,14 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t4;
     const int all_same = u_u + v_v <= t5;
     const int same = u_u <= t5;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t6 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t6 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t6 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t7 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t7 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t8 = a_x * t7 + rho1 * d_z;
     const real_t t9 = over * (d_y * m_z + d_z * t8);
     const real_t m_x = d_y * t7 - d_z * t6;
@@ -357,8 +358,8 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t14 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t14, t15);
-    const real_t t16 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
-    const real_t t17 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t16 * t16) + mu * CLOSEDFORM_C(0.25));
+    const real_t t16 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t17 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t16 * t16) + mu * CLOSEDFORM_C(0.25));
     const real_t t18 = L * L - t17;
     const int t19 = t12 & (-(CLOSEDFORM_FEASIBILITY * t13) <= t18);
     const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | (!t19);
@@ -510,7 +511,7 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_skeleton_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_skeleton_whole(const orthoglide_params *params, const real_t q[3],
     real_t points[114])
 {
     orthoglide_skeleton_whole_kernel(1, params, q, points);
@@ -937,14 +938,14 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -960,8 +961,8 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
-    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t11 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
     const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
@@ -1014,7 +1015,7 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_parallel_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_parallel_whole(const orthoglide_params *params, const real_t q[3],
     real_t A[18])
 {
     orthoglide_jacobian_parallel_whole_kernel(1, params, q, A);
@@ -1242,14 +1243,14 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -1265,8 +1266,8 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
-    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t11 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
     const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
@@ -1295,7 +1296,7 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_serial_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_serial_whole(const orthoglide_params *params, const real_t q[3],
     real_t B[6])
 {
     orthoglide_jacobian_serial_whole_kernel(1, params, q, B);
@@ -1487,14 +1488,14 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -1511,12 +1512,12 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
     const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
-    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t12 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
     const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
     const real_t A_11 = t16 + t17;
@@ -1575,7 +1576,7 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_jacobian_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_jacobian_whole(const orthoglide_params *params, const real_t q[3],
     real_t J[18])
 {
     orthoglide_jacobian_whole_kernel(1, params, q, J);
@@ -1825,14 +1826,14 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -1849,12 +1850,12 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
     const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
-    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t12 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
     const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
     const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t7));
@@ -1878,7 +1879,7 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_determinant_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_determinant_whole(const orthoglide_params *params, const real_t q[3],
     real_t det[2])
 {
     orthoglide_determinant_whole_kernel(1, params, q, det);
@@ -2064,14 +2065,14 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -2088,8 +2089,8 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
     const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
-    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t12 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
     const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
@@ -2121,7 +2122,7 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_singularities_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_singularities_whole(const orthoglide_params *params, const real_t q[3],
     real_t factors[8])
 {
     orthoglide_singularities_whole_kernel(1, params, q, factors);
@@ -2319,14 +2320,14 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -2343,12 +2344,12 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
     const real_t part = cf_rarely(single, in_line, t8, t10);
     const real_t t11 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t12 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
-    const real_t t13 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
+    const real_t t12 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t11 * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
     const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
     const real_t A_11 = t16 + t17;
@@ -2420,7 +2421,7 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_condition_number_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_condition_number_whole(const orthoglide_params *params, const real_t q[3],
     real_t kappa[2])
 {
     orthoglide_condition_number_whole_kernel(1, params, q, kappa);
@@ -2654,14 +2655,14 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
     const int same = u_u <= t3;
-    const real_t mu = cf_select(all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_select(same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_select(all_same, CLOSEDFORM_C(1.0), -rho1);
-    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
+    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
-    const real_t d_z = cf_select(same, rho3, CLOSEDFORM_C(0.0));
-    const real_t t5 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho3);
     const real_t t6 = a_x * t5 + rho1 * d_z;
     const real_t t7 = over * (d_y * m_z + d_z * t6);
     const real_t m_x = d_y * t5 - d_z * t4;
@@ -2677,8 +2678,8 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);
     const real_t t10 = t4 * (d_y - t4) + t5 * (d_z - t5);
-    const real_t t11 = cf_select(in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
-    const real_t t12 = cf_select(all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
+    const real_t t11 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t10 * CLOSEDFORM_C(0.5));
+    const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
     const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
@@ -2711,7 +2712,7 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
 }
 
 CLOSEDFORM_DISPATCHED
-CF_APART void orthoglide_constraint_whole(const orthoglide_params *params, const real_t q[3],
+CF_OUT_OF_LINE void orthoglide_constraint_whole(const orthoglide_params *params, const real_t q[3],
     real_t factors[2])
 {
     orthoglide_constraint_whole_kernel(1, params, q, factors);

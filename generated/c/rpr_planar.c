@@ -586,7 +586,7 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t size = b + t1;
     const real_t t2 = CLOSEDFORM_VANISHING * size;
     const int coincide = b <= t2;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t3 = t1 - b;
     const real_t slack = cf_max(t3, CLOSEDFORM_C(0.0));
     const real_t t4 = rho1 - rho2;
@@ -596,31 +596,32 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t inner = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
     const real_t t7 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t7));
+    const real_t t8 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t7);
+    const real_t height = cf_rarely(single, slack <= t2, CLOSEDFORM_C(0.0), t8);
     const real_t A_12 = n_1 * height;
     const real_t Delta = b * height;
-    const real_t t8 = cf_nonzero(single, Delta);
-    const int t9 = cf_nought(b) == 0;
-    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
-    const int unreachable = !((-t11 <= t3) & (-t11 <= t5) & (-t11 <= t6));
-    const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
-    const real_t t12 = cf_poison(single, failed);
-    const real_t t13 = rho1 * A_12 / t8 + t12;
-    const real_t t14 = -(rho2 * A_12 / t8) + t12;
-    const real_t t15 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t t16 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t15);
-    const real_t A_11 = n_1 * t16;
-    const real_t t17 = rho1 * (b - A_11) / t8;
-    const real_t t18 = rho2 * A_11 / t8;
-    J[0] = t13;
-    J[1] = t14;
-    J[2] = t17 + t12;
-    J[3] = t18 + t12;
-    J[4] = t13;
-    J[5] = t14;
-    J[6] = -t17 + t12;
-    J[7] = -t18 + t12;
+    const real_t t9 = cf_nonzero(single, Delta);
+    const int t10 = cf_nought(b) == 0;
+    const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
+    const int unreachable = !((-t12 <= t3) & (-t12 <= t5) & (-t12 <= t6));
+    const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | unreachable;
+    const real_t t13 = cf_poison(single, failed);
+    const real_t t14 = rho1 * A_12 / t9 + t13;
+    const real_t t15 = -(rho2 * A_12 / t9) + t13;
+    const real_t t16 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t17 = cf_rarely(single, coincide, rho1, b * CLOSEDFORM_C(0.5) + t16);
+    const real_t A_11 = n_1 * t17;
+    const real_t t18 = rho1 * (b - A_11) / t9;
+    const real_t t19 = rho2 * A_11 / t9;
+    J[0] = t14;
+    J[1] = t15;
+    J[2] = t18 + t13;
+    J[3] = t19 + t13;
+    J[4] = t14;
+    J[5] = t15;
+    J[6] = -t18 + t13;
+    J[7] = -t19 + t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -715,16 +716,17 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t inner = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, (slack <= t3) | (b <= t3), outer + inner);
     const real_t t7 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(b <= t3, CLOSEDFORM_C(0.0), t7));
-    const real_t t8 = cf_quotient(single, rho1 * rho2, b * height);
-    const int t9 = cf_nought(b) == 0;
-    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
-    const int unreachable = !((-t11 <= t2) & (-t11 <= t5) & (-t11 <= t6));
-    const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
-    const real_t t12 = cf_poison(single, failed);
-    det[0] = t8 + t12;
-    det[1] = -t8 + t12;
+    const real_t t8 = cf_rarely(single, b <= t3, CLOSEDFORM_C(0.0), t7);
+    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t8);
+    const real_t t9 = cf_quotient(single, rho1 * rho2, b * height);
+    const int t10 = cf_nought(b) == 0;
+    const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
+    const int unreachable = !((-t12 <= t2) & (-t12 <= t5) & (-t12 <= t6));
+    const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | unreachable;
+    const real_t t13 = cf_poison(single, failed);
+    det[0] = t9 + t13;
+    det[1] = -t9 + t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -916,7 +918,7 @@ CF_INLINE void rpr_planar_condition_number_kernel(const int single, const rpr_pl
     const real_t size = b + t1;
     const real_t t2 = CLOSEDFORM_VANISHING * size;
     const int coincide = b <= t2;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t3 = rho1 - rho2;
     const real_t t4 = b + t3;
     const real_t outer = cf_max(t4, CLOSEDFORM_C(0.0));
@@ -926,27 +928,28 @@ CF_INLINE void rpr_planar_condition_number_kernel(const int single, const rpr_pl
     const real_t t6 = t1 - b;
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t t7 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t t8 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7);
+    const real_t t8 = cf_rarely(single, coincide, rho1, b * CLOSEDFORM_C(0.5) + t7);
     const real_t A_11 = n_1 * t8;
     const real_t t9 = share * cf_root(single, size) * cf_sqrt(outer * inner * slack);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t t10 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t9);
+    const real_t height = cf_rarely(single, slack <= t2, CLOSEDFORM_C(0.0), t10);
     const real_t A_12 = n_1 * height;
-    const real_t t10 = A_12 * A_12;
-    const real_t square1 = A_11 * A_11 + t10;
-    const real_t t11 = b - A_11;
-    const real_t square2 = t10 + t11 * t11;
-    const real_t t12 = square1 - square2;
-    const real_t t13 = t10 - A_11 * t11;
-    const real_t t14 = cf_sqrt(t12 * t12 + CLOSEDFORM_C(4.0) * (t13 * t13));
-    const real_t t15 = cf_quotient(single, square1 + square2 + t14, CLOSEDFORM_C(2.0) * (b * height));
-    const int t16 = cf_nought(b) == 0;
-    const int t17 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t18 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
-    const int unreachable = !((-t18 <= t6) & (-t18 <= t4) & (-t18 <= t5));
-    const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= b) & t17)) | unreachable;
-    const real_t t19 = t15 + cf_poison(single, failed);
-    kappa[0] = t19;
-    kappa[1] = t19;
+    const real_t t11 = A_12 * A_12;
+    const real_t square1 = A_11 * A_11 + t11;
+    const real_t t12 = b - A_11;
+    const real_t square2 = t11 + t12 * t12;
+    const real_t t13 = square1 - square2;
+    const real_t t14 = t11 - A_11 * t12;
+    const real_t t15 = cf_sqrt(t13 * t13 + CLOSEDFORM_C(4.0) * (t14 * t14));
+    const real_t t16 = cf_quotient(single, square1 + square2 + t15, CLOSEDFORM_C(2.0) * (b * height));
+    const int t17 = cf_nought(b) == 0;
+    const int t18 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t19 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.234375) * size);
+    const int unreachable = !((-t19 <= t6) & (-t19 <= t4) & (-t19 <= t5));
+    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= b) & t18)) | unreachable;
+    const real_t t20 = t16 + cf_poison(single, failed);
+    kappa[0] = t20;
+    kappa[1] = t20;
 }
 
 CLOSEDFORM_DISPATCHED

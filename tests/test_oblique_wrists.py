@@ -1,6 +1,7 @@
 """Wrists that do not reach every direction, where the joints that carry them are singular."""
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -125,3 +126,31 @@ def test_what_the_wrist_cannot_reach_stays_out_of_reach(module: Any) -> None:
     _, status = module(name).ik(pose(name, q))
     assert (status == UNREACHABLE).any()
     check(module, name, pose(name, q))
+
+
+def test_a_slide_that_is_drawn_in_loses_no_posture(tmp_path: Path) -> None:
+    """Joint 2 is free there, but not every value lets the wrist tilt as far."""
+    rows = [
+        (0, -pi / 2, 1), (0, pi / 2, H), (0, 0, None, 0), (0, pi / 3, 0), (0, -pi / 3, 0),
+        (0, 0, H),
+    ]  # fmt: skip
+    d, serial = arm(rows, "t1 t2 d3 t4 t5 t6")
+    found = propose(serial)
+    assert found.structure == "spherical wrist, a turret, a joint and a slide"
+    solved(d, serial, found.source)
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    rng = np.random.default_rng(12)
+    q = rng.uniform(-3, 3, (4000, 6))
+    q[:, 2] = rng.choice(NEAR, len(q)) * rng.choice([-1, 1], len(q))
+    q[::2, 4] = np.pi * rng.integers(0, 2, len(q) // 2)
+    T = np.eye(4)
+    for k, (a, alpha, length, *_) in enumerate(rows):
+        slides = length is None
+        T = T @ link(float(a), float(alpha), 0 if slides else float(length), q[:, k] * (not slides))
+        if slides:
+            T[:, :3, 3] += q[:, k, None] * T[:, :3, 2]
+    answers, status = robot.ik(T)
+    assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
+    away, turned = misses(robot.pose(answers), T, status)
+    assert away < 1e-12 * 3 and turned < 1e-12

@@ -42,6 +42,10 @@ class Maker:
     degree: int = 2
     """The highest degree of an equation that may be left: a chain without a quartic is shorter."""
     pairs: tuple[str, str] = ("", "")
+    levers: list[str] = field(default_factory=list)
+    """Numbers that vanish where the joints that were solved are singular."""
+    solved_as: dict[int, tuple[str, str, sp.Expr]] = field(default_factory=dict)
+    """Of a joint that turns and was solved: the unknown, its pair, and what that is ahead."""
 
     def add(self, line: str) -> None:
         self.lines.append(line)

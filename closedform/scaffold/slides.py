@@ -286,12 +286,16 @@ class Slides:
         pair = f"pair{joint.number}"
         shown = ", ".join(source(e) for e in sides)
         self.maker.solve("turn", f"{self.angle(joint)}, ({shown}), {SIDE}", pair, 2)
+        self.maker.levers.append(f"{pair}.lever/ik.size")
+        self.maker.solved_as[joint.number] = (self.angle(joint), pair, sp.S.Zero)
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "") -> str:
         pair = f"pair{joint.number}"
         more = f", because={because}" if because else ""
         self.maker.solve("rotate", f"{self.angle(joint)}, {w}, {v}{more}", pair)
+        self.maker.levers.append(f"sqrt({v}[0]**2 + {v}[1]**2)/ik.size")
+        self.maker.solved_as[joint.number] = (self.angle(joint), pair, sp.S.Zero)
         return pair
 
     def _require_turning(self, n: sp.Matrix, joint: Single, found: str) -> None:

@@ -11,7 +11,7 @@ The other joints are solved one after another, each by an equation that holds no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -34,8 +34,6 @@ class SubproblemMaker(WristMaker):
     """The direction of the last axis, if it determines the first joint."""
     along: sp.Expr = sp.S.Zero
     """Its component along the parallel axes in between."""
-    solved_as: dict[int, tuple[str, str, sp.Expr]] = field(default_factory=dict)
-    """Of a joint that was solved with an offset: the unknown, its pair, and the offset."""
 
     def give(self, joint: Single) -> None:
         """Take a joint as an input."""
@@ -69,13 +67,12 @@ class SubproblemMaker(WristMaker):
 
     def _within_tilt(self, before: Sequence[Single], ends: Sequence[Single], M: str) -> None:
         """Keep the last axis within the limits of an oblique wrist where joints are singular."""
-        if not before or any(joint.slides for joint in before):
+        turning = [joint for joint in before if not joint.slides]
+        if not turning or before[0].slides or any(j.number not in self.solved_as for j in turning):
             return
         shown, pairs = [], []
-        for joint in before:
-            unknown, pair, ahead = self.solved_as.get(
-                joint.number, (self.unknown(joint), f"pair{joint.number}", sp.S.Zero)
-            )
+        for joint in self._with_slides(before):
+            unknown, pair, ahead = self.solved_as[joint.number]
             T = rotation("z", -ahead)
             motion = f"{source(T * joint.shift)}, {source(T * joint.end)}"
             shown.append(f"Carrying({unknown}, {pair}, {motion})")
@@ -86,6 +83,20 @@ class SubproblemMaker(WristMaker):
         arguments = f"tool=({M})[:, 2], limits={limits}, levers=[{', '.join(self.levers)}]"
         carrying = f"[{', '.join(shown)}]"
         self.add(f"{', '.join(pairs)}, = within_tilt(ik, {carrying}, p, {arguments})")
+
+    def _with_slides(self, joints: Sequence[Single]) -> list[Single]:
+        """The joints that turn; each carries the slides after it at what was solved for them."""
+        found: list[Single] = []
+        for joint in joints:
+            if not joint.slides:
+                found.append(joint)
+                continue
+            R = rotation("z", joint.turn)
+            known = {joint.joint: sp.Symbol(f"{joint.joint}_")}
+            last = found[-1]
+            shift = last.shift + last.end * R * joint.shift.xreplace(known)
+            found[-1] = replace(last, shift=shift, end=last.end * R * joint.end)
+        return found
 
     def solved_point(self, arm: Singles) -> str:
         """Solve three joints for the position of the tool."""

@@ -50,8 +50,6 @@ class WristMaker(Maker):
     """What a wrist of any angles carries, if two links have to reach it."""
     tilted: dict[int, tuple[str, sp.Expr]] = field(default_factory=dict)
     """Of the middle joint of a wrist of equal angles: the unknown, and what it is ahead of it."""
-    levers: list[str] = field(default_factory=list)
-    """Numbers that vanish where the joints that were solved are singular."""
 
     def vector(self, name: str, value: str, label: str = "") -> None:
         """Name a vector, by default by the name of the variable."""
@@ -75,6 +73,7 @@ class WristMaker(Maker):
             "turn", f"{name}, ({shown}), {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
         )
         self.levers.append(f"{pair}.lever/ik.size")
+        self.solved_as[joint.number] = (name, pair, sp.S.Zero)
         return pair
 
     def within_reach(self, vector: str, beside: Any, reach: str) -> None:
@@ -98,6 +97,7 @@ class WristMaker(Maker):
         more += (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
         self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
         self.levers.append(f"sqrt(({v})[0]**2 + ({v})[1]**2)/ik.size")
+        self.solved_as[joint.number] = (name, pair, sp.S.Zero)
         return pair
 
     def unknown(self, joint: Single) -> str:

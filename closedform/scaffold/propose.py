@@ -97,6 +97,8 @@ def _refusal(
     elif n == 6 and not error.degree:
         progress("counting the solutions")
         error = _counted(error, solutions(whole))
+    elif n == 6 and not any(joint.slides for joint in whole.joints):
+        error = NoChainError(error.found, f"{error.needed}  {NUMERIC}", error.degree)
     return error.after(tried)
 
 

@@ -23,9 +23,10 @@ def run(*command: str | Path) -> str:
 
 
 def build(source: Path, folder: Path, *options: str) -> None:
-    # Unoptimised, to save time; make check tries the flags of a release.
+    # Neither optimised nor with the lines of the sources, to save time; make check tries the flags
+    # of a release.
     launcher = remembering(folder.with_suffix(".sh"))
-    options = (*options, f"-DCMAKE_C_COMPILER_LAUNCHER={launcher}")
+    options = (*options, f"-DCMAKE_C_COMPILER_LAUNCHER={launcher}", "-DCMAKE_C_FLAGS_DEBUG=-O0")
     run("cmake", "-S", source, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", *options)
     run("cmake", "--build", folder, "--parallel", "2")
 

@@ -38,5 +38,9 @@ for k, angle in enumerate(("0", "2.0943951023931953", "4.1887902047863905"), 1):
     out = (cos(alpha), sin(alpha), 0)
     pivot, corner = ([size * x for x in out] for size in (f, e))
     rod = Parallelogram(l, bar=(-sin(alpha), cos(alpha), 0), width=e)
-    legs.append(Crank(d.joint(f"theta{k}"), L, rod, pivot, out, (0, 0, -1), on_hand=corner))
+    legs.append(
+        Crank(
+            d.joint(f"theta{k}"), L, rod, pivot=pivot, along=out, across=(0, 0, -1), on_hand=corner
+        )
+    )
 parallel(d, (real("x"), real("y"), real("z")), legs, {-1: "below", +1: "above"})

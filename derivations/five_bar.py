@@ -29,7 +29,10 @@ passive = d.joint("theta3", passive=True), d.joint("theta4", passive=True)
 parallel(
     d,
     (real("x"), real("y")),
-    [Crank(theta1, L1, L3, (0, 0), (1, 0), (0, 1)), Crank(theta2, L2, L4, (L0, 0), (1, 0), (0, 1))],
+    [
+        Crank(theta1, L1, L3, pivot=(0, 0), along=(1, 0), across=(0, 1)),
+        Crank(theta2, L2, L4, pivot=(L0, 0), along=(1, 0), across=(0, 1)),
+    ],
     {+1: "above", -1: "below"},
     passive=passive,
 )

@@ -25,8 +25,8 @@ L1, L2, L3, L4 = (
     for name, (value, meaning) in MEANINGS.items()
 )
 theta, psi = d.joint("theta"), real("psi")
-crank = Crank(theta, L2, L3, (0, 0), (1, 0), (0, 1))
-rocker = Crank(psi, L4, L3, (L1, 0), (1, 0), (0, 1))
+crank = Crank(theta, L2, L3, pivot=(0, 0), along=(1, 0), across=(0, 1))
+rocker = Crank(psi, L4, L3, pivot=(L1, 0), along=(1, 0), across=(0, 1))
 coupled(d, crank, rocker)
 
 coupler = rocker.end() - crank.end()

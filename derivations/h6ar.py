@@ -257,9 +257,16 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     yaw = Pair(c=p.let("c_psi", m.d / base), s=p.let("s_psi", ahead / base))
     roll = Pair(c=p.let("c_phi", m.d / rise), s=p.let("s_phi", above / rise))
     length = wrist_let(p, m, base)
-    return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), length, base), sp.Matrix(
-        [ahead, above]
-    )
+    return Posture(
+        waist=pair(theta1),
+        upper=upper,
+        fore=fore,
+        yaw=yaw,
+        roll=roll,
+        pitch=pair(theta),
+        wrist=length,
+        base=base,
+    ), sp.Matrix([ahead, above])
 
 
 p = Program()

@@ -101,7 +101,12 @@ class FreeTurn:
         aside = -sign_of(slopes[1]) * share * margin / (sp.Abs(slopes[1]) + floors[1])
         aside = let(f"aside_{name}", choose(spent, aside, 0))
         return Easing(
-            spent, aside, let(f"lack_{name}", margin * (share - 1)), slopes[0], heavy[0], floors[0]
+            spent=spent,
+            aside=aside,
+            lack=let(f"lack_{name}", margin * (share - 1)),
+            slope=slopes[0],
+            heavy=heavy[0],
+            floor=floors[0],
         )
 
     def turn(self, name: str, easings: Sequence[tuple[Easing, sp.Expr]]) -> sp.Symbol:

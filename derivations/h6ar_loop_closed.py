@@ -260,7 +260,8 @@ def stand(p: Program) -> Posture:
     half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
     yaw = Pair(c=p.let("c_psi", tilted / half), s=p.let("s_psi", beyond / half))
     roll = Pair(c=p.let("c_phi", m.d / tilted), s=p.let("s_phi", -width / tilted))
-    return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
+    wrist = wrist_let(p, m, half)
+    return Posture(pair(theta1), upper, fore, yaw, roll, pitch=pair(theta), wrist=wrist, base=half)
 
 
 p = Program()
@@ -397,9 +398,8 @@ turn_rates = p.matrix("turn", by_names) * line_rates
 inner = sp.zeros(6)
 inner[0, 0] = inner[5, 5] = sp.S.One
 inner[1:3, :], inner[3:5, :] = virtual_rates, turn_rates
-J = p.matrix("outer", named(outer, here, q).xreplace({length: here.wrist})) * p.matrix(
-    "inner", inner
-)
+outer_rates = named(outer, here, q).xreplace({length: here.wrist})
+J = p.matrix("outer", outer_rates) * p.matrix("inner", inner)
 d.function(
     "jacobian",
     "Derivative of the task by the joints.",

@@ -420,7 +420,15 @@ for name, summary, outputs, notes in (
 # Inverse kinematics: all working modes
 
 angles = (theta1, theta2, theta3, theta4, theta5)
-solved = Loop((L0, L1, L2), angles, p, k, tuple(loop), (leg_c, leg_d), the_loop)
+solved = Loop(
+    lengths=(L0, L1, L2),
+    angles=angles,
+    p=p,
+    k=k,
+    equations=tuple(loop),
+    legs=(leg_c, leg_d),
+    step=the_loop,
+)
 inverse_kinematics(d, solved)
 
 # Conditioning, loci, workspace
@@ -434,18 +442,18 @@ volumes = design.workspace(d)
 state(
     d,
     FiveBar(
-        (L0, L1, L2),
-        angles,
-        (A, B),
-        (c, d_point),
-        (by_c, by_d),
-        k,
-        p,
-        tuple(loop),
-        A_p.subs(passive),
-        A_loop,
-        by_angles,
-        solved.in_plane,
-        volumes,
+        lengths=(L0, L1, L2),
+        angles=angles,
+        pivots=(A, B),
+        elbows=(c, d_point),
+        by_legs=(by_c, by_d),
+        k=k,
+        p=p,
+        loop=tuple(loop),
+        A=A_p.subs(passive),
+        A_loop=A_loop,
+        B=by_angles,
+        in_plane=solved.in_plane,
+        volumes=volumes,
     ),
 )

@@ -187,4 +187,15 @@ ik.finish(
 # Claims of the textbooks
 
 links = list(arm.moves)
-state(d, Puma((a2, a3, d3, d4), q, links, arm.position, R36, arm.geometric, det))
+state(
+    d,
+    Puma(
+        lengths=(a2, a3, d3, d4),
+        q=q,
+        links=links,
+        position=arm.position,
+        R36=R36,
+        J=arm.geometric,
+        det=det,
+    ),
+)

@@ -19,6 +19,6 @@ e = d.parameter(
 )
 coupled(
     d,
-    Crank(d.joint("theta"), r, l, (0, 0), (1, 0), (0, 1)),
+    Crank(d.joint("theta"), r, l, pivot=(0, 0), along=(1, 0), across=(0, 1)),
     Slide(real("x"), l, (0, e), (1, 0)),
 )

@@ -39,9 +39,9 @@ for k in (0, 1):
             d.joint(f"theta{k + 1}"),
             r * Abs(sin(alpha)),
             2 * r * Abs(sin(beta / 2)),
-            [r * cos(alpha) * x for x in axes[k]],
-            ahead[k],
-            (0, 0, 1),
+            pivot=[r * cos(alpha) * x for x in axes[k]],
+            along=ahead[k],
+            across=(0, 0, 1),
         )
     )
 parallel(d, (real("x"), real("y"), real("z")), legs, {+1: "above", -1: "below"})

@@ -169,16 +169,37 @@ class TestErratum:
 
     def test_a_number_in_its_texts_is_computed(self) -> None:
         numbers = {"miss": (sp.sqrt(2) / 10, 3), "turn": (-sp.pi, 0)}
-        told = Erratum("a", "A sign", Gravity.MOTION, "By [turn].", "$[miss]$ m.", numbers)
+        told = Erratum(
+            key="a",
+            title="A sign",
+            gravity=Gravity.MOTION,
+            why="By [turn].",
+            use="$[miss]$ m.",
+            numbers=numbers,
+        )
         found = erratum_result(told)
         assert (found.why, found.use) == ("By -3.", "$0.141$ m.")
 
     def test_a_number_without_a_place_is_refused(self) -> None:
         with pytest.raises(ValueError, match=r"no text contains the number \[miss\]"):
-            Erratum("a", "A sign", Gravity.MOTION, "Why.", "Use.", {"miss": (sp.S.One, 1)})
+            Erratum(
+                key="a",
+                title="A sign",
+                gravity=Gravity.MOTION,
+                why="Why.",
+                use="Use.",
+                numbers={"miss": (sp.S.One, 1)},
+            )
 
     def test_a_number_has_to_be_a_constant(self) -> None:
-        told = Erratum("a", "A sign", Gravity.MOTION, "[miss]", "Use.", {"miss": (x, 1)})
+        told = Erratum(
+            key="a",
+            title="A sign",
+            gravity=Gravity.MOTION,
+            why="[miss]",
+            use="Use.",
+            numbers={"miss": (x, 1)},
+        )
         with pytest.raises(ValueError, match="x is not a constant"):
             erratum_result(told)
 

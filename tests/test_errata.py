@@ -69,7 +69,16 @@ class TestSeveralMechanisms:
         assert page(own(), other) == page(own())
 
     def test_each_adds_its_places(self) -> None:
-        claim = ClaimResult("eq. (9)", "", "$y$", REFUTED, "", "", (), "cosine")
+        claim = ClaimResult(
+            label="eq. (9)",
+            where="",
+            printed="$y$",
+            kind=REFUTED,
+            evidence="",
+            corrected="",
+            readings=(),
+            erratum="cosine",
+        )
         other = replace(own(), robot="other", claims=(claim,))
         (paper,) = gathered([own(), None, other])
         assert [c.label for c in paper.entries[0].claims][-1] == "eq. (9)"

@@ -328,7 +328,15 @@ def test_a_kept_proof_is_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     d, L, t = toy()
     d.function("f", "F.", {"q": [t]}, {"x": [L * t]})
     page = Page(d, Proof("toy", "toy", (), 0, ()))
-    result = InverseResult("f", 1, 0, 1, "", ("L - sqrt(t**2 + 0.5)",), ())
+    result = InverseResult(
+        function="f",
+        branches=1,
+        continua=0,
+        solutions=1,
+        method="",
+        assumptions=("L - sqrt(t**2 + 0.5)",),
+        lemmas=(),
+    )
     told = Told(page, d["f"], page.algorithm(d["f"]), "")
     assert r"\sqrt{t^{2} + \frac{1}{2}}" in told.proved(result)["where"]
     with pytest.raises(FormulaError):

@@ -13,7 +13,7 @@ from chains import printed
 
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.trial import fault
-from closedform.scaffold.new import Script, Search, new
+from closedform.scaffold.new import InverseSearch, Script, new
 
 FOLDER = Path(__file__).parent / "held_out"
 FOUND = {
@@ -37,7 +37,7 @@ DERIVED = ("nao_arm", "nao_leg", "youbot")
 def script(name: str) -> Script:
     path = FOLDER / f"{name}.csv"
     modified = "# convention: modified" in path.read_text("utf-8")
-    return new(name, "dh", path, modified=modified, search=Search(fault=fault))
+    return new(name, "dh", path, modified=modified, search=InverseSearch(fault=fault))
 
 
 def test_every_file_has_a_source_and_an_outcome() -> None:

@@ -100,11 +100,28 @@ def slider(text: Strings = lambda field: field, name: Strings = lambda field: fi
 def printed(d: Derivation, evidence: str = "evidence") -> dict[Path, str]:
     """All files, printed without a proof."""
     claims = [
-        ClaimResult(c.label, c.where, c.printed, "refuted", evidence, "", (), "key")
+        ClaimResult(
+            label=c.label,
+            where=c.where,
+            printed=c.printed,
+            kind="refuted",
+            evidence=evidence,
+            corrected="",
+            readings=(),
+            erratum="key",
+        )
         for c in d.claims
     ]
     errata = tuple(map(erratum_result, d.errata))
-    proof = Proof(d.name, d.paper.key, (), 0, (), tuple(claims), errata)
+    proof = Proof(
+        name=d.name,
+        paper=d.paper.key,
+        steps=(),
+        identities=0,
+        inverses=(),
+        claims=tuple(claims),
+        errata=errata,
+    )
     own = pages(d, proof)
     return own.files | shared_files([own.share])
 
@@ -526,7 +543,9 @@ def test_no_text_is_evaluated_anywhere_in_the_toolkit() -> None:
     [
         lambda text: Program().determined(real("x"), text, "small"),
         lambda text: merge_angles(text),
-        lambda text: Crank(real("q"), 1, text, (0, 0), (1, 0), (0, 1)) and _two_legs(text),
+        lambda text: (
+            Crank(real("q"), 1, text, pivot=(0, 0), along=(1, 0), across=(0, 1)) and _two_legs(text)
+        ),
     ],
 )
 def test_a_text_in_place_of_an_expression_is_refused(evaluate: Any, tmp_path: Path) -> None:
@@ -538,5 +557,7 @@ def test_a_text_in_place_of_an_expression_is_refused(evaluate: Any, tmp_path: Pa
 
 def _two_legs(rod: Any) -> None:
     d = Derivation("arm", "Arm", Paper("arm", "Arm", ("nobody",)), "Two legs.", task=["x", "y"])
-    legs = [Crank(d.joint(f"q{k}"), 1, rod, (0, k), (1, 0), (0, 1)) for k in (1, 2)]
+    legs = [
+        Crank(d.joint(f"q{k}"), 1, rod, pivot=(0, k), along=(1, 0), across=(0, 1)) for k in (1, 2)
+    ]
     parallel(d, (real("x"), real("y")), legs, {+1: "a", -1: "b"})

@@ -113,19 +113,43 @@ def awkward() -> tuple[Derivation, Proof]:
     printed = r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”"
     both = (ReadingResult("all of $a_1$", "refuted", "$1$"), ReadingResult("100 %", "proved", "&"))
     results = (
-        ClaimResult("eq. (1) & 50 %", "p. 3_4", printed, "not decidable here", "a < b", ""),
         ClaimResult(
-            "eq. (2)", "p. 3_4", "x_1 is one", "refuted",
-            r"at $\theta_1 = 2\pi/3$: 1, not 0", rf"$x_1 = {sp.latex(long)}$", both,
-            "long-one", True,
+            label="eq. (1) & 50 %", where="p. 3_4", printed=printed, kind="not decidable here",
+            evidence="a < b", corrected="",
         ),
-        ClaimResult("Table_I, last row", "", "fine", "proved under assumption", "$a > 0$", ""),
-        ClaimResult("eq. (3)", "", "fine", "proved", "", ""),
+        ClaimResult(
+            label="eq. (2)", where="p. 3_4", printed="x_1 is one", kind="refuted",
+            evidence=r"at $\theta_1 = 2\pi/3$: 1, not 0", corrected=rf"$x_1 = {sp.latex(long)}$",
+            readings=both, erratum="long-one", paraphrase=True,
+        ),
+        ClaimResult(
+            label="Table_I, last row", where="", printed="fine", kind="proved under assumption",
+            evidence="$a > 0$", corrected="",
+        ),
+        ClaimResult(
+            label="eq. (3)", where="", printed="fine", kind="proved", evidence="", corrected="",
+        ),
     )  # fmt: skip
     wrong = ErratumResult("long-one", "100 % of $x_1$ & more_", "RESULT", "Since $a < b$.", "5 %.")
-    inverse = InverseResult("ik", 2, 1, 2, "generic", ("px - l1",), (lemma.name,))
+    inverse = InverseResult(
+        function="ik",
+        branches=2,
+        continua=1,
+        solutions=2,
+        method="generic",
+        assumptions=("px - l1",),
+        lemmas=(lemma.name,),
+    )
     steps = tuple(s.title for s in d.steps)
-    return d, Proof("awkward", "odd", steps, 1, (inverse,), results, (wrong,))
+    return d, Proof(
+        name="awkward",
+        paper="odd",
+        steps=steps,
+        identities=1,
+        inverses=(inverse,),
+        claims=results,
+        errata=(wrong,),
+    )
 
 
 @pytest.mark.parametrize("name", [*ROBOTS, "awkward"])

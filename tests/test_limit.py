@@ -14,7 +14,7 @@ from closedform.scaffold import limit
 from closedform.scaffold import new as scaffold
 from closedform.scaffold.limit import LimitError, bounded, limited
 from closedform.scaffold.motors import motors_of
-from closedform.scaffold.new import Search, new
+from closedform.scaffold.new import InverseSearch, new
 from closedform.scaffold.tables import TableError, read_dh
 
 PLANAR = "a, alpha, d, theta\n1, 0, 0, theta1\n1, 0, 0, theta2\n"
@@ -84,7 +84,7 @@ def test_the_forward_map_is_written_when_the_time_is_up(
 ) -> None:
     monkeypatch.setattr(scaffold, "propose", endless)
     said: list[str] = []
-    search = Search(timeout=2, say=said.append)
+    search = InverseSearch(timeout=2, say=said.append)
     script = written(tmp_path, PLANAR, search=search)
     assert "forward = arm.export(d)" in script.text
     assert 'd.no_inverse("the limit of 2 s was reached while ' in script.text
@@ -92,7 +92,7 @@ def test_the_forward_map_is_written_when_the_time_is_up(
 
 
 def test_it_explains(tmp_path: Path) -> None:
-    script = written(tmp_path, PLANAR, search=Search(explain=True))
+    script = written(tmp_path, PLANAR, search=InverseSearch(explain=True))
     assert script.explained == ("axes 1 and 2 are parallel", "taken: planar arm of two links")
 
 

@@ -286,8 +286,8 @@ def test_three_spheres_is_proved_and_can_fail() -> None:
 @pytest.mark.parametrize(
     "leg",
     [
-        Crank(real("q"), LENGTH, ROD, (0, 0), (1, 0), (0, 1)),
-        Crank(real("q"), LENGTH, ROD, (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        Crank(real("q"), LENGTH, ROD, pivot=(0, 0), along=(1, 0), across=(0, 1)),
+        Crank(real("q"), LENGTH, ROD, pivot=(0, 0, 0), along=(1, 0, 0), across=(0, 1, 0)),
         Slide(real("q"), ROD, (0, 0, 0), (0, 0, 1)),
         Stretch(real("q"), (0, 0, 0)),
     ],
@@ -309,7 +309,10 @@ def a_five_bar(second: Crank | None = None) -> Derivation:
         for n, v in (("L", 2), ("M", 3))
     )
     q1, q2 = d.joint("q1"), d.joint("q2")
-    legs = [Crank(q1, L, M, (0, 0), (1, 0), (0, 1)), Crank(q2, L, M, (L, 0), (1, 0), (0, 1))]
+    legs = [
+        Crank(q1, L, M, pivot=(0, 0), along=(1, 0), across=(0, 1)),
+        Crank(q2, L, M, pivot=(L, 0), along=(1, 0), across=(0, 1)),
+    ]
     parallel(d, (real("x"), real("y")), [legs[0], second or legs[1]])
     return d
 
@@ -318,7 +321,12 @@ def test_a_crank_whose_directions_are_not_at_right_angles_is_found() -> None:
     d = a_five_bar()
     with pytest.raises(ProofError):
         slanted = Crank(
-            real("q2"), d.parameters[0].symbol, d.parameters[1].symbol, (1, 0), (1, 0), (1, 1)
+            real("q2"),
+            d.parameters[0].symbol,
+            d.parameters[1].symbol,
+            pivot=(1, 0),
+            along=(1, 0),
+            across=(1, 1),
         )
         prove(a_five_bar(slanted))
     assert {i.function: i.solutions for i in prove(d).inverses} == {"fk": 2, "ik": 4}
@@ -336,7 +344,7 @@ def test_legs_and_joints_must_agree() -> None:
     with pytest.raises(ValueError, match="same rod"):
         coupled(
             d,
-            Crank(real("q1"), 1, 2, (0, 0), (1, 0), (0, 1)),
+            Crank(real("q1"), 1, 2, pivot=(0, 0), along=(1, 0), across=(0, 1)),
             Slide(real("x"), 3, (0, 0), (1, 0)),
         )
 

@@ -275,7 +275,7 @@ def test_six_cranks_have_sixty_four_working_modes() -> None:
     platform(
         d,
         [
-            Crank(q, 1, 4, (*b, 0), (1, 0, 0), (0, 0, 1), on_hand=(*c, 0))
+            Crank(q, 1, 4, pivot=(*b, 0), along=(1, 0, 0), across=(0, 0, 1), on_hand=(*c, 0))
             for q, b, c in zip(joints, bases, hands, strict=True)
         ],
     )

@@ -69,7 +69,7 @@ def derivation(kind: str, *, last: bool = False) -> Derivation:
     elif kind == "slide":
         other = Slide(b, l, (0, h), (0, 1))
     elif kind == "crank":
-        other = Crank(b, h, l, (l, 0), (1, 0), (0, 1))
+        other = Crank(b, h, l, pivot=(l, 0), along=(1, 0), across=(0, 1))
     else:
         other = Stretch(b, (l, h))
     parallel(d, (real("x"), real("y")), [other, rail] if last else [rail, other])

@@ -86,6 +86,80 @@ def test_where_parameters_are_many_each_is_described(folder: str) -> None:
     assert {path: lines for path, lines in wrong.items() if lines} == {}
 
 
+def records(text: str) -> dict[str, list[str]]:
+    """The dataclasses and named tuples of a module, and the fields of each."""
+    return {
+        node.name: [
+            s.target.id
+            for s in node.body
+            if isinstance(s, ast.AnnAssign)
+            and isinstance(s.target, ast.Name)
+            and "ClassVar" not in ast.unparse(s.annotation)
+        ]
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.ClassDef)
+        and re.search(
+            "dataclass|NamedTuple", " ".join(map(ast.unparse, node.decorator_list + node.bases))
+        )
+    }
+
+
+def unnamed(text: str, known: dict[str, list[list[str]]]) -> list[str]:
+    """Records made of more than five values by position, two of which do not say what they are.
+
+    A variable with the name of its field says it.  Of a name with several meanings, the one is
+    taken that fits best.
+    """
+    own = {name: [fields] for name, fields in records(text).items()}
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
+            continue
+        given = [a.id if isinstance(a, ast.Name) else "" for a in node.args]
+        several = {**known, **own}.get(node.func.id, [])
+        silent = [sum(map(str.__ne__, given, f)) for f in several if len(f) >= len(given)]
+        if len(given) > MOST and min(silent, default=0) > 1:
+            found.append(f"line {node.lineno}: {node.func.id} takes {len(given)}")
+    return found
+
+
+@pytest.mark.parametrize("folder", [*PACKAGE, "benchmarks", "tests"])
+def test_values_of_a_record_have_names(folder: str) -> None:
+    texts = {p: p.read_text("utf-8") for p in sources(*PACKAGE, "benchmarks", "tests")}
+    known: dict[str, list[list[str]]] = {}
+    for text in texts.values():
+        for name, fields in records(text).items():
+            known.setdefault(name, []).append(fields)
+    assert {"Crank", "Derivation", "Inverse"} <= set(known)
+    wrong = {
+        str(p.relative_to(ROOT)): unnamed(text, known)
+        for p, text in texts.items()
+        if p.is_relative_to(ROOT / folder)
+    }
+    assert {path: lines for path, lines in wrong.items() if lines} == {}
+
+
+RECORD = (
+    "@dataclass\nclass R:\n    a: int\n    b: int\n    c: int\n    d: int\n    e: int\n    f: int\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (f"{RECORD}R(1, 2, 3, 4, 5, 6)", ["line 9: R takes 6"]),
+        (f"{RECORD}R(a, b, c, d, f, e)", ["line 9: R takes 6"]),
+        (f"{RECORD.replace('@dataclass', '').replace('R:', 'R(NamedTuple):')}R(a, b, c, d, 5, 6)",
+         ["line 9: R takes 6"]),
+        (f"{RECORD}R(a, b, c, d, e, 6)", []),
+        (f"{RECORD}R(1, 2, 3, 4, 5, f=6)", []),
+        ("S(1, 2, 3, 4, 5, 6)", []),
+    ],
+)  # fmt: skip
+def test_values_without_names_are_found(text: str, found: list[str]) -> None:
+    assert unnamed(text, {}) == found
+
+
 SIX = "a, b, c, d, e, f"
 
 

@@ -11,7 +11,7 @@ from test_urdf import forward
 
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.trial import fault
-from closedform.scaffold.new import Search, new
+from closedform.scaffold.new import InverseSearch, new
 
 FOLDER = Path(__file__).parents[1] / "benchmarks" / "arms"
 NEARLY = {"talos_left": [(2,), (1, 2), (1, 2, 4)], "rm75": [(3,), (1, 3), (1, 3, 5)]}
@@ -22,7 +22,7 @@ GIVEN = {"talos_left": {}, "rm75": {"joint3": 2}}
 @pytest.fixture(scope="module", params=NEARLY)
 def robot(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple:
     name, folder = request.param, tmp_path_factory.mktemp(request.param)
-    script = new(name, "urdf", FOLDER / f"{name}.urdf", search=Search(fault=fault))
+    script = new(name, "urdf", FOLDER / f"{name}.urdf", search=InverseSearch(fault=fault))
     path = folder / f"{name}.py"
     path.write_text(script.text, "utf-8")
     (source,) = pipeline.find([str(path)])

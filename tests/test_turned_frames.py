@@ -12,7 +12,7 @@ from test_urdf import arm_of, forward
 from closedform.model.functions import real
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.trial import fault
-from closedform.scaffold.new import Search, new
+from closedform.scaffold.new import InverseSearch, new
 from closedform.scaffold.recognise import recognised
 from closedform.scaffold.urdf import read_urdf
 
@@ -27,7 +27,7 @@ def test_the_printed_inverse_returns_to_every_posture(back: str, tmp_path: Path)
     assert BACK in text
     urdf = tmp_path / "turned.urdf"
     urdf.write_text(text.replace(BACK, back), "utf-8")
-    script = new("turned", "urdf", urdf, search=Search(fault=fault))
+    script = new("turned", "urdf", urdf, search=InverseSearch(fault=fault))
     assert script.structure == "turret, three parallel joints and two more (UR)"
     path = tmp_path / "turned.py"
     path.write_text(script.text, "utf-8")

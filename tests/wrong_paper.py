@@ -132,11 +132,11 @@ def derivation(name: str = "one_link", paper: Paper = PAPER) -> Derivation:
 def proof(d: Derivation) -> Proof:
     """The verdicts alone."""
     return Proof(
-        d.name,
-        d.paper.key,
-        tuple(s.title for s in d.steps),
-        0,
-        (),
-        tuple(judge(c, d.errata) for c in d.claims),
-        tuple(map(erratum_result, d.errata)),
+        name=d.name,
+        paper=d.paper.key,
+        steps=tuple(s.title for s in d.steps),
+        identities=0,
+        inverses=(),
+        claims=tuple(judge(c, d.errata) for c in d.claims),
+        errata=tuple(map(erratum_result, d.errata)),
     )

@@ -79,7 +79,14 @@ def is_zero(problem: Problem, nonnegative: Iterable[Expr] = ()) -> ZeroResult:
     tower, residues = converted(problem, nonnegative)
     nonzero = tuple(i for i, a in enumerate(residues) if not a.num.is_zero())
     assumptions = tuple(tower.assumptions)
-    return ZeroResult(not nonzero, nonzero, assumptions, tower.peak, tower, tuple(residues))
+    return ZeroResult(
+        zero=not nonzero,
+        nonzero=nonzero,
+        assumptions=assumptions,
+        terms=tower.peak,
+        _tower=tower,
+        _residues=tuple(residues),
+    )
 
 
 def equal(a: Expr, b: Expr, nonnegative: Iterable[Expr] = ()) -> bool:

@@ -278,7 +278,7 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
     _require_extra()
     from closedform.pipeline import trial
-    from closedform.scaffold.new import Search, check_name, new
+    from closedform.scaffold.new import InverseSearch, check_name, new
     from closedform.scaffold.tree import Choice
 
     try:
@@ -287,7 +287,9 @@ def new_command(options: argparse.Namespace) -> None:
         if os.path.lexists(target):
             raise CommandError(f"{target} already exists")
         with Progress() as progress:
-            search = Search(options.given, options.timeout, options.explain, fault=trial.fault)
+            search = InverseSearch(
+                options.given, options.timeout, options.explain, fault=trial.fault
+            )
             search.say = partial(progress, options.name)
             script = new(
                 options.name,

@@ -60,19 +60,19 @@ def interface(derivation: Derivation) -> Interface:
         for p in derivation.parameters
     )
     return Interface(
-        derivation.name,
-        derivation.title,
-        textwrap.fill(derivation.mechanism, WIDTH),
-        citation(derivation),
-        fields,
-        repr(tuple(s.name for s in derivation.actuated)),
-        repr(tuple(derivation.task)),
-        repr(tuple(derivation.branches)),
-        repr(tuple(derivation.assembly_modes)),
-        repr(tuple(derivation.singularities)),
-        tuple(f.name for f in derivation.functions),
-        derivation.skeleton,
-        repr(derivation.limits).replace("inf", "float('inf')") if derivation.limits else "",
+        robot=derivation.name,
+        title=derivation.title,
+        mechanism=textwrap.fill(derivation.mechanism, WIDTH),
+        paper=citation(derivation),
+        fields=fields,
+        joints=repr(tuple(s.name for s in derivation.actuated)),
+        task=repr(tuple(derivation.task)),
+        branches=repr(tuple(derivation.branches)),
+        assembly_modes=repr(tuple(derivation.assembly_modes)),
+        singularities=repr(tuple(derivation.singularities)),
+        functions=tuple(f.name for f in derivation.functions),
+        skeleton=derivation.skeleton,
+        limits=repr(derivation.limits).replace("inf", "float('inf')") if derivation.limits else "",
     )
 
 

@@ -174,8 +174,9 @@ class Chain:
         size = self.size or sp.S.One
         scales = [size if j == 3 else sp.S.One for _ in range(3) for j in range(4)]
         self.corrected = Correction(
-            self.program, self.joints, tuple(target), tuple(place), scales, pairs, slides, size
-        ).applied()
+            self.program, self.joints, tuple(target), tuple(place), scales,
+            pairs=pairs, slides=slides, size=size,
+        ).applied()  # fmt: skip
         for entry, scale in zip(self.corrected.missed, scales, strict=True):
             # half: the size counts a length once for each term of a coordinate that holds it
             self.program.match(entry, scale / 2, meaning)
@@ -300,14 +301,14 @@ class Chain:
         self._check_coefficients(applied.lemma)
         self.links.append(
             Link(
-                tuple(applied.lemma.solution),
-                applied.lemma.equations,
-                dict(applied.given),
-                replace(applied.lemma, kind=lemma.__name__),
-                body,
-                dict(applied.means),
-                applied.degenerate,
-                tuple(map(self._written_out, applied.relations)),
+                unknowns=tuple(applied.lemma.solution),
+                equations=applied.lemma.equations,
+                given=dict(applied.given),
+                lemma=replace(applied.lemma, kind=lemma.__name__),
+                body=body,
+                means=dict(applied.means),
+                degenerate=applied.degenerate,
+                relations=tuple(map(self._written_out, applied.relations)),
             )
         )
         self.meaning |= applied.means

@@ -71,7 +71,7 @@ def within_tilt(
         the joints are turned only if one of these, in units of its scale, is short
     """
     p, tool = chain.vector("wrist_at", p), chain.vector("tool_axis", tool)
-    seen = _Posture(chain, tuple(joints), p, tool, limits, "tilt0")
+    seen = _Posture(chain=chain, joints=tuple(joints), p=p, tool=tool, limits=limits, name="tilt0")
     loose = chain.program.vanishes(
         "loose",
         sp.Max(seen.margin, sp.Min(*map(sp.Abs, levers)) - SHORT),

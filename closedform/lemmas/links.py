@@ -136,7 +136,9 @@ def turn(
     root = p.let(f"root{tag}", at.root, nonnegative=True)
     width = p.let(f"width{tag}", at.below + at.above, nonnegative=True)
     play = 2 * missed_by * ROUNDING
-    found = toward.reached(Tangency(chain, at, root, width, play, tag, flag))
+    found = toward.reached(
+        Tangency(chain=chain, at=at, root=root, width=width, play=play, suffix=tag, free=flag)
+    )
     pair, means = named(chain, x, found.pair)
     across = a * pair.c - b * pair.s if found.root is None else -sigma * found.root
     ahead = p.let(f"ahead{tag}", across)

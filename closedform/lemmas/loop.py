@@ -150,12 +150,12 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     name = f"span_{first}" if m.rails else f"A_{first}"
     rod = sp.Matrix([v.let(f"{name}{i}", e) for i, e in enumerate(found.first, 1)])
     return _Posture(
-        v,
-        modes,
-        near[0] + rod,
-        tuple(rod + near[0] - end for end in ends),
-        found.side,
-        found.size,
+        program=v,
+        modes=modes,
+        hand=near[0] + rod,
+        rods=tuple(rod + near[0] - end for end in ends),
+        side=found.side,
+        size=found.size,
     )
 
 
@@ -186,22 +186,22 @@ def _on_rods(
     ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
     shape = "circles" if n == 2 else "spheres"
     return _Met(
-        found,
-        replace(found.link, lemma=replace(found.lemma, roles=_roles(m))),
-        f"{m.count} {shape}",
-        f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
+        found=found,
+        link=replace(found.link, lemma=replace(found.lemma, roles=_roles(m))),
+        title=f"{m.count} {shape}",
+        reason=f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
         f"lengths of the rods.  They meet twice, on both sides of the "
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
         f"determinant of the vectors along the rods has the sign of the mode.",
-        {}
+        shown={}
         if m.alike  # the points of all legs are the same formula
         else {
             rf"\mathbf b_{k} - \mathbf b_{first}": (c - start).applyfunc(merge_angles)
             for (k, _), c in others
         },
-        "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
-        "of the mode times a product of lengths.",
-        (
+        proves="The determinant of the vectors along the rods, in the frame of the lemma, is the "
+        "sign of the mode times a product of lengths.",
+        notes=(
             "UNREACHABLE: the rods do not meet.",
             "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
             "its points is returned.",
@@ -229,7 +229,15 @@ def _on_rails(
         "The determinant of the rows of A, in the frame of the rail, is the sign of the mode times "
         "a length; of two rails, it is a number."
     )
-    return _Met(found, found.link, title, reason, {}, proves, notes)
+    return _Met(
+        found=found,
+        link=found.link,
+        title=title,
+        reason=reason,
+        shown={},
+        proves=proves,
+        notes=notes,
+    )
 
 
 def left_out(m: Hand) -> tuple[str, ...]:

@@ -164,7 +164,15 @@ def _forward(m: OnRails, choice: Choice, loop: Step) -> _Posture:
         (free,), dict.fromkeys(named, sp.S.Zero), yaw, "the rails do not hold the hand"
     )
     means = {pair.s: sp.sin(yaw), pair.c: sp.cos(yaw)}
-    turn = Link((yaw,), lemma.equations, {}, lemma, tuple(f.body[start:]), means, (case,))
+    turn = Link(
+        unknowns=(yaw,),
+        equations=lemma.equations,
+        given={},
+        lemma=lemma,
+        body=tuple(f.body[start:]),
+        means=means,
+        degenerate=(case,),
+    )
     arms = [
         sp.Matrix([named_in(f, f"e{k}_{i}", e) for i, e in zip("xy", arm, strict=True)])
         for k, arm in enumerate(m.arms(pair), 1)

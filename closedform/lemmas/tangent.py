@@ -82,12 +82,12 @@ class Turn:
     def renamed(self, pair: Pair, name: str) -> Turn:
         p = self.chain.program
         return Turn(
-            self.chain,
-            Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
-            self.lever,
-            self.beside,
-            self.play,
-            name,
+            chain=self.chain,
+            pair=Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
+            lever=self.lever,
+            beside=self.beside,
+            play=self.play,
+            name=name,
         )
 
     def linear(
@@ -284,7 +284,9 @@ class Links:
         found = turn.pair(turn.root, turn.width)
         tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
         near = self.nearest(
-            Turn(chain, found, turn.root, at.c, turn.play, suffix).renamed(found, f"{suffix}_1")
+            Turn(
+                chain=chain, pair=found, lever=turn.root, beside=at.c, play=turn.play, name=suffix
+            ).renamed(found, f"{suffix}_1")
         )
         s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
         return Reached(Pair(s, c), None)

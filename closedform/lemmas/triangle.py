@@ -173,7 +173,14 @@ class Triangle:
             program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True) ** 2
             for name, value in zip("SABC", self.factors, strict=True)
         )
-        return Triangle(self.first, self.second, self.sigma, S * A, B * C, (S, A, B, C))
+        return Triangle(
+            first=self.first,
+            second=self.second,
+            sigma=self.sigma,
+            N=S * A,
+            M=B * C,
+            factors=(S, A, B, C),
+        )
 
     @property
     def letters(self) -> dict[sp.Symbol, str]:

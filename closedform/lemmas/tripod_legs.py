@@ -178,7 +178,14 @@ class Tripod:
         across = self.weights[2]
         x = named_in(p, "px", (n[0][1] * off[1] - n[1][1] * off[0]) / across)
         y = named_in(p, "py", (n[1][0] * off[0] - n[0][0] * off[1]) / across)
-        return Placed(p, (c, s), delta, R, sp.Matrix([x, y, self.target[0]]), tuple(arms))
+        return Placed(
+            program=p,
+            turn=(c, s),
+            delta=delta,
+            rotation=R,
+            position=sp.Matrix([x, y, self.target[0]]),
+            arms=tuple(arms),
+        )
 
     @cached_property
     def posture(self) -> Placed:
@@ -191,7 +198,14 @@ class Tripod:
         sideways = sp.Matrix([n[0].T, n[1].T]).LUsolve(-sp.Matrix(off))
         position = sp.Matrix([*sideways, self.target[0]])
         pair = (sp.cos(psi), sp.sin(psi))
-        return Placed(Program(), pair, sp.S.One, turned, position, arms)
+        return Placed(
+            program=Program(),
+            turn=pair,
+            delta=sp.S.One,
+            rotation=turned,
+            position=position,
+            arms=arms,
+        )
 
     @property
     def twisting(self) -> sp.Expr:

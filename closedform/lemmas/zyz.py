@@ -286,7 +286,9 @@ def zyz(
         for flags in filter(None, ((aligned,), near))
         for turned in _aligned(real("psi"))
     ]
-    return Applied(lemma, pair, means, given, tuple(cases), halves)
+    return Applied(
+        lemma=lemma, result=pair, means=means, given=given, degenerate=tuple(cases), halves=halves
+    )
 
 
 def _tilt(R: sp.Matrix, first: Pair, side: sp.Expr) -> Pair:

@@ -221,13 +221,15 @@ def _finished(
     remaining = iter(renamed)
     used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
     return Lowered(
-        function.name,
-        function.inputs,
-        tuple(name for name in parameters if name in used),
-        tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))),
-        tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op == "principal")),
-        tuple(replace(r, nodes=tuple(islice(remaining, len(r.nodes)))) for r in results),
-        named,
+        name=function.name,
+        inputs=function.inputs,
+        parameters=tuple(name for name in parameters if name in used),
+        angles=tuple(
+            dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))
+        ),
+        turned=tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op == "principal")),
+        results=tuple(replace(r, nodes=tuple(islice(remaining, len(r.nodes)))) for r in results),
+        names=named,
     )
 
 

@@ -76,12 +76,12 @@ def skeleton(
     """
     kinds = {j.symbol: j.kind for j in d.joints}
     drawn = Skeleton(
-        tuple(points),
-        {name: tuple(link) for name, link in links.items()},
-        {str(joint): tuple(at) for joint, at in joints.items()},
-        hand,
-        tuple(ground),
-        {str(joint): kinds[joint] for joint in joints},
+        points=tuple(points),
+        links={name: tuple(link) for name, link in links.items()},
+        joints={str(joint): tuple(at) for joint, at in joints.items()},
+        hand=hand,
+        ground=tuple(ground),
+        kinds={str(joint): kinds[joint] for joint in joints},
     )
     places = {name: sp.Matrix(list(map(sp.sympify, at))) for name, at in points.items()}
     function = d.function(

@@ -346,15 +346,15 @@ class Derivation(Shown):
             raise ValueError(f"{where}: it can only use earlier steps of {self.name}")
         check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
         step = Step(
-            title,
-            reason,
-            tuple(shown.items()),
-            tuple(published),
-            tuple(a - b for a, b in equal),
-            tuple(nonnegative),
-            tuple(map(tuple, rows)),
-            proves,
-            tuple(uses),
+            title=title,
+            reason=reason,
+            shown=tuple(shown.items()),
+            published=tuple(published),
+            vanishes=tuple(a - b for a, b in equal),
+            nonnegative=tuple(nonnegative),
+            rows=tuple(map(tuple, rows)),
+            proves=proves,
+            uses=tuple(uses),
         )
         self.steps.append(step)
         return step
@@ -402,18 +402,18 @@ class Derivation(Shown):
         check_text(f"{self.name}.{name}", summary, source)
         check_text(f"{self.name}.{name}", *notes, lines=True)
         function = Function(
-            name,
-            summary,
-            tuple(array(k, v) for k, v in inputs.items()),
-            tuple(array(k, v) for k, v in outputs.items()),
-            tuple(program.body) if program else (),
-            branches,
-            result,
-            source,
-            tuple(notes),
-            boolean,
-            equation,
-            tuple(entries),
+            name=name,
+            summary=summary,
+            inputs=tuple(array(k, v) for k, v in inputs.items()),
+            outputs=tuple(array(k, v) for k, v in outputs.items()),
+            body=tuple(program.body) if program else (),
+            branches=branches,
+            result=result,
+            source=source,
+            notes=tuple(notes),
+            boolean=boolean,
+            equation=equation,
+            entries=tuple(entries),
         )
         self._check_symbols(function)
         self.functions.append(function)
@@ -454,18 +454,18 @@ class Derivation(Shown):
         """
         self.claims.append(
             Claim(
-                label,
-                printed,
-                check,
-                where,
-                (notation or Notation({})).extended(means or {}),
-                tuple(phrases),
-                opposites or {},
-                corrected,
-                tuple(readings),
-                erratum,
-                paraphrase,
-                fixed,
+                label=label,
+                printed=printed,
+                check=check,
+                where=where,
+                notation=(notation or Notation({})).extended(means or {}),
+                phrases=tuple(phrases),
+                opposites=opposites or {},
+                corrected=corrected,
+                readings=tuple(readings),
+                erratum=erratum,
+                paraphrase=paraphrase,
+                fixed=fixed,
             )
         )
 

@@ -471,7 +471,16 @@ class Program:
         """
         symbol = self._symbol(name)
         exact = sp.sympify(scale, strict=True)
-        self.body.append(Vanishes(symbol, value, exact, meaning, tuple(free), squares))
+        self.body.append(
+            Vanishes(
+                symbol=symbol,
+                value=value,
+                scale=exact,
+                meaning=meaning,
+                free=tuple(free),
+                squares=squares,
+            )
+        )
         return symbol
 
     def determined(

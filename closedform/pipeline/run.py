@@ -431,7 +431,15 @@ def _printed(
         raise DerivationError(source.name, f"not printed: {error}") from error
     stored = kept is not None
     files, share = printed.files, printed.share
-    return Printed(source.name, proof, seconds, stored, files, share, bool(given_up))
+    return Printed(
+        name=source.name,
+        proof=proof,
+        seconds=seconds,
+        stored=stored,
+        files=files,
+        share=share,
+        given_up=bool(given_up),
+    )
 
 
 def run(

@@ -373,7 +373,14 @@ def _task_plane(
         [_coordinate(n, flat[0, 0, places[n]], unit) for n in others]
         + [f"{_spoken(r, name)} {value:.3g} rad" for name, value in r.beside.items()]
     )
-    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section, unit)
+    return _Grid(
+        sides=(sides[0], sides[1]),
+        targets=targets,
+        names=(chosen[0], chosen[1]),
+        joints=False,
+        section=section,
+        unit=unit,
+    )
 
 
 def _spoken(r: Robot, name: str) -> str:

@@ -93,15 +93,15 @@ def judge(claim: Claim, errata: Sequence[Erratum]) -> ClaimResult:
         else ()
     )
     return ClaimResult(
-        claim.label,
-        claim.where,
-        claim.text,
-        kind,
-        shown[0],
-        plain(claim.corrected),
-        results,
-        claim.erratum,
-        claim.paraphrase,
+        label=claim.label,
+        where=claim.where,
+        printed=claim.text,
+        kind=kind,
+        evidence=shown[0],
+        corrected=plain(claim.corrected),
+        readings=results,
+        erratum=claim.erratum,
+        paraphrase=claim.paraphrase,
     )
 
 

@@ -72,13 +72,14 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     )
     cases = [case for link in inverse.links for case in link.degenerate if case.free]
     return InverseResult(
-        function.name,
-        branches,
-        len(cases if by_lemmas else inverse.degenerate),
-        count // each,
-        method,
-        tuple(dict.fromkeys(map(str, assumptions))),
-        tuple(dict.fromkeys(link.lemma.name for link in inverse.links if link.lemma)) or lemmas,
+        function=function.name,
+        branches=branches,
+        continua=len(cases if by_lemmas else inverse.degenerate),
+        solutions=count // each,
+        method=method,
+        assumptions=tuple(dict.fromkeys(map(str, assumptions))),
+        lemmas=tuple(dict.fromkeys(link.lemma.name for link in inverse.links if link.lemma))
+        or lemmas,
     )
 
 

@@ -139,12 +139,12 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
             certificates.lack("claims decided by enumeration or inequalities")
     require_shown(derivation.errata, claims)
     return Proof(
-        derivation.name,
-        derivation.paper.key,
-        tuple(s.title for s in derivation.steps),
-        identities,
-        tuple(inverses),
-        tuple(claims),
-        tuple(map(erratum_result, derivation.errata)),
-        derivation.without_inverse,
+        name=derivation.name,
+        paper=derivation.paper.key,
+        steps=tuple(s.title for s in derivation.steps),
+        identities=identities,
+        inverses=tuple(inverses),
+        claims=tuple(claims),
+        errata=tuple(map(erratum_result, derivation.errata)),
+        without_inverse=derivation.without_inverse,
     )

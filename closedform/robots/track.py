@@ -96,12 +96,12 @@ class _Tracker:
         earlier = labels[latest[:-1]]
         reached = self.branch >= 0
         return Path(
-            self.q_path,
-            self.status,
-            self.branch,
-            reached & (earlier >= 0) & (earlier != self.branch),
-            (step > self.max_step).any(-1),
-            self.outside,
+            q=self.q_path,
+            status=self.status,
+            branch=self.branch,
+            changed=reached & (earlier >= 0) & (earlier != self.branch),
+            jump=(step > self.max_step).any(-1),
+            outside=self.outside,
         )
 
     def _outside(self, start: int, end: int) -> NDArray[np.bool_]:

@@ -124,7 +124,14 @@ def singles(arm: Serial) -> Singles:
             end = group.end if i == len(group.rows) - 1 else sp.eye(3)
             number = len(joints) + 1
             joints.append(
-                Single(number, next(names), row.turn, row.slides, sp.Matrix(row.shift), end)
+                Single(
+                    number=number,
+                    joint=next(names),
+                    turn=row.turn,
+                    slides=row.slides,
+                    shift=sp.Matrix(row.shift),
+                    end=end,
+                )
             )
     last = joints[-1]
     motion = _motion(last) * arm.last

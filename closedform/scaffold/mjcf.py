@@ -95,12 +95,29 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
         written = written * back_written * placed(_exact(joint.pos), level)
         link = f"{end} after {joint.name or i}"
         name, literal = joint.name or f"q{i + 1}", (written, given)
-        yield Joint(name, kind, at, link, place, axis, limits, written=literal)
+        yield Joint(
+            name=name,
+            kind=kind,
+            parent=at,
+            child=link,
+            origin=place,
+            axis=axis,
+            limits=limits,
+            written=literal,
+        )
         at, place, written = link, sp.eye(4), sp.eye(4)
         back = placed([-e for e in through], level)
         back_written = placed([-e for e in _exact(joint.pos)], level)
     last, literal = place * back, (written * back_written, sp.Matrix([0, 0, 1]))
-    yield Joint(f"{end} on {at}", "fixed", at, end, last, literal[1], written=literal)
+    yield Joint(
+        name=f"{end} on {at}",
+        kind="fixed",
+        parent=at,
+        child=end,
+        origin=last,
+        axis=literal[1],
+        written=literal,
+    )
 
 
 def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
@@ -108,7 +125,15 @@ def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
     where = f"{file}, site {shown_name(site.name)}"
     place, written = _pose(site.pos, site.quat, where, notes)
     body, z = _name(model.body(int(site.bodyid[0]))), sp.Matrix([0, 0, 1])
-    fixed = Joint(site.name, "fixed", body, site.name, place, z, written=(written, z))
+    fixed = Joint(
+        name=site.name,
+        kind="fixed",
+        parent=body,
+        child=site.name,
+        origin=place,
+        axis=z,
+        written=(written, z),
+    )
     return fixed if site.name else None
 
 

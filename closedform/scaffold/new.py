@@ -79,7 +79,7 @@ class Script:
 
 
 @dataclass
-class Search:
+class InverseSearch:
     """How to search for an inverse: the joint that is ``given``, and a limit of time in seconds.
 
     ``say`` is called with a description of each step.  ``fault`` is called with the name and the
@@ -113,7 +113,7 @@ def new(
     *,
     modified: bool = False,
     choice: Choice = DEFAULT,
-    search: Search | None = None,
+    search: InverseSearch | None = None,
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
@@ -135,7 +135,7 @@ def new(
     search
         how to search for an inverse
     """
-    search = search or Search()
+    search = search or InverseSearch()
     search.progress("reading the table")
     check_name(name)
     if kind == "loop":
@@ -164,12 +164,12 @@ def _comment(text: str) -> str:
     return "# " + "".join(c if c.isprintable() else "?" for c in line)
 
 
-def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
+def skeleton(name: str, table: Table, origin: str, search: InverseSearch) -> Script:
     """The script, with the proposed inverse or a place for one."""
     origin = file_name(origin)
     negative = _negative(table)
 
-    def made(told: Search) -> Serial:
+    def made(told: InverseSearch) -> Serial:
         told.progress("deriving the forward map")
         d = Derivation(name, name, Paper("own", "own", ()), "")
         for symbol in table.parameters:
@@ -186,13 +186,13 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
         inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
     return Script(
-        _script(head, inverse),
-        inverse.outcome,
-        tuple(table.notes),
-        tuple(inverse.explained),
-        f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else "",
-        inverse.structure,
-        inverse.lemmas,
+        text=_script(head, inverse),
+        inverse=inverse.outcome,
+        notes=tuple(table.notes),
+        explained=tuple(inverse.explained),
+        advice=f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else "",
+        structure=inverse.structure,
+        lemmas=inverse.lemmas,
     )
 
 
@@ -355,7 +355,7 @@ class _Inverse:
 
 
 def _searched(
-    name: str, made: Callable[[Search], Serial], head: Sequence[str], search: Search
+    name: str, made: Callable[[InverseSearch], Serial], head: Sequence[str], search: InverseSearch
 ) -> _Inverse:
     """The lines of the first chain that is proved; it counts too if the time ends the proof."""
     refused: list[Tried] = []
@@ -386,7 +386,7 @@ def _searched(
         refused.append(Tried(inverse.name, error))
 
 
-def _inverse_lines(arm: Serial, search: Search, refused: Sequence[Tried]) -> _Inverse:
+def _inverse_lines(arm: Serial, search: InverseSearch, refused: Sequence[Tried]) -> _Inverse:
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
@@ -407,7 +407,15 @@ def _inverse_lines(arm: Serial, search: Search, refused: Sequence[Tried]) -> _In
         'ik.finish("All solutions of the inverse kinematics.")',
     ]
     outcome = f"an inverse with {count} is proposed ({found.structure})"
-    return _Inverse(lines, outcome, explained, "", found.structure, found.lemmas, found.name)
+    return _Inverse(
+        lines=lines,
+        outcome=outcome,
+        explained=explained,
+        advice="",
+        structure=found.structure,
+        lemmas=found.lemmas,
+        name=found.name,
+    )
 
 
 def _without_inverse(

@@ -62,7 +62,14 @@ def propose(
                 continue
             tried = [t for t in tried if t.name != name]
             lemmas = tuple(dict.fromkeys(maker.used))
-            return Proposal(name, found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
+            return Proposal(
+                name=name,
+                structure=found,
+                lines=tuple(maker.lines),
+                lemmas=lemmas,
+                branches=maker.branches,
+                tried=tuple(tried),
+            )
     raise refused[0].error.after(tried) if refused else _refusal(arm, given, tried, progress)
 
 

@@ -88,16 +88,16 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
     mimic = element.find("mimic")
     meant = placed(xyz, rpy)
     return Joint(
-        name,
-        kind,
-        links[0],
-        links[1],
-        meant,
-        direction,
-        None if kind == "continuous" else _limits(element.find("limit"), where, notes),
-        "" if mimic is None else mimic.get("joint", "another joint"),
-        _number(mimic, "multiplier", 1, where),
-        _number(mimic, "offset", 0, where),
+        name=name,
+        kind=kind,
+        parent=links[0],
+        child=links[1],
+        origin=meant,
+        axis=direction,
+        limits=None if kind == "continuous" else _limits(element.find("limit"), where, notes),
+        mimics="" if mimic is None else mimic.get("joint", "another joint"),
+        factor=_number(mimic, "multiplier", 1, where),
+        offset=_number(mimic, "offset", 0, where),
         written=None if written == (meant, direction) else written,
     )
 

@@ -60,12 +60,12 @@ class Site(Backend):
         derivation, proof = mechanism.derivation, mechanism.proof
         chapter = book.chapter(derivation, part(derivation, proof))
         card = Card(
-            chapter,
-            len(derivation.branches),
-            len(derivation.assembly_modes),
-            tuple(f.name for f in derivation.functions),
-            info(derivation),
-            {
+            chapter=chapter,
+            branches=len(derivation.branches),
+            modes=len(derivation.assembly_modes),
+            functions=tuple(f.name for f in derivation.functions),
+            info=info(derivation),
+            constants={
                 "JOINTS": tuple(map(str, derivation.actuated)),
                 "TASK": tuple(derivation.task),
                 "BRANCHES": tuple(derivation.branches),

@@ -559,12 +559,12 @@ FIGURES = (
 
 ALL = tuple((NAME, f) for f in FIGURES)
 PAPER = PaperFigures(
-    "chablat-wenger-angeles",
-    "D. Chablat, P. Wenger, J. Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator",
-    15,
-    {k: (NAME, FIGURES[k - 1]) for k in range(1, 16)},
-    {},
-    {
+    paper="chablat-wenger-angeles",
+    heading="D. Chablat, P. Wenger, J. Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator",
+    count=15,
+    drawn={k: (NAME, FIGURES[k - 1]) for k in range(1, 16)},
+    missing={},
+    contradicted={
         11: "The conditions of section 3.2 as they are printed allow $L_0 < 2 L_1$; then $C$ and "
         "$D$ meet, and the joint space is not free of parallel singularities.",
     },

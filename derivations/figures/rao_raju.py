@@ -271,12 +271,13 @@ FIGURES = (
 )  # fmt: skip
 
 PAPER = PaperFigures(
-    "rao-raju",
-    "S. Rao, J. Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator",
-    4,
-    {k: (CLOSED if k == 3 else NAME, FIGURES[k - 1]) for k in range(1, 5)},
-    {},
-    {
+    paper="rao-raju",
+    heading="S. Rao, J. Raju: Forward and inverse kinematics of a hybrid series-parallel "
+    "manipulator",
+    count=4,
+    drawn={k: (CLOSED if k == 3 else NAME, FIGURES[k - 1]) for k in range(1, 5)},
+    missing={},
+    contradicted={
         3: "The roll that the figure and eq. (3) show has the other sign in eq. (9): with the "
         "equations as they are printed, the links of the wrist do not meet the tips of the arms.",
     },

@@ -256,12 +256,13 @@ ALL = (
 )  # fmt: skip
 
 PAPER = PaperFigures(
-    "reddy-babu",
-    "S. B. K. Reddy, K. R. Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
-    7,
-    {number: ALL[number - 1] for number in range(1, 8)},
-    {},
-    {
+    paper="reddy-babu",
+    heading="S. B. K. Reddy, K. R. Babu: Kinematic Attitudes of a Planar Robot and a Spherical "
+    "Wrist",
+    count=7,
+    drawn={number: ALL[number - 1] for number in range(1, 8)},
+    missing={},
+    contradicted={
         2: "The paper gives $(-30°, -30°)$ for the elbow up in its worked example. The arm reaches "
         "the point with the angles that the figure shows.",
     },

@@ -227,16 +227,16 @@ BY_NUMBER = {1: 0, 3: 1, 4: 2, 5: 3, 6: 4, 7: 5}
 
 ALL = tuple((NAME, f) for f in FIGURES)
 PAPER = PaperFigures(
-    "shi-zhu-li",
-    "J. Shi, X. Zhu, Z. Li: New Method for Kinematic Analysis of a Hybrid Manipulator",
-    8,
-    {number: (NAME, FIGURES[k]) for number, k in BY_NUMBER.items()},
-    {
+    paper="shi-zhu-li",
+    heading="J. Shi, X. Zhu, Z. Li: New Method for Kinematic Analysis of a Hybrid Manipulator",
+    count=8,
+    drawn={number: (NAME, FIGURES[k]) for number, k in BY_NUMBER.items()},
+    missing={
         2: "photographs of the robot",
         8: "the differences between the curves of two programs, one of which simulates a model "
         "that is not printed; the curves of Fig. 7 (a) are from the same model",
     },
-    {
+    contradicted={
         5: "The text says that Fig. 5 shows the virtual motor; by its caption it shows a revolute "
         "joint, and the open chain is in Fig. 6.",
     },

@@ -75,17 +75,19 @@ def _robot(source: pipeline.Source) -> Robot:
     actuated = d.actuated
     inverse = next(i for i in d.inverses if i.function == "ik")
     return Robot(
-        source.name,
-        tuple(p.name for p in d.parameters),
-        tuple(float(p.value) for p in d.parameters),
-        tuple(not p.nonnegative for p in d.parameters),
-        tuple(p.unit == "rad" for p in d.parameters),
-        tuple(s.name for s in actuated),
-        tuple(joints[s].kind == "prismatic" for s in actuated),
-        tuple(s in inverse.nonnegative for s in actuated),
-        tuple(actuated.index(b) if (b := joints[s].twin_of) is not None else -1 for s in actuated),
-        tuple(s in inverse.angles for s in d["ik"].symbols),
-        bool(d.assembly_modes),
-        tuple(p.name in NEEDED.get(source.name, ()) for p in d.parameters),
-        sp.lambdify([p.symbol for p in d.parameters], inverse.condition),
+        name=source.name,
+        fields=tuple(p.name for p in d.parameters),
+        defaults=tuple(float(p.value) for p in d.parameters),
+        signed=tuple(not p.nonnegative for p in d.parameters),
+        turned=tuple(p.unit == "rad" for p in d.parameters),
+        joints=tuple(s.name for s in actuated),
+        slides=tuple(joints[s].kind == "prismatic" for s in actuated),
+        positive=tuple(s in inverse.nonnegative for s in actuated),
+        twin_of=tuple(
+            actuated.index(b) if (b := joints[s].twin_of) is not None else -1 for s in actuated
+        ),
+        angles=tuple(s in inverse.angles for s in d["ik"].symbols),
+        modes=bool(d.assembly_modes),
+        needed=tuple(p.name in NEEDED.get(source.name, ()) for p in d.parameters),
+        condition=sp.lambdify([p.symbol for p in d.parameters], inverse.condition),
     )

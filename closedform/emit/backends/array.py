@@ -104,21 +104,23 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> A
     names = [OPERATIONS, *kernel_arguments(printer, program)]
     size = Size.of(program)
     return ArrayFunction(
-        function.name,
-        "".join(f'{a.name}: "ArrayLike", ' for a in function.inputs),
-        tuple_code(a.name for a in function.inputs),
-        f'"{function.result}"' if function.result else "Any",
-        f"{function.result}(*result)" if function.result else "result",
-        textwrap.indent(
+        name=function.name,
+        signature="".join(f'{a.name}: "ArrayLike", ' for a in function.inputs),
+        arguments=tuple_code(a.name for a in function.inputs),
+        returns=f'"{function.result}"' if function.result else "Any",
+        wrap=f"{function.result}(*result)" if function.result else "result",
+        docstring=textwrap.indent(
             "\n".join(docstring(derivation, function, WIDTH - 4, WORDS)), "    "
         ).strip(),
-        argument_list(names, f"_{function.name}", WIDTH),
-        tuple(lines),
-        tuple(v for result in results for v in result),
-        _specs((a.name, a.shape, "real") for a in function.inputs),
-        _specs((r.name, r.shape, r.kind) for r in program.results),
-        repr(program.parameters),
-        f"_runtime.Size({size.lengths!r}, {size.degrees!r}, {_highest(program)})" if size else "",
+        planes=argument_list(names, f"_{function.name}", WIDTH),
+        lines=tuple(lines),
+        values=tuple(v for result in results for v in result),
+        inputs=_specs((a.name, a.shape, "real") for a in function.inputs),
+        outputs=_specs((r.name, r.shape, r.kind) for r in program.results),
+        used=repr(program.parameters),
+        size=f"_runtime.Size({size.lengths!r}, {size.degrees!r}, {_highest(program)})"
+        if size
+        else "",
     )
 
 

@@ -119,18 +119,20 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
         kernels.append(_kernel(f"_{function.name}_common", COMMON, program.common))
     returns = f'"{function.result}"' if function.result else "Any"
     return NumpyFunction(
-        function.name,
-        call_signature(function),
-        tuple_code(a.name for a in function.inputs),
-        returns,
-        f"{function.result}(*result)" if function.result else "result",
-        textwrap.indent("\n".join(docstring(derivation, function, WIDTH - 4)), "    ").strip(),
-        tuple(kernels),
-        _arrays((a.name, a.shape, "real") for a in function.inputs),
-        _arrays((r.name, r.shape, r.kind) for r in program.results),
-        repr(program.parameters),
-        kernels[-1].name if program.common else "",
-        _size(program),
+        name=function.name,
+        signature=call_signature(function),
+        arguments=tuple_code(a.name for a in function.inputs),
+        returns=returns,
+        wrap=f"{function.result}(*result)" if function.result else "result",
+        docstring=textwrap.indent(
+            "\n".join(docstring(derivation, function, WIDTH - 4)), "    "
+        ).strip(),
+        kernels=tuple(kernels),
+        inputs=_arrays((a.name, a.shape, "real") for a in function.inputs),
+        outputs=_arrays((r.name, r.shape, r.kind) for r in program.results),
+        used=repr(program.parameters),
+        common=kernels[-1].name if program.common else "",
+        size=_size(program),
     )
 
 

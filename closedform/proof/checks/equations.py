@@ -205,7 +205,14 @@ class Equal(Check):
             point = next((p for p in verdict.evidence if isinstance(p, Mapping)), {})
             sentence = ("neither sign of $\\pm$ makes ", names[0], " equal ", names[1])
             return Verdict(REFUTED, (*at(point), *sentence))
-        return Identity(first, side, self.nonnegative, self.small, names, self.postures).judge()
+        return Identity(
+            printed=first,
+            derived=side,
+            nonnegative=self.nonnegative,
+            small=self.small,
+            names=names,
+            postures=self.postures,
+        ).judge()
 
     def _in_cases(self, left: list[Expr], right: list[Expr], names: tuple[str, str]) -> Verdict:
         """The worst verdict of the cases, each under its conditions."""

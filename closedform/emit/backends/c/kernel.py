@@ -80,7 +80,15 @@ def c_array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArr
     kinds = {"real": "CF_REAL", "status": "CF_STATUS", "bool": "CF_BOOL"}
     dims = "{ " + (", ".join(map(str, shape)) or "0") + " }"
     ctype = "real_t" if kind == "real" else "uint8_t"
-    return CArray(name, ctype, kinds[kind], len(shape), dims, prod(shape), const)
+    return CArray(
+        name=name,
+        type=ctype,
+        kind=kinds[kind],
+        ndim=len(shape),
+        dims=dims,
+        size=prod(shape),
+        const=const,
+    )
 
 
 def folded(arguments: Sequence[str]) -> str:

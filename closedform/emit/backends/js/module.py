@@ -80,12 +80,12 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> ModuleFunction:
     branches = len(function.branches) if function.branches else 0
     return ModuleFunction(
-        function.name,
-        kernel(function.name, program, branches),
-        tuple(single_doc(derivation, function, WIDTH - 3)),
-        tuple(batch_doc(function, program, WIDTH - 3)),
-        ", ".join(a.name for a in function.inputs),
-        ", ".join(r.name for r in program.results),
+        name=function.name,
+        kernel=kernel(function.name, program, branches),
+        doc=tuple(single_doc(derivation, function, WIDTH - 3)),
+        batch_doc=tuple(batch_doc(function, program, WIDTH - 3)),
+        arguments=", ".join(a.name for a in function.inputs),
+        results=", ".join(r.name for r in program.results),
     )
 
 
@@ -96,15 +96,15 @@ def kernel(name: str, program: Lowered, branches: int = 0) -> Kernel:
         programs.append(_compute(f"_{name}_common", program.common))
     results = [(r.name, r.shape[1:] if branches else r.shape, r.kind) for r in program.results]
     return Kernel(
-        name,
-        f"_{name.upper()}",
-        tuple(programs),
-        programs[0].name,
-        programs[-1].name if program.common else "null",
-        tuple(_spec(a.name, a.shape, 0, "real") for a in program.inputs),
-        tuple(_spec(result, shape, branches, kind) for result, shape, kind in results),
-        _strings(program.parameters),
-        _size(program),
+        name=name,
+        constant=f"_{name.upper()}",
+        programs=tuple(programs),
+        compute=programs[0].name,
+        common=programs[-1].name if program.common else "null",
+        inputs=tuple(_spec(a.name, a.shape, 0, "real") for a in program.inputs),
+        outputs=tuple(_spec(result, shape, branches, kind) for result, shape, kind in results),
+        used=_strings(program.parameters),
+        size=_size(program),
     )
 
 

@@ -24,7 +24,7 @@ from closedform.pipeline import run as pipeline
 from closedform.pipeline.trial import fault
 from closedform.proof.prove import prove
 from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
-from closedform.scaffold.new import Script, Search, new
+from closedform.scaffold.new import InverseSearch, Script, new
 
 from .native import LOOP, compiled, processor, running
 
@@ -83,7 +83,7 @@ class Robot:
 
     def script(self, given: str = "") -> Script:
         kind = "urdf" if self.path.suffix == ".urdf" else "dh"
-        search = Search(given=given, fault=fault)
+        search = InverseSearch(given=given, fault=fault)
         return new(self.path.stem, kind, self.path, modified=self.modified, search=search)
 
 

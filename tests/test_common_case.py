@@ -7,6 +7,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
+from given import beside
 from interpreter import run
 
 from closedform.emit.backends.c.kernel import Emission
@@ -60,20 +61,20 @@ def kernels() -> list[tuple[str, str]]:
     return found
 
 
-def arguments_at(module: ModuleType, name: str, q: np.ndarray) -> np.ndarray:
+def arguments_at(module: ModuleType, name: str, q: np.ndarray) -> list[np.ndarray]:
     """What a kernel takes at these postures: joints, or the targets with them."""
-    (argument,) = getattr(module, name).inputs
+    argument, *others = getattr(module, name).inputs
     if argument.name == "q":
-        return q
+        return [q]
     image = module.pose(q) if argument.shape == (4, 4) else module.fk(q)
-    return image.p[:, 0] if hasattr(image, "p") else image
+    return [image.p[:, 0] if hasattr(image, "p") else image, *(beside(module, q) if others else ())]
 
 
 def planes(robot: str, name: str, q: np.ndarray) -> tuple[list[np.ndarray], object]:
     """The planes of the arguments at these postures, and of the parameters."""
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")
     kernel = getattr(module, name)
-    x = arguments_at(module, name, q).reshape(len(q), -1)
+    x = np.concatenate([a.reshape(len(q), -1) for a in arguments_at(module, name, q)], axis=1)
     x = x[np.isfinite(x).all(axis=-1)]
     used = [np.float64(getattr(module.Parameters(), name)) for name in kernel.used]
     return [*x.T, *used], kernel
@@ -99,7 +100,9 @@ def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize(("robot", "name"), kernels())
 def test_generated(robot: str, name: str) -> None:
-    for q, most in zip(postures(robot, 4000), (0.02, 1), strict=True):
+    # the elbow of the Franka arm counts as nearly straight or folded more often
+    usual = 0.06 if robot == "franka_arm" else 0.02
+    for q, most in zip(postures(robot, 4000), (usual, 1), strict=True):
         arguments, kernel = planes(robot, name, q)
         with np.errstate(all="ignore"):
             whole = kernel.compute(*arguments)
@@ -131,14 +134,15 @@ def test_rare_postures_of_a_batch(robot: str, name: str) -> None:
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")
     usual, q = postures(robot, 60)
     q[::2] = usual[::2]
-    x, function = arguments_at(module, name, q), getattr(module, name.lower()[1:])
-    together, single = parts(function(x)), [parts(function(one)) for one in x]
+    taken, function = arguments_at(module, name, q), getattr(module, name.lower()[1:])
+    together = parts(function(*taken))
+    single = [parts(function(*one)) for one in zip(*taken, strict=True)]
     few = 64 * np.finfo(float).eps
     for whole, ones in zip(together, zip(*single, strict=True), strict=True):
         exact = whole.dtype == np.uint8
         np.testing.assert_allclose(whole, ones, *((0, 0) if exact else (few, few)))
     larger = module.Parameters(*(np.array([[v], [v]]) for v in module.Parameters()))
-    for whole, twice in zip(together, parts(function(x, larger)), strict=True):
+    for whole, twice in zip(together, parts(function(*taken, larger)), strict=True):
         np.testing.assert_array_equal(twice[0], whole)
         np.testing.assert_array_equal(twice[1], whole)
 

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from extension_toy.build import SANITIZED, function
 from extension_toy.toy import chain, values
+from given import beside
 
 ROBOTS = sorted(
     path.stem
@@ -183,5 +184,6 @@ def test_every_mechanism(robot: str) -> None:
         x = x[:, 0] if module.ASSEMBLY_MODES else x
     else:
         x = rng.uniform(-0.5, 0.5, (1025, len(module.TASK)))
-    one = module.ik(x, threads=1)
-    assert all(same_bits(module.ik(x, threads=n), one) for n in (2, 3, 7))
+    more = beside(module, q)
+    one = module.ik(x, *more, threads=1)
+    assert all(same_bits(module.ik(x, *more, threads=n), one) for n in (2, 3, 7))

@@ -263,7 +263,9 @@ class LinkAtHeight:
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn by the better of both squares."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
-        tangent = nearly_tangent(p, turn.root, at.h, suffix)
+        # not the root, which is zero also where the turn is far out of reach
+        lever = p.let(f"lever{suffix}", sp.sqrt(sp.Abs((at.h - at.c) * (at.h + at.c))))
+        tangent = nearly_tangent(p, lever, at.h, suffix)
         height = sp.Abs(self.height)
         own = sp.Max(0, (self.length - height) * (self.length + height))
         square = sp.Piecewise((own, self.length < at.h), (at.below * at.above, True))

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 473 compare and select, 338 add, 23 atan2, 41 divide, 575 multiply, 1 sincos, 50 sqrt
+#   ik: 475 compare and select, 338 add, 23 atan2, 41 divide, 577 multiply, 1 sincos, 52 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the
@@ -1116,29 +1116,28 @@ def _ik(
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
     free6 = reach <= t35
     t71 = s_z * 2.0
-    above6 = ops.max(t70, 0.0)
-    below6 = ops.max(t69, 0.0)
-    t72 = above6 * below6
-    root6 = ops.sqrt(t72)
-    t73 = reach * 0.00390625
-    t74 = reach * ops.vanishing
-    tangent6 = root6 - t73 <= t74
+    t72 = reach * 0.00390625
+    t73 = reach * ops.vanishing
+    tangent6 = ops.sqrt(ops.abs(t69 * t70)) - t72 <= t73
     v_x = a5 - a4 * t67 + d3 * t66
-    t75 = ops.abs(v_x)
-    t76 = t75 < reach
-    t77 = ops.abs(w_y)
-    held6 = ops.select(t76, ops.max(0.0, -((t77 - t75) * (t77 + t75))), t72)
-    kept6 = ops.select(tangent6, ops.sqrt(held6), root6)
-    t78 = above6 - below6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t78 * t78), above6 + below6)
+    t74 = ops.abs(v_x)
+    t75 = t74 < reach
+    t76 = ops.abs(w_y)
+    below6 = ops.max(t69, 0.0)
+    above6 = ops.max(t70, 0.0)
+    t77 = below6 * above6
+    held6 = ops.select(t75, ops.max(0.0, -((t76 - t74) * (t76 + t74))), t77)
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t77))
+    t78 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t78 * t78), below6 + above6)
     t79 = 1.0 / (reach * span6)
     t80 = t71 * kept6 * t79
     t81 = t79 * (p_x * t78)
-    s6 = ops.select(free6, 0.0, t80 + t81)
+    s6 = ops.select(free6, 0.0, t80 - t81)
     t82 = p_x * 2.0
     t83 = t79 * (t82 * kept6)
     t84 = t79 * (s_z * t78)
-    c6 = ops.select(free6, 1.0, t83 - t84)
+    c6 = ops.select(free6, 1.0, t83 + t84)
     t85 = ops.sqrt(v_x * v_x)
     w_x = p_x * c6 + s_z * s6
     on_axis_5 = ops.min(t85, ops.sqrt(t20 + w_x * w_x)) <= t35
@@ -1240,197 +1239,196 @@ def _ik(
     square__elbow_1_2 = t144 * t144
     t148 = ops.opposite(free6)
     t149 = t119 & t148
-    above6_over_ahead_front = ops.max(t118, 0.0)
-    below6_over_ahead_front = ops.max(t117, 0.0)
-    t150 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = ops.sqrt(t150)
-    tangent6_over_ahead_front = root6_over_ahead_front - t73 <= t74
-    t151 = t149 & tangent6_over_ahead_front
+    tangent6_over_ahead_front = ops.sqrt(ops.abs(t117 * t118)) - t72 <= t73
+    t150 = t149 & tangent6_over_ahead_front
     v_x_over_ahead_front = a5 - a4 * t115 - d3 * t114
-    t152 = ops.abs(v_x_over_ahead_front)
-    t153 = t152 < reach
-    t154 = t124 & ops.opposite(t99)
-    t155 = t93 & t148
-    t156 = t149 | (t151 & ops.opposite(t153)) | t154 | t155
-    t157 = t155 & tangent6
-    t158 = t127 & ops.opposite(t53)
-    t159 = ops.select(t156 | (t157 & ops.opposite(t76)) | t158, t21, 1.0)
-    reach_2 = ops.sqrt(t159)
-    t160 = reach_2 + t49
-    high__elbow_1_2 = t160 * t160
-    t161 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    miss__elbow_1_2 = square__elbow_1_2 - t161
+    t151 = ops.abs(v_x_over_ahead_front)
+    t152 = t151 < reach
+    t153 = t124 & ops.opposite(t99)
+    t154 = t93 & t148
+    t155 = t149 | (t150 & ops.opposite(t152)) | t153 | t154
+    t156 = t154 & tangent6
+    t157 = t127 & ops.opposite(t53)
+    t158 = ops.select(t155 | (t156 & ops.opposite(t75)) | t157, t21, 1.0)
+    reach_2 = ops.sqrt(t158)
+    t159 = reach_2 + t49
+    high__elbow_1_2 = t159 * t159
+    t160 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
+    miss__elbow_1_2 = square__elbow_1_2 - t160
     above__elbow_1_2 = ops.select(t53, slope__elbow_1_2, miss__elbow_1_2)
     bend__elbow_1_2 = t147 * t147
     inner__elbow_1_2 = slope__elbow_1_2 * slope__elbow_1_2 - miss__elbow_1_2 * bend__elbow_1_2
-    t162 = ops.select(t158, ops.max(0.0, inner__elbow_1_2), 1.0)
-    t163 = 2.0 * (slope__elbow_1_2 + t54 * ops.sqrt(t162))
-    t164 = ops.select(t127, ops.select(t53, 2.0 * bend__elbow_1_2, t163), 1.0)
-    t165 = ops.select(t55, 0.0, above__elbow_1_2 / t164)
-    t166 = t165 * t165
-    t167 = 1.0 / ops.select(t126, 1.0 + t166, 1.0)
-    cosine__elbow_1_2 = ops.select(t61, t167 * (1.0 - t166), 1.0)
-    sine__elbow_1_2 = ops.select(t61, -(2.0 * t165 * t167), 0.0)
-    t168 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t169 = ops.select(tangent_elbow, t138 * cosine__elbow_1_2 - t168, t138)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -t169)
-    t170 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t171 = ops.select(tangent_elbow, t138 * sine__elbow_1_2 + t170, s__elbow_1_over_ahead_front_2)
-    t172 = ops.select(no_link_elbow, 0.0, t171)
-    t173 = c_straight_2 * celbow_2 - s_straight_2 * t172
-    t174 = c_straight_2 * t172 + s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t173 + d3 * t174
-    t175 = ops.abs(v_x_2)
-    t176 = d5 + a4 * t174 + d3 * t173
-    above6_2 = ops.max(reach_2 - t176, 0.0)
-    below6_2 = ops.max(reach_2 + t176, 0.0)
-    t177 = above6_2 * below6_2
-    held6_2 = ops.select(t76, ops.max(0.0, -((t77 - t175) * (t77 + t175))), t177)
-    t178 = ops.select(t155 & ops.opposite(tangent6), t177, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t157, held6_2, 1.0)), ops.sqrt(t178))
-    t179 = above6_2 - below6_2
-    t180 = ops.select(t157, 4.0 * held6_2 + t179 * t179, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t180), above6_2 + below6_2)
-    t181 = 1.0 / ops.select(t155, reach_2 * span6_2, 1.0)
-    t182 = t71 * kept6_2 * t181
-    t183 = t181 * (p_x * t179)
-    s6_2 = ops.select(free6, 0.0, t182 + t183)
-    t184 = t181 * (t82 * kept6_2)
-    t185 = t181 * (s_z * t179)
-    c6_2 = ops.select(free6, 1.0, t184 - t185)
+    t161 = ops.select(t157, ops.max(0.0, inner__elbow_1_2), 1.0)
+    t162 = 2.0 * (slope__elbow_1_2 + t54 * ops.sqrt(t161))
+    t163 = ops.select(t127, ops.select(t53, 2.0 * bend__elbow_1_2, t162), 1.0)
+    t164 = ops.select(t55, 0.0, above__elbow_1_2 / t163)
+    t165 = t164 * t164
+    t166 = 1.0 / ops.select(t126, 1.0 + t165, 1.0)
+    cosine__elbow_1_2 = ops.select(t61, t166 * (1.0 - t165), 1.0)
+    sine__elbow_1_2 = ops.select(t61, -(2.0 * t164 * t166), 0.0)
+    t167 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t168 = ops.select(tangent_elbow, t138 * cosine__elbow_1_2 - t167, t138)
+    celbow_2 = ops.select(no_link_elbow, 1.0, -t168)
+    t169 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t170 = ops.select(tangent_elbow, t138 * sine__elbow_1_2 + t169, s__elbow_1_over_ahead_front_2)
+    t171 = ops.select(no_link_elbow, 0.0, t170)
+    t172 = c_straight_2 * celbow_2 - s_straight_2 * t171
+    t173 = c_straight_2 * t171 + s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t172 + d3 * t173
+    t174 = ops.abs(v_x_2)
+    t175 = d5 + a4 * t173 + d3 * t172
+    below6_2 = ops.max(reach_2 + t175, 0.0)
+    above6_2 = ops.max(reach_2 - t175, 0.0)
+    t176 = below6_2 * above6_2
+    held6_2 = ops.select(t75, ops.max(0.0, -((t76 - t174) * (t76 + t174))), t176)
+    t177 = ops.select(t154 & ops.opposite(tangent6), t176, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t156, held6_2, 1.0)), ops.sqrt(t177))
+    t178 = below6_2 - above6_2
+    t179 = ops.select(t156, 4.0 * held6_2 + t178 * t178, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t179), below6_2 + above6_2)
+    t180 = 1.0 / ops.select(t154, reach_2 * span6_2, 1.0)
+    t181 = t71 * kept6_2 * t180
+    t182 = t180 * (p_x * t178)
+    s6_2 = ops.select(free6, 0.0, t181 - t182)
+    t183 = t180 * (t82 * kept6_2)
+    t184 = t180 * (s_z * t178)
+    c6_2 = ops.select(free6, 1.0, t183 + t184)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (p_x * c6_2 + s_z * s6_2)
-    t186 = t93 & ops.opposite(on_axis_5)
-    t187 = w_y * v_x_2
-    t188 = t187 * t187
-    t189 = t188 + ops.select(t186, dot_5_2 * dot_5_2, 1.0)
-    t190 = ops.select(t186, ops.sqrt(ops.select(t186, t189, 1.0)), 1.0)
-    t191 = 1.0 / t190
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t191)
+    t185 = t93 & ops.opposite(on_axis_5)
+    t186 = w_y * v_x_2
+    t187 = t186 * t186
+    t188 = t187 + ops.select(t185, dot_5_2 * dot_5_2, 1.0)
+    t189 = ops.select(t185, ops.sqrt(ops.select(t185, t188, 1.0)), 1.0)
+    t190 = 1.0 / t189
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t190)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t192 = ops.select(on_axis_5, 0.0, t187 * t191)
-    R3_21 = c5_2 * R2_21 - R1_23 * t192
-    R4_23_2 = t173 * R2_23 - ops.select(t93, t174 * R3_21, 1.0)
-    t193 = t93 & ops.opposite(aligned_wrist)
+    t191 = ops.select(on_axis_5, 0.0, t186 * t190)
+    R3_21 = c5_2 * R2_21 - R1_23 * t191
+    R4_23_2 = t172 * R2_23 - ops.select(t93, t173 * R3_21, 1.0)
+    t192 = t93 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t192
-    R4_13_2 = t173 * R2_13 - ops.select(t93, t174 * R3_11, 1.0)
-    t194 = ops.select(t193, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
-    t195 = 1.0 / ops.select(t193, ops.sqrt(t194), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t195)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t195)
-    t196 = ops.atan2(s_wrist, ops.select(t93, c_wrist, 1.0))
-    t197 = ops.select(failed, ops.nan, ops.wrap_cut(t196))
+    R3_11 = c5_2 * R2_11 - R1_13 * t191
+    R4_13_2 = t172 * R2_13 - ops.select(t93, t173 * R3_11, 1.0)
+    t193 = ops.select(t192, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
+    t194 = 1.0 / ops.select(t192, ops.sqrt(t193), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t194)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t194)
+    t195 = ops.atan2(s_wrist, ops.select(t93, c_wrist, 1.0))
+    t196 = ops.select(failed, ops.nan, ops.wrap_cut(t195))
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t192
-    R4_33 = t173 * (R1_31 * s6_2 - T33 * c6_2) - ops.select(t93, t174 * R3_31, 1.0)
-    t198 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t93, R4_33, 1.0))
-    t199 = ops.select(failed, ops.nan, ops.wrap_cut(t198))
-    R4_11 = t174 * R2_13 + ops.select(t93, t173 * R3_11, 1.0)
-    R4_21 = t174 * R2_23 + ops.select(t93, t173 * R3_21, 1.0)
-    t200 = ops.select(t93, s_wrist * (R2_11 * t192 + R1_13 * c5_2), 1.0)
-    t201 = ops.select(t93, c_wrist * (t192 * R2_21 + R1_23 * c5_2), 1.0)
-    t202 = ops.atan2(s_wrist * R4_11 - c_wrist * R4_21, ops.select(t93, t200 - t201, 1.0))
-    t203 = ops.select(failed, ops.nan, ops.wrap_cut(-t202))
-    t204 = ops.wrap_cut(-ops.atan2(t174, ops.select(t93, t173, 1.0)))
-    t205 = ops.select(failed, ops.nan, t204)
-    t206 = ops.wrap_cut(-ops.atan2(t192, ops.select(t93, c5_2, 1.0)))
-    t207 = ops.select(failed, ops.nan, t206)
-    t208 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t93, c6_2, 1.0)))
-    t209 = ops.select(failed, ops.nan, t208)
-    t210 = ops.atan2(s_x_theta7, ops.select(t120, c_x_theta7, 1.0))
-    t211 = ops.wrap_cut(t210)
-    t212 = ops.select(failed, ops.nan, t211)
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t191
+    R4_33 = t172 * (R1_31 * s6_2 - T33 * c6_2) - ops.select(t93, t173 * R3_31, 1.0)
+    t197 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t93, R4_33, 1.0))
+    t198 = ops.select(failed, ops.nan, ops.wrap_cut(t197))
+    R4_11 = t173 * R2_13 + ops.select(t93, t172 * R3_11, 1.0)
+    R4_21 = t173 * R2_23 + ops.select(t93, t172 * R3_21, 1.0)
+    t199 = ops.select(t93, s_wrist * (R2_11 * t191 + R1_13 * c5_2), 1.0)
+    t200 = ops.select(t93, c_wrist * (t191 * R2_21 + R1_23 * c5_2), 1.0)
+    t201 = ops.atan2(s_wrist * R4_11 - c_wrist * R4_21, ops.select(t93, t199 - t200, 1.0))
+    t202 = ops.select(failed, ops.nan, ops.wrap_cut(-t201))
+    t203 = ops.wrap_cut(-ops.atan2(t173, ops.select(t93, t172, 1.0)))
+    t204 = ops.select(failed, ops.nan, t203)
+    t205 = ops.wrap_cut(-ops.atan2(t191, ops.select(t93, c5_2, 1.0)))
+    t206 = ops.select(failed, ops.nan, t205)
+    t207 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t93, c6_2, 1.0)))
+    t208 = ops.select(failed, ops.nan, t207)
+    t209 = ops.atan2(s_x_theta7, ops.select(t120, c_x_theta7, 1.0))
+    t210 = ops.wrap_cut(t209)
+    t211 = ops.select(failed, ops.nan, t210)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t213 = ops.select(failed, ops.nan, ops.wrap(t196 + flip_wrist))
-    t214 = ops.select(failed, ops.nan, ops.wrap_cut(-t198))
-    t215 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t202))
-    t216 = ops.select(free6, 0.0, t80 - t81)
-    c6_bent_behind_front = ops.select(free6, 1.0, -(t83 + t84))
-    t217 = t67 * (R1_11 * t216 + T13 * c6_bent_behind_front)
-    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t216
-    t218 = w_x_bent_behind_front * w_x_bent_behind_front
-    on_axis_5_bent_behind_front = ops.min(t85, ops.sqrt(t20 + t218)) <= t35
+    t212 = ops.select(failed, ops.nan, ops.wrap(t195 + flip_wrist))
+    t213 = ops.select(failed, ops.nan, ops.wrap_cut(-t197))
+    t214 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t201))
+    t215 = ops.select(free6, 0.0, t80 + t81)
+    c6_bent_behind_front = ops.select(free6, 1.0, t84 - t83)
+    t216 = t67 * (R1_11 * t215 + T13 * c6_bent_behind_front)
+    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t215
+    t217 = w_x_bent_behind_front * w_x_bent_behind_front
+    on_axis_5_bent_behind_front = ops.min(t85, ops.sqrt(t20 + t217)) <= t35
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t219 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t220 = 1.0 / ops.sqrt(t87 + t219)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t220)
-    t221 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t216)
-    t222 = ops.select(on_axis_5_bent_behind_front, 0.0, t86 * t220)
-    t223 = t217 + t66 * (t221 - R1_13 * t222)
-    t224 = t67 * (R1_21 * t216 + T23 * c6_bent_behind_front)
-    t225 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t216)
-    t226 = t224 + t66 * (t225 - R1_23 * t222)
-    aligned_wrist_bent_behind_front = ops.sqrt(t223 * t223 + t226 * t226) <= t92
-    t227 = ops.select(free6, 0.0, t182 - t183)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, -(t184 + t185))
-    t228 = R1_21 * t227 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (p_x * c6_bent_behind_front_2 - s_z * t227)
-    t229 = t93 & ops.opposite(on_axis_5_bent_behind_front)
-    t230 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t231 = ops.select(t229, t188 + ops.select(t229, t230, 1.0), 1.0)
-    t232 = 1.0 / ops.select(t229, ops.sqrt(t231), 1.0)
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t232)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t227
-    t233 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t234 = ops.select(on_axis_5_bent_behind_front, 0.0, t187 * t232)
-    R3_21_bent_behind_front = t233 - R1_23 * t234
-    t235 = ops.select(t93, t174 * R3_21_bent_behind_front, 1.0)
-    t236 = t173 * t228 + t235
-    t237 = ops.opposite(aligned_wrist_bent_behind_front)
-    t238 = t93 & t237
-    t239 = R1_11 * t227 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t227
-    t240 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t240 - R1_13 * t234
-    t241 = ops.select(t93, t174 * R3_11_bent_behind_front, 1.0)
-    t242 = t173 * t239 + t241
-    t243 = ops.select(t238, t242 * t242 + t236 * t236, 1.0)
-    t244 = 1.0 / ops.select(t238, ops.sqrt(t243), 1.0)
-    t245 = ops.select(aligned_wrist_bent_behind_front, 0.0, t236 * t244)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t242 * t244))
-    t246 = ops.select(t93, c_wrist_bent_behind_front, 1.0)
-    t247 = ops.atan2(t245, t246)
-    t248 = ops.select(failed, ops.nan, ops.wrap_cut(-t247))
-    t249 = t242 * c_wrist_bent_behind_front - t236 * t245
-    t250 = t173 * (R1_31 * t227 + T33 * c6_bent_behind_front_2)
-    t251 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t227)
-    t252 = ops.select(t93, t174 * (t251 - R1_33 * t234), 1.0)
-    t253 = ops.atan2(t249, ops.select(t93, -(t250 + t252), 1.0))
-    t254 = ops.select(failed, ops.nan, ops.wrap_cut(-t253))
-    t255 = ops.select(t93, t173 * R3_11_bent_behind_front, 1.0)
-    t256 = ops.select(t93, t173 * R3_21_bent_behind_front, 1.0)
-    t257 = c_wrist_bent_behind_front * (t174 * t228 - t256)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t234 + R1_13 * c5_bent_behind_front_2
-    t258 = ops.select(t93, t245 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t234 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t259 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t260 = ops.select(t93, -(t258 + ops.select(t93, t259, 1.0)), 1.0)
-    t261 = ops.atan2(t245 * (t174 * t239 - t255) + t257, t260)
-    t262 = ops.select(failed, ops.nan, ops.wrap_cut(-t261))
-    t263 = ops.atan2(t234, ops.select(t93, c5_bent_behind_front_2, 1.0))
-    t264 = ops.select(failed, ops.nan, ops.wrap_cut(-t263))
-    t265 = ops.atan2(t227, ops.select(t93, c6_bent_behind_front_2, 1.0))
-    t266 = ops.select(failed, ops.nan, ops.wrap_cut(-t265))
+    t218 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t219 = 1.0 / ops.sqrt(t87 + t218)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t219)
+    t220 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t215)
+    t221 = ops.select(on_axis_5_bent_behind_front, 0.0, t86 * t219)
+    t222 = t216 + t66 * (t220 - R1_13 * t221)
+    t223 = t67 * (R1_21 * t215 + T23 * c6_bent_behind_front)
+    t224 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t215)
+    t225 = t223 + t66 * (t224 - R1_23 * t221)
+    aligned_wrist_bent_behind_front = ops.sqrt(t222 * t222 + t225 * t225) <= t92
+    t226 = ops.select(free6, 0.0, t181 + t182)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t184 - t183)
+    t227 = R1_21 * t226 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (p_x * c6_bent_behind_front_2 - s_z * t226)
+    t228 = t93 & ops.opposite(on_axis_5_bent_behind_front)
+    t229 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t230 = ops.select(t228, t187 + ops.select(t228, t229, 1.0), 1.0)
+    t231 = 1.0 / ops.select(t228, ops.sqrt(t230), 1.0)
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t231)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t226
+    t232 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t233 = ops.select(on_axis_5_bent_behind_front, 0.0, t186 * t231)
+    R3_21_bent_behind_front = t232 - R1_23 * t233
+    t234 = ops.select(t93, t173 * R3_21_bent_behind_front, 1.0)
+    t235 = t172 * t227 + t234
+    t236 = ops.opposite(aligned_wrist_bent_behind_front)
+    t237 = t93 & t236
+    t238 = R1_11 * t226 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t226
+    t239 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t239 - R1_13 * t233
+    t240 = ops.select(t93, t173 * R3_11_bent_behind_front, 1.0)
+    t241 = t172 * t238 + t240
+    t242 = ops.select(t237, t241 * t241 + t235 * t235, 1.0)
+    t243 = 1.0 / ops.select(t237, ops.sqrt(t242), 1.0)
+    t244 = ops.select(aligned_wrist_bent_behind_front, 0.0, t235 * t243)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t241 * t243))
+    t245 = ops.select(t93, c_wrist_bent_behind_front, 1.0)
+    t246 = ops.atan2(t244, t245)
+    t247 = ops.select(failed, ops.nan, ops.wrap_cut(-t246))
+    t248 = t241 * c_wrist_bent_behind_front - t235 * t244
+    t249 = t172 * (R1_31 * t226 + T33 * c6_bent_behind_front_2)
+    t250 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t226)
+    t251 = ops.select(t93, t173 * (t250 - R1_33 * t233), 1.0)
+    t252 = ops.atan2(t248, ops.select(t93, -(t249 + t251), 1.0))
+    t253 = ops.select(failed, ops.nan, ops.wrap_cut(-t252))
+    t254 = ops.select(t93, t172 * R3_11_bent_behind_front, 1.0)
+    t255 = ops.select(t93, t172 * R3_21_bent_behind_front, 1.0)
+    t256 = c_wrist_bent_behind_front * (t173 * t227 - t255)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t233 + R1_13 * c5_bent_behind_front_2
+    t257 = ops.select(t93, t244 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t233 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t258 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t259 = ops.select(t93, -(t257 + ops.select(t93, t258, 1.0)), 1.0)
+    t260 = ops.atan2(t244 * (t173 * t238 - t254) + t256, t259)
+    t261 = ops.select(failed, ops.nan, ops.wrap_cut(-t260))
+    t262 = ops.atan2(t233, ops.select(t93, c5_bent_behind_front_2, 1.0))
+    t263 = ops.select(failed, ops.nan, ops.wrap_cut(-t262))
+    t264 = ops.atan2(t226, ops.select(t93, c6_bent_behind_front_2, 1.0))
+    t265 = ops.select(failed, ops.nan, ops.wrap_cut(-t264))
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t267 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t247))
-    t268 = ops.select(failed, ops.nan, ops.wrap_cut(t253))
-    t269 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t261))
-    held6_over_ahead_front = ops.select(t153, ops.max(0.0, -((t77 - t152) * (t77 + t152))), t150)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), root6_over_ahead_front)
-    t270 = above6_over_ahead_front - below6_over_ahead_front
+    t266 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t246))
+    t267 = ops.select(failed, ops.nan, ops.wrap_cut(t252))
+    t268 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t260))
+    below6_over_ahead_front = ops.max(t117, 0.0)
+    above6_over_ahead_front = ops.max(t118, 0.0)
+    t269 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t152, ops.max(0.0, -((t76 - t151) * (t76 + t151))), t269)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t269))
+    t270 = below6_over_ahead_front - above6_over_ahead_front
     t271 = ops.sqrt(4.0 * held6_over_ahead_front + t270 * t270)
-    width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
+    width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t271, width6_over_ahead_front)
     t272 = 1.0 / (reach * span6_over_ahead_front)
     t273 = t71 * kept6_over_ahead_front * t272
     t274 = t272 * (p_x * t270)
-    s6_over_ahead_front = ops.select(free6, 0.0, t273 + t274)
+    s6_over_ahead_front = ops.select(free6, 0.0, t273 - t274)
     t275 = t272 * (t82 * kept6_over_ahead_front)
     t276 = t272 * (s_z * t270)
-    c6_over_ahead_front = ops.select(free6, 1.0, t275 - t276)
+    c6_over_ahead_front = ops.select(free6, 1.0, t275 + t276)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     t277 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
@@ -1463,7 +1461,7 @@ def _ik(
     bend__elbow_1_over_ahead_front_2 = t287 * t287
     t289 = slope__elbow_1_over_ahead_front_2 * slope__elbow_1_over_ahead_front_2
     t290 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
-    t291 = ops.select(t154, ops.max(0.0, t289 - t290), 1.0)
+    t291 = ops.select(t153, ops.max(0.0, t289 - t290), 1.0)
     outer__elbow_1_over_ahead_front_2 = slope__elbow_1_over_ahead_front_2 + t100 * ops.sqrt(t291)
     below__elbow_1_over_ahead_front_2 = ops.select(t99, 2.0 * bend__elbow_1_over_ahead_front_2, 2.0 * outer__elbow_1_over_ahead_front_2)
     t292 = ops.select(t124, below__elbow_1_over_ahead_front_2, 1.0)
@@ -1484,25 +1482,25 @@ def _ik(
     v_x_over_ahead_front_2 = a5 - a4 * t301 - d3 * t302
     t303 = ops.abs(v_x_over_ahead_front_2)
     t304 = d5 - a4 * t302 + d3 * t301
-    above6_over_ahead_front_2 = ops.max(reach_2 - t304, 0.0)
     below6_over_ahead_front_2 = ops.max(reach_2 + t304, 0.0)
-    t305 = above6_over_ahead_front_2 * below6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t153, ops.max(0.0, -((t77 - t303) * (t77 + t303))), t305)
-    t306 = ops.select(t151, held6_over_ahead_front_2, 1.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t304, 0.0)
+    t305 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t152, ops.max(0.0, -((t76 - t303) * (t76 + t303))), t305)
+    t306 = ops.select(t150, held6_over_ahead_front_2, 1.0)
     t307 = t149 & ops.opposite(tangent6_over_ahead_front)
     kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t306), ops.sqrt(ops.select(t307, t305, 1.0)))
-    t308 = above6_over_ahead_front_2 - below6_over_ahead_front_2
-    t309 = ops.select(t151, 4.0 * held6_over_ahead_front_2 + t308 * t308, 1.0)
-    width6_over_ahead_front_2 = above6_over_ahead_front_2 + below6_over_ahead_front_2
+    t308 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t309 = ops.select(t150, 4.0 * held6_over_ahead_front_2 + t308 * t308, 1.0)
+    width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
     span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t309), width6_over_ahead_front_2)
     t310 = ops.select(t149, reach_2 * span6_over_ahead_front_2, 1.0)
     t311 = 1.0 / t310
     t312 = t71 * kept6_over_ahead_front_2 * t311
     t313 = t311 * (p_x * t308)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t312 + t313)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t312 - t313)
     t314 = t311 * (t82 * kept6_over_ahead_front_2)
     t315 = t311 * (s_z * t308)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t314 - t315)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t314 + t315)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = p_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
@@ -1561,13 +1559,13 @@ def _ik(
     t354 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t353))
     t355 = ops.atan2(s6_over_ahead_front_2, ops.select(t119, c6_over_ahead_front_2, 1.0))
     t356 = ops.select(failed_2, ops.nan, ops.wrap_cut(t355))
-    t357 = ops.select(failed_2, ops.nan, t211)
+    t357 = ops.select(failed_2, ops.nan, t210)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
     t358 = ops.select(failed_2, ops.nan, ops.wrap(t333 + flip_wrist_over_ahead_back))
     t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t340))
     t360 = ops.select(failed_2, ops.nan, ops.wrap(t349 + flip_wrist_over_ahead_back))
-    t361 = ops.select(free6, 0.0, t273 - t274)
-    c6_over_behind_front = ops.select(free6, 1.0, -(t275 + t276))
+    t361 = ops.select(free6, 0.0, t273 + t274)
+    c6_over_behind_front = ops.select(free6, 1.0, t276 - t275)
     t362 = t115 * (R1_11 * t361 + T13 * c6_over_behind_front)
     w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t361
     t363 = w_x_over_behind_front * w_x_over_behind_front
@@ -1583,8 +1581,8 @@ def _ik(
     t370 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t361)
     t371 = t369 - t114 * (t370 - R1_23 * t367)
     aligned_wrist_over_behind_front = ops.sqrt(t368 * t368 + t371 * t371) <= t92
-    t372 = ops.select(free6, 0.0, t312 - t313)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, -(t314 + t315))
+    t372 = ops.select(free6, 0.0, t312 + t313)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t315 - t314)
     t373 = R1_21 * t372 + T23 * c6_over_behind_front_2
     dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (p_x * c6_over_behind_front_2 - s_z * t372)
     t374 = t119 & ops.opposite(on_axis_5_over_behind_front)
@@ -1646,34 +1644,34 @@ def _ik(
     t421 = t415 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
     t422 = ops.status(invalid, unreachable_2, t421)
     return (
-        t197,
-        t199,
-        t203,
-        t205,
-        t207,
-        t209,
+        t196,
+        t198,
+        t202,
+        t204,
+        t206,
+        t208,
+        t211,
         t212,
         t213,
         t214,
-        t215,
-        t205,
-        t207,
-        t209,
-        t212,
-        t248,
-        t254,
-        t262,
-        t205,
-        t264,
+        t204,
+        t206,
+        t208,
+        t211,
+        t247,
+        t253,
+        t261,
+        t204,
+        t263,
+        t265,
+        t211,
         t266,
-        t212,
         t267,
         t268,
-        t269,
-        t205,
-        t264,
-        t266,
-        t212,
+        t204,
+        t263,
+        t265,
+        t211,
         t334,
         t341,
         t350,

@@ -12,9 +12,9 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 226 compare and select, 261 add, 23 atan2, 27 divide, 374 multiply, 1 sincos, 28 sqrt
- *   ik where nothing vanishes: 140 compare and select, 220 add, 23 atan2, 17 divide, 310 multiply,
- *     1 sincos, 22 sqrt
+ *   ik: 228 compare and select, 261 add, 23 atan2, 27 divide, 376 multiply, 1 sincos, 30 sqrt
+ *   ik where nothing vanishes: 142 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
+ *     1 sincos, 24 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

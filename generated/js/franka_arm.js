@@ -11,9 +11,9 @@
 //   singularities: 5 add, 8 multiply, 3 sincos
 //   jacobian_space: 73 add, 155 multiply, 6 sincos
 //   jacobian_body: 83 add, 159 multiply, 6 sincos
-//   ik: 226 compare and select, 261 add, 23 atan2, 27 divide, 374 multiply, 1 sincos, 28 sqrt
-//   ik where nothing vanishes: 140 compare and select, 220 add, 23 atan2, 17 divide, 310 multiply,
-//     1 sincos, 22 sqrt
+//   ik: 228 compare and select, 261 add, 23 atan2, 27 divide, 376 multiply, 1 sincos, 30 sqrt
+//   ik where nothing vanishes: 142 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
+//     1 sincos, 24 sqrt
 
 /**
  * Seven-joint arm with an offset elbow and hand (Franka).
@@ -1250,30 +1250,29 @@ function _ik(v, o) {
     const t48 = s_z * 2.0;
     const t49 = c_straight * t46 + s_straight * celbow;
     const t50 = d5 + a4 * t49 + d3 * t47;
-    const t51 = reach - t50;
-    const above6 = Math.max(t51, 0.0);
-    const t52 = reach + t50;
-    const below6 = Math.max(t52, 0.0);
-    const t53 = above6 * below6;
-    const root6 = Math.sqrt(t53);
-    const t54 = reach * 0.00390625;
-    const t55 = reach * _runtime.VANISHING;
-    const tangent6 = root6 - t54 <= t55;
+    const t51 = reach + t50;
+    const t52 = reach - t50;
+    const t53 = reach * 0.00390625;
+    const t54 = reach * _runtime.VANISHING;
+    const tangent6 = Math.sqrt(Math.abs(t51 * t52)) - t53 <= t54;
     const v_x = a5 - a4 * t47 + d3 * t49;
-    const t56 = Math.abs(v_x);
-    const t57 = Math.abs(w_y);
-    const held6 = t56 < reach ? Math.max(0.0, -((t57 - t56) * (t57 + t56))) : t53;
-    const kept6 = tangent6 ? Math.sqrt(held6) : root6;
-    const t58 = above6 - below6;
-    const span6 = tangent6 ? Math.sqrt(4.0 * held6 + t58 * t58) : above6 + below6;
+    const t55 = Math.abs(v_x);
+    const t56 = Math.abs(w_y);
+    const below6 = Math.max(t51, 0.0);
+    const above6 = Math.max(t52, 0.0);
+    const t57 = below6 * above6;
+    const held6 = t55 < reach ? Math.max(0.0, -((t56 - t55) * (t56 + t55))) : t57;
+    const kept6 = tangent6 ? Math.sqrt(held6) : Math.sqrt(t57);
+    const t58 = below6 - above6;
+    const span6 = tangent6 ? Math.sqrt(4.0 * held6 + t58 * t58) : below6 + above6;
     const t59 = 1.0 / (reach * span6);
     const t60 = t48 * kept6 * t59;
     const t61 = t59 * (p_x * t58);
-    const s6 = free6 ? 0.0 : t60 + t61;
+    const s6 = free6 ? 0.0 : t60 - t61;
     const t62 = p_x * 2.0;
     const t63 = t59 * (t62 * kept6);
     const t64 = t59 * (s_z * t58);
-    const c6 = free6 ? 1.0 : t63 - t64;
+    const c6 = free6 ? 1.0 : t63 + t64;
     const R2_13 = R1_11 * s6 - T13 * c6;
     const t65 = Math.sqrt(v_x * v_x);
     const w_x = p_x * c6 + s_z * s6;
@@ -1320,7 +1319,7 @@ function _ik(v, o) {
     const invalid = !t85;
     const t86 = -(_runtime.FEASIBILITY * (size * 0.5));
     const t87 = t86 <= t10 && t86 <= t13 && t86 <= t14;
-    const unreachable = !(t87 && t86 <= t52 && t86 <= t51);
+    const unreachable = !(t87 && t86 <= t51 && t86 <= t52);
     const t88 = invalid || unreachable ? NaN : 0;
     const R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7;
     const R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7;
@@ -1342,8 +1341,8 @@ function _ik(v, o) {
     const t103 = t102 + t88;
     const flip_wrist = aligned_wrist ? 0.0 : 3.141592653589793;
     const t104 = -t90;
-    const t105 = free6 ? 0.0 : t60 - t61;
-    const c6_bent_behind_front = free6 ? 1.0 : -(t63 + t64);
+    const t105 = free6 ? 0.0 : t60 + t61;
+    const c6_bent_behind_front = free6 ? 1.0 : t64 - t63;
     const t106 = R1_11 * t105 + T13 * c6_bent_behind_front;
     const w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t105;
     const t107 = w_x_bent_behind_front * w_x_bent_behind_front;
@@ -1436,30 +1435,29 @@ function _ik(v, o) {
     const t157 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front;
     const t158 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front;
     const t159 = d5 - a4 * t158 + d3 * t157;
-    const t160 = reach - t159;
-    const above6_over_ahead_front = Math.max(t160, 0.0);
-    const t161 = reach + t159;
-    const below6_over_ahead_front = Math.max(t161, 0.0);
-    const t162 = above6_over_ahead_front * below6_over_ahead_front;
-    const root6_over_ahead_front = Math.sqrt(t162);
-    const tangent6_over_ahead_front = root6_over_ahead_front - t54 <= t55;
+    const t160 = reach + t159;
+    const t161 = reach - t159;
+    const tangent6_over_ahead_front = Math.sqrt(Math.abs(t160 * t161)) - t53 <= t54;
     const v_x_over_ahead_front = a5 - a4 * t157 - d3 * t158;
-    const t163 = Math.abs(v_x_over_ahead_front);
-    const t164 = Math.max(0.0, -((t57 - t163) * (t57 + t163)));
-    const held6_over_ahead_front = t163 < reach ? t164 : t162;
+    const t162 = Math.abs(v_x_over_ahead_front);
+    const t163 = Math.max(0.0, -((t56 - t162) * (t56 + t162)));
+    const below6_over_ahead_front = Math.max(t160, 0.0);
+    const above6_over_ahead_front = Math.max(t161, 0.0);
+    const t164 = below6_over_ahead_front * above6_over_ahead_front;
+    const held6_over_ahead_front = t162 < reach ? t163 : t164;
     const kept6_over_ahead_front = tangent6_over_ahead_front ? Math.sqrt(held6_over_ahead_front)
-        : root6_over_ahead_front;
-    const t165 = above6_over_ahead_front - below6_over_ahead_front;
+        : Math.sqrt(t164);
+    const t165 = below6_over_ahead_front - above6_over_ahead_front;
     const t166 = Math.sqrt(4.0 * held6_over_ahead_front + t165 * t165);
-    const width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front;
+    const width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front;
     const span6_over_ahead_front = tangent6_over_ahead_front ? t166 : width6_over_ahead_front;
     const t167 = 1.0 / (reach * span6_over_ahead_front);
     const t168 = t48 * kept6_over_ahead_front * t167;
     const t169 = t167 * (p_x * t165);
-    const s6_over_ahead_front = free6 ? 0.0 : t168 + t169;
+    const s6_over_ahead_front = free6 ? 0.0 : t168 - t169;
     const t170 = t167 * (t62 * kept6_over_ahead_front);
     const t171 = t167 * (s_z * t165);
-    const c6_over_ahead_front = free6 ? 1.0 : t170 - t171;
+    const c6_over_ahead_front = free6 ? 1.0 : t170 + t171;
     const R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front;
     const t172 = Math.sqrt(v_x_over_ahead_front * v_x_over_ahead_front);
     const w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front;
@@ -1492,7 +1490,7 @@ function _ik(v, o) {
     const c_wrist_over_ahead_front = aligned_wrist_over_ahead_front ? 1.0 :
         R4_13_over_ahead_front * t181;
     const t182 = Math.atan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front);
-    const unreachable_2 = !(t87 && t86 <= t161 && t86 <= t160);
+    const unreachable_2 = !(t87 && t86 <= t160 && t86 <= t161);
     const t183 = invalid || unreachable_2 ? NaN : 0;
     const t184 = R4_13_over_ahead_front * c_wrist_over_ahead_front;
     const t185 = R4_23_over_ahead_front * s_wrist_over_ahead_front;
@@ -1521,8 +1519,8 @@ function _ik(v, o) {
     const t200 = _runtime.wrap(t182 + flip_wrist_over_ahead_back);
     const t201 = -t186;
     const t202 = _runtime.wrap(t192 + flip_wrist_over_ahead_back);
-    const t203 = free6 ? 0.0 : t168 - t169;
-    const c6_over_behind_front = free6 ? 1.0 : -(t170 + t171);
+    const t203 = free6 ? 0.0 : t168 + t169;
+    const c6_over_behind_front = free6 ? 1.0 : t171 - t170;
     const t204 = R1_11 * t203 + T13 * c6_over_behind_front;
     const w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t203;
     const t205 = w_x_over_behind_front * w_x_over_behind_front;
@@ -1937,14 +1935,15 @@ function _ik_common(v, o) {
     const t181 = lever_elbow - size * 0.00390625 <= t180 || no_link_elbow;
     const t182 = reach * 0.00390625;
     const t183 = reach * _runtime.VANISHING;
-    const t184 = t181 || root6 - t182 <= t183 || reach <= t180;
-    const t185 = Math.sqrt(v_x * v_x);
-    const on_axis_5 = Math.min(t185, Math.sqrt(t10 + w_x * w_x)) <= t180;
+    const tangent6 = Math.sqrt(Math.abs(t28 * t29)) - t182 <= t183;
+    const t184 = Math.sqrt(v_x * v_x);
+    const on_axis_5 = Math.min(t184, Math.sqrt(t10 + w_x * w_x)) <= t180;
+    const t185 = t181 || tangent6 || reach <= t180 || on_axis_5;
     const t186 = _runtime.VANISHING * 16.0;
-    const on_axis_5_bent_behind_front = Math.min(t185, Math.sqrt(t10 + t83 * t83)) <= t180;
-    const t187 = t184 || on_axis_5 || h_wrist <= t186 || on_axis_5_bent_behind_front;
-    const t188 = t187 || h_wrist_bent_behind_front <= t186 || root6_over_ahead_front - t182 <=
-        t183;
+    const on_axis_5_bent_behind_front = Math.min(t184, Math.sqrt(t10 + t83 * t83)) <= t180;
+    const t187 = t185 || h_wrist <= t186 || on_axis_5_bent_behind_front;
+    const tangent6_over_ahead_front = Math.sqrt(Math.abs(t112 * t113)) - t182 <= t183;
+    const t188 = t187 || h_wrist_bent_behind_front <= t186 || tangent6_over_ahead_front;
     const t189 = Math.sqrt(v_x_over_ahead_front * v_x_over_ahead_front);
     const t190 = t10 + w_x_over_ahead_front * w_x_over_ahead_front;
     const t191 = t188 || Math.min(t189, Math.sqrt(t190)) <= t180;

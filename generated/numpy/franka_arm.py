@@ -11,9 +11,9 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 226 compare and select, 261 add, 23 atan2, 27 divide, 374 multiply, 1 sincos, 28 sqrt
-#   ik where nothing vanishes: 140 compare and select, 220 add, 23 atan2, 17 divide, 310 multiply,
-#     1 sincos, 22 sqrt
+#   ik: 228 compare and select, 261 add, 23 atan2, 27 divide, 376 multiply, 1 sincos, 30 sqrt
+#   ik where nothing vanishes: 142 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
+#     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the
@@ -1176,38 +1176,37 @@ def _ik(
     t48 = c_straight * t45 + s_straight * celbow
     del celbow, t45
     t49 = d5 + a4 * t48 + d3 * t46
-    t50 = reach - t49
-    above6 = np.maximum(t50, 0.0)
-    t51 = reach + t49
+    t50 = reach + t49
+    t51 = reach - t49
     del t49
-    below6 = np.maximum(t51, 0.0)
-    t52 = above6 * below6
-    root6 = np.sqrt(t52)
-    t53 = reach * 0.00390625
-    t54 = reach * _runtime.VANISHING
-    tangent6 = root6 - t53 <= t54
+    t52 = reach * 0.00390625
+    t53 = reach * _runtime.VANISHING
+    tangent6 = np.sqrt(np.abs(t50 * t51)) - t52 <= t53
     v_x = a5 - a4 * t46 + d3 * t48
-    t55 = np.abs(v_x)
-    t56 = np.abs(w_y)
-    t57 = np.maximum(0.0, -((t56 - t55) * (t56 + t55)))
-    held6 = _runtime.select(t55 < reach, t57, t52)
-    del t52, t55, t57
-    kept6 = _runtime.select(tangent6, np.sqrt(held6), root6)
-    del root6
-    t58 = above6 - below6
-    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t58 * t58), above6 + below6)
+    t54 = np.abs(v_x)
+    t55 = np.abs(w_y)
+    t56 = np.maximum(0.0, -((t55 - t54) * (t55 + t54)))
+    below6 = np.maximum(t50, 0.0)
+    above6 = np.maximum(t51, 0.0)
+    t57 = below6 * above6
+    held6 = _runtime.select(t54 < reach, t56, t57)
+    del t54, t56
+    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t57))
+    del t57
+    t58 = below6 - above6
+    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t58 * t58), below6 + above6)
     del above6, below6, held6, tangent6
     t59 = 1.0 / (reach * span6)
     del span6
     t60 = t47 * kept6 * t59
     t61 = t59 * (p_x * t58)
-    s6 = _runtime.select(free6, 0.0, t60 + t61)
+    s6 = _runtime.select(free6, 0.0, t60 - t61)
     t62 = p_x * 2.0
     t63 = t59 * (t62 * kept6)
     del kept6
     t64 = t59 * (s_z * t58)
     del t58, t59
-    c6 = _runtime.select(free6, 1.0, t63 - t64)
+    c6 = _runtime.select(free6, 1.0, t63 + t64)
     R2_13 = R1_11 * s6 - T13 * c6
     t65 = np.sqrt(v_x * v_x)
     w_x = p_x * c6 + s_z * s6
@@ -1264,7 +1263,7 @@ def _ik(
     del size
     t87 = (t86 <= t10) & (t86 <= t13) & (t86 <= t14)
     del t10, t13, t14
-    unreachable = np.logical_not(t87 & (t86 <= t51) & (t86 <= t50))
+    unreachable = np.logical_not(t87 & (t86 <= t50) & (t86 <= t51))
     del t50, t51
     t88 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
@@ -1287,9 +1286,9 @@ def _ik(
     del c_x_theta7, s_x_theta7
     t98 = t97 + t88
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t99 = _runtime.select(free6, 0.0, t60 - t61)
+    t99 = _runtime.select(free6, 0.0, t60 + t61)
     del t60, t61
-    c6_bent_behind_front = _runtime.select(free6, 1.0, -(t63 + t64))
+    c6_bent_behind_front = _runtime.select(free6, 1.0, t64 - t63)
     del t63, t64
     t100 = R1_11 * t99 + T13 * c6_bent_behind_front
     w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t99
@@ -1418,27 +1417,26 @@ def _ik(
     t148 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
     t149 = d5 - a4 * t148 + d3 * t147
-    t150 = reach - t149
-    above6_over_ahead_front = np.maximum(t150, 0.0)
-    t151 = reach + t149
+    t150 = reach + t149
+    t151 = reach - t149
     del t149
-    below6_over_ahead_front = np.maximum(t151, 0.0)
-    t152 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = np.sqrt(t152)
-    tangent6_over_ahead_front = root6_over_ahead_front - t53 <= t54
-    del t53, t54
+    tangent6_over_ahead_front = np.sqrt(np.abs(t150 * t151)) - t52 <= t53
+    del t52, t53
     v_x_over_ahead_front = a5 - a4 * t147 - d3 * t148
-    t153 = np.abs(v_x_over_ahead_front)
-    t154 = np.maximum(0.0, -((t56 - t153) * (t56 + t153)))
-    del t56
-    held6_over_ahead_front = _runtime.select(t153 < reach, t154, t152)
-    del t152, t153, t154
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), root6_over_ahead_front)
-    del root6_over_ahead_front
-    t155 = above6_over_ahead_front - below6_over_ahead_front
+    t152 = np.abs(v_x_over_ahead_front)
+    t153 = np.maximum(0.0, -((t55 - t152) * (t55 + t152)))
+    del t55
+    below6_over_ahead_front = np.maximum(t150, 0.0)
+    above6_over_ahead_front = np.maximum(t151, 0.0)
+    t154 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t152 < reach, t153, t154)
+    del t152, t153
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t154))
+    del t154
+    t155 = below6_over_ahead_front - above6_over_ahead_front
     t156 = np.sqrt(4.0 * held6_over_ahead_front + t155 * t155)
     del held6_over_ahead_front
-    width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
+    width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
     span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t156, width6_over_ahead_front)
     del t156, tangent6_over_ahead_front, width6_over_ahead_front
@@ -1447,12 +1445,12 @@ def _ik(
     t158 = t47 * kept6_over_ahead_front * t157
     del t47
     t159 = t157 * (p_x * t155)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t158 + t159)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t158 - t159)
     t160 = t157 * (t62 * kept6_over_ahead_front)
     del kept6_over_ahead_front, t62
     t161 = t157 * (s_z * t155)
     del t155, t157
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t160 - t161)
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t160 + t161)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     t162 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
@@ -1489,7 +1487,7 @@ def _ik(
     c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t171)
     del t171
     t172 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    unreachable_2 = np.logical_not(t87 & (t86 <= t151) & (t86 <= t150))
+    unreachable_2 = np.logical_not(t87 & (t86 <= t150) & (t86 <= t151))
     del t150, t151, t86, t87
     t173 = _runtime.poison(invalid | unreachable_2)
     t174 = R4_13_over_ahead_front * c_wrist_over_ahead_front
@@ -1535,9 +1533,9 @@ def _ik(
     t189 = _runtime.wrap(t172 + flip_wrist_over_ahead_back)
     t190 = _runtime.wrap(t182 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t191 = _runtime.select(free6, 0.0, t158 - t159)
+    t191 = _runtime.select(free6, 0.0, t158 + t159)
     del t158, t159
-    c6_over_behind_front = _runtime.select(free6, 1.0, -(t160 + t161))
+    c6_over_behind_front = _runtime.select(free6, 1.0, t161 - t160)
     del t160, t161
     t192 = R1_11 * t191 + T13 * c6_over_behind_front
     w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t191
@@ -1764,6 +1762,7 @@ def _ik_common(
     s6 = t30 + t32
     t33 = p_x * 2.0
     t34 = t29 * (t33 * root6)
+    del root6
     t35 = t29 * (s_z * t31)
     del t29, t31
     c6 = t34 - t35
@@ -1812,7 +1811,6 @@ def _ik_common(
     t57 = (t56 <= t11) & (t56 <= t14) & (t56 <= t15)
     del t11, t14, t15
     unreachable = np.logical_not(t57 & (t56 <= t28) & (t56 <= t27))
-    del t27, t28
     t58 = _runtime.poison(invalid | unreachable)
     h_wrist = np.sqrt(t41 * t41 + t40 * t40)
     t59 = 1.0 / h_wrist
@@ -1905,7 +1903,7 @@ def _ik_common(
     t105 = t102 * (p_x * t104)
     s6_over_ahead_front = t103 + t105
     t106 = t102 * (t33 * root6_over_ahead_front)
-    del t33
+    del root6_over_ahead_front, t33
     t107 = t102 * (s_z * t104)
     del t102, t104
     c6_over_ahead_front = t106 - t107
@@ -1931,7 +1929,7 @@ def _ik_common(
     t114 = t96 * R2_13_over_ahead_front - t97 * R3_11_over_ahead_front
     t115 = np.arctan2(t113, -t114)
     unreachable_2 = np.logical_not(t57 & (t56 <= t100) & (t56 <= t99))
-    del t100, t56, t57, t99
+    del t56, t57
     t116 = _runtime.poison(invalid | unreachable_2)
     h_wrist_over_ahead_front = np.sqrt(t114 * t114 + t113 * t113)
     t117 = 1.0 / h_wrist_over_ahead_front
@@ -2032,29 +2030,31 @@ def _ik_common(
     del lever_elbow, no_link_elbow, size
     t163 = reach * 0.00390625
     t164 = reach * _runtime.VANISHING
-    t165 = t162 | (root6 - t163 <= t164) | (reach <= t161)
-    del reach, root6, t162
+    t165 = t162 | (np.sqrt(np.abs(t27 * t28)) - t163 <= t164)
+    del t162, t27, t28
     t166 = np.sqrt(v_x * v_x)
     del v_x
     on_axis_5 = np.minimum(t166, np.sqrt(t9 + w_x * w_x)) <= t161
     del w_x
     t167 = _runtime.VANISHING * 16.0
+    t168 = t165 | (reach <= t161) | on_axis_5 | (h_wrist <= t167)
+    del h_wrist, on_axis_5, reach, t165
     on_axis_5_bent_behind_front = np.minimum(t166, np.sqrt(t9 + t75 * t75)) <= t161
     del t166, t75
-    t168 = t165 | on_axis_5 | (h_wrist <= t167) | on_axis_5_bent_behind_front
-    del h_wrist, on_axis_5, on_axis_5_bent_behind_front, t165
-    t169 = t168 | (h_wrist_bent_behind_front <= t167) | (root6_over_ahead_front - t163 <= t164)
-    del h_wrist_bent_behind_front, root6_over_ahead_front, t163, t164, t168
-    t170 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t169 = t168 | on_axis_5_bent_behind_front | (h_wrist_bent_behind_front <= t167)
+    del h_wrist_bent_behind_front, on_axis_5_bent_behind_front, t168
+    t170 = t169 | (np.sqrt(np.abs(t99 * t100)) - t163 <= t164)
+    del t100, t163, t164, t169, t99
+    t171 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     del v_x_over_ahead_front
-    t171 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
+    t172 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t172 = t169 | (np.minimum(t170, np.sqrt(t171)) <= t161)
-    del t169, t171
-    on_axis_5_over_behind_front = np.minimum(t170, np.sqrt(t9 + t136 * t136)) <= t161
-    del t136, t161, t170, t9
-    t173 = t172 | (h_wrist_over_ahead_front <= t167) | on_axis_5_over_behind_front
-    del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t172
+    t173 = t170 | (np.minimum(t171, np.sqrt(t172)) <= t161)
+    del t170, t172
+    on_axis_5_over_behind_front = np.minimum(t171, np.sqrt(t9 + t136 * t136)) <= t161
+    del t136, t161, t171, t9
+    t174 = t173 | (h_wrist_over_ahead_front <= t167) | on_axis_5_over_behind_front
+    del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t173
     return (
         _runtime.wrap_cut(-t42) + t58,
         _runtime.wrap_cut(t63) + t58,
@@ -2120,7 +2120,7 @@ def _ik_common(
         t160,
         t160,
         t160,
-        t173 | (h_wrist_over_behind_front <= t167),
+        t174 | (h_wrist_over_behind_front <= t167),
     )
 
 

@@ -150,11 +150,7 @@ class Serial:
         )
 
     def export(
-        self,
-        d: Derivation,
-        singular: Mapping[str, sp.Expr] | None = None,
-        *,
-        given: sp.Symbol | None = None,
+        self, d: Derivation, singular: Mapping[str, Any] | None = None, *, given: Any = None
     ) -> Any:
         """Record pose, Jacobians and determinant as proved steps, and export them as functions.
 
@@ -251,13 +247,11 @@ class Serial:
         if len(others) != 6:
             return
         # a change of frame does not change it, so it is taken where the twists are shortest
-        det = factored_determinant(self.middle[:, others])
-        if given is None:
-            self._export_determinant(d, {r"\det J": det}, (), singular)
-            return
-        name = rf"J_{{\hat{{{self.joints.index(given) + 1}}}}}"
-        d.explain({name: f"J without the column of {given}"})
-        without = f" without the column of {given}, which is given"
+        det, name, without = factored_determinant(self.middle[:, others]), "J", ""
+        if given is not None:
+            name = rf"J_{{\hat{{{self.joints.index(given) + 1}}}}}"
+            without = f" without the column of {given}, which is given"
+            d.explain({name: f"J without the column of {given}"})
         self._export_determinant(d, {rf"\det {name}": det}, (), singular, without)
 
     def _export_coordinates(

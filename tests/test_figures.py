@@ -107,7 +107,7 @@ def test_every_length_of_a_linkage_finds_its_segment() -> None:
     ("name", "written"),
     [
         ("theta2R", r"$\theta_{2}^{R}$"), ("l1", "$l_{1}$"), ("loff", r"$l_{\mathrm{off}}$"),
-        ("rho1", r"$\rho_{1}$"), ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
+        ("rho1", r"$\rho_{1}$"), ("tilt_x", r"$\mathrm{tilt}_{x}$"), ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
     ],
 )  # fmt: skip
 def test_names_are_written_as_formulas(name: str, written: str) -> None:
@@ -118,9 +118,9 @@ def test_figures_write_the_names_and_units_of_the_texts() -> None:
     """A length of the OPW arm was c_1 in its figure and l_1 in its chapter."""
     for path in sorted((ROOT / "generated" / "latex").glob("*.tex")):
         units = set()
-        row = re.compile(r"\$([^$&]+)\$ & \\texttt\{(\w+)\} & ([\w ]+) &")
+        row = re.compile(r"\$([^$&]+)\$ & \\texttt\{([\w\\]+)\} & ([\w ]+) &")
         for written, name, unit in row.findall(path.read_text("utf-8")):
-            plain = symbol(name).strip("$")
+            plain = symbol(name.replace("\\", "")).strip("$")
             assert re.sub(r"[{} ]", "", plain) == re.sub(r"[{} ]", "", written), path.name
             units |= {unit} & {"m", "cm", "mm"}
         if path.stem in TITLES:

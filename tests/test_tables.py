@@ -82,8 +82,8 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
         ("# L = nan m: x\na, alpha, d, theta\nL, 0, 0, t\n", "line 1: the value of L is 'nan'"),
         ("# L = pi/2 rad: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is 'pi/2'"),
         (
-            "# L = 400 mm: x\n# M = 0.3 m: x\na, alpha, d, theta\nL, 0, M, t\n",
-            "L is in mm and M in m; write all lengths in the same unit",
+            "# L = 400 mm: x\n# K = 0.3 m: x\na, alpha, d, theta\nL, 0, K, t\n",
+            "L is in mm and K in m; write all lengths in the same unit",
         ),
         (
             "# b = 90 deg: x\na, alpha, d, theta\n0, b, 1, t\n",

@@ -127,9 +127,13 @@ def _tangency(
     span = p.let(f"span_{name}", whole / (2 * size), nonnegative=True)
     h = p.let(f"h_{name}", span / 2, nonnegative=True)
     below, above = triangle.N / (2 * size), triangle.M / (2 * size)
-    at = Amplitude(x, sp.S.Zero, h, h - below, triangle.sigma, h, below, above)
+    at = Amplitude(
+        x=x, a=sp.S.Zero, b=h, c=h - below, sigma=triangle.sigma, h=h, below=below, above=above
+    )
     play = (r + size * ROUNDING) * ROUNDING
-    return Tangency(chain, at, lever, span, play, f"_{name}", sp.false)
+    return Tangency(
+        chain=chain, at=at, root=lever, width=span, play=play, suffix=f"_{name}", free=sp.false
+    )
 
 
 __all__ = ["law_of_cosines"]

@@ -85,9 +85,13 @@ def tilt(
     if not differs_from_zero(chain, k, sp.S.One):
         flag = p.vanishes(f"level{tag}", width, 1, "the axes of the wrist are parallel", free=(x,))
     cosine = p.let(f"level_at{tag}", (above - below) / 2)
-    at = Amplitude(x, sp.S.Zero, k, cosine, sigma, k, below, above)
+    at = Amplitude(x=x, a=sp.S.Zero, b=k, c=cosine, sigma=sigma, h=k, below=below, above=above)
     root = p.let(f"root{tag}", at.root, nonnegative=True)
-    found = toward.reached(Tangency(chain, at, root, width, 2 * ROUNDING, tag, flag))
+    found = toward.reached(
+        Tangency(
+            chain=chain, at=at, root=root, width=width, play=2 * ROUNDING, suffix=tag, free=flag
+        )
+    )
     pair, means = named(chain, x, found.pair)
     lemma = Lemma(
         "tilt of a wrist",

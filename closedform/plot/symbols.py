@@ -16,6 +16,8 @@ INDICES = {"al": "a_{l}", "gs": "g_{s}", "lp": "l_{p}", "w": "w"}
 """Lengths with a letter below."""
 LENGTH = re.compile(r"c(\d)")
 """A length that papers call c; in the texts a c with a number is a cosine."""
+WORD = re.compile(r"([A-Za-z]{2,})_(\w+)")
+"""A word with an index, such as ``tilt_x``."""
 ARM = re.compile(r"(.*\d)([RL])")
 """A joint of the right or the left arm."""
 
@@ -32,8 +34,10 @@ def _formula(name: str) -> str:
         return rf"\ell_{{{found[1]}}}"
     if found := ARM.fullmatch(name):
         return f"{_formula(found[1])}^{{{found[2]}}}"
+    if (found := WORD.fullmatch(name)) and found[1] not in GREEK:
+        return rf"\mathrm{{{found[1]}}}_{{{found[2]}}}"
     letter = next((g for g in GREEK if name.startswith(g)), name[0])
-    rest = name[len(letter) :]
+    rest = name[len(letter) :].removeprefix("_")
     written = rf"\{letter}" if letter in GREEK else letter
     if not rest:
         return written

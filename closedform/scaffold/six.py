@@ -132,12 +132,12 @@ class SixMaker(SubproblemMaker):
             before = times(three.end, "turned({})")
             offset = f"{source(three.shift)} + {{}} * {source(s)}"
             ahead = Ahead(
-                [lift, five, six],
-                (one.shift, two.shift),
-                "p",
-                f"({M})[:, 2]",
-                offset.format(before),
-                followed(before, four.end),
+                wrist=[lift, five, six],
+                links=(one.shift, two.shift),
+                point="p",
+                axis=f"({M})[:, 2]",
+                offset=offset.format(before),
+                onward=followed(before, four.end),
             )
             sides = a, b, p[2] - height - g[2] * s[2]
             fourth = self._turn(four, sides, self._goal(ahead))

@@ -24,7 +24,7 @@ SPELLINGS = tuple(
         (r"\^", "write ** for a power"),
         (r"[×·⋅]", "write * for a product"),
         (r"\d\s*(mm|cm|m|in)\b", "a cell has no unit; write all lengths in the same one"),
-        (r"\d[A-Za-z(]|\)\s*[\w(]", "write * for a product, as in 2*q2"),
+        (r"\d(?![eE][+-]?\d)[A-Za-z(]|\)\s*[\w(]", "write * for a product, as in 2*q2"),
         (r"[^\x00-\x7f]", "names have Latin letters, digits and _; write theta1 for a Greek one"),
         (r"#", "a comment has a line of its own"),
         (r"\*\s*$", "a joint is its name alone"),

@@ -76,7 +76,7 @@ R37 = sp.prod(arm.moves[3:])[:3, :3]
 d.explain(
     {
         "v": "the shoulder, seen from the wrist in the frame of the forearm",
-        "p": "the shoulder, seen from the wrist in the frame after theta6",
+        "u": "the shoulder, seen from the wrist in the frame after theta6",
         "w": "the shoulder, seen from the wrist in the frame before theta6",
         "R_{03}": "rotation of the upper arm",
         "R_{37}": "rotation of the other four joints",
@@ -98,13 +98,13 @@ d.step(
 ik = Chain(d, forward)
 given = ik.given(theta7)
 s = ik.vector("s", ik.R.T * (sp.Matrix([0, 0, d1]) - ik.p) + sp.Matrix([0, 0, d7]))
-p = ik.vector("p", rotation("x", pi / 2) * (turned(given) * s + sp.Matrix([a7, 0, 0])))
-far = ik.let("far", sqrt(p.dot(p)))
-reach = ik.let("reach", sqrt(p[0] ** 2 + p[1] ** 2))
+u = ik.vector("u", rotation("x", pi / 2) * (turned(given) * s + sp.Matrix([a7, 0, 0])))
+far = ik.let("far", sqrt(u.dot(u)))
+reach = ik.let("reach", sqrt(u[0] ** 2 + u[1] ** 2))
 d.step(
     "Inverse: the shoulder",
-    "theta7 is given, so the shoulder is known in the frame of theta6, at p from the wrist.",
-    {"p": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0]))},
+    "theta7 is given, so the shoulder is known in the frame of theta6, at u from the wrist.",
+    {"u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0]))},
 )
 upper = ik.program.let("upper", sqrt(a4**2 + d3**2), nonnegative=True)
 fore = ik.program.let("fore", sqrt(a5**2 + d5**2), nonnegative=True)
@@ -134,7 +134,7 @@ d.step(
     "angle is theta4 plus a constant; it is 0 where they are in line.",
     {
         r"\eta": elbow_angle,
-        r"|p|^2": a4**2
+        r"|u|^2": a4**2
         + d3**2
         + a5**2
         + d5**2
@@ -145,19 +145,19 @@ v = ik.vector("v", seen(bent))
 tilt = ik.solve(
     turn,
     theta6,
-    (p[0], p[1], v[2]),
+    (u[0], u[1], v[2]),
     {-1: "ahead", +1: "behind"},
-    toward=LinkAtHeight(sp.Abs(v[0]), p[2]),
+    toward=LinkAtHeight(sp.Abs(v[0]), u[2]),
 )
-w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * p))
+w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * u))
 roll = ik.solve(rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]})
 d.step(
     "Inverse: the wrist",
     "theta6 turns the shoulder to the height of v along the forearm, and theta5 then turns it to "
     "v.  Where the shoulder is on axis 6 or on axis 5 that joint is free.",
     {
-        r"p_x\sin\theta_6 + p_y\cos\theta_6": v[2],
-        "w": rotation("x", pi / 2) * (rotation("z", theta6) * p),
+        r"u_x\sin\theta_6 + u_y\cos\theta_6": v[2],
+        "w": rotation("x", pi / 2) * (rotation("z", theta6) * u),
         r"R_z(\theta_5)\,w": sp.Matrix([real("v_x"), 0, real("v_z")]),
     },
 )

@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.mechanics import linkwise
+from closedform.mechanics.by_axes import AXES, by_axes
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
 from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
@@ -34,6 +35,7 @@ from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geome
 from closedform.model.derivation import Derivation
 
 POSE = "Pose of the tool in the base frame."
+GEOMETRIC = "The geometric Jacobian: rows (v; omega), v of the origin of the tool."
 
 
 @dataclass(frozen=True)
@@ -163,10 +165,12 @@ class Serial:
         q, task, links = self.joints, self.coordinates(), self.links
         self.require_regular(d.name)
         pose = linkwise.pose(d.program(), links)
+        long = by_axes(d, self.pose, self.geometric, self.moves)
         d.step(
             "Pose",
             "The product of the motions from link to link, the angles of parallel axes added.",
-            {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
+            {f"A_{i}": A for i, A in enumerate(self.moves, 1)}
+            | {"T": long.pose if long else self.pose},
             proves=(
                 "T is the product of the motions, and what the printed code computes link by link."
             ),
@@ -184,12 +188,12 @@ class Serial:
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
-            "joint is its axis w and the velocity -w × p that it gives to the origin, that of a "
-            "prismatic joint its direction.  Differentiating the pose gives the same."
-            + ("" if spelled else TURNED),
-            {"J": self.geometric, "J_s": self.space, "J_b": self.body}
-            if spelled
-            else {"J": self.geometric, "J_s": SHIFT, "J_b": TURN},
+            "joint is its axis and the velocity that it gives to the origin, that of a prismatic "
+            "joint its direction.  Differentiating the pose gives the same."
+            + ("" if spelled else TURNED)
+            + (AXES if long else ""),
+            (long.jacobian if long else {"J": self.geometric})
+            | ({"J_s": self.space, "J_b": self.body} if spelled else {"J_s": SHIFT, "J_b": TURN}),
             proves=(
                 "J is the derivative of the position with the axes below it; the derivative of T "
                 "by each joint is its column of J_s, as a matrix, times T, and T times its "
@@ -197,6 +201,7 @@ class Serial:
             ),
             equal=[
                 *twists,
+                *(long.equal if long else ()),
                 (self.geometric[:3, :], self.position.jacobian(q)),
                 (self.geometric[3:, :], self.space[3:, :]),
                 (geometric.explicit, self.geometric),
@@ -231,14 +236,7 @@ class Serial:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
         _export(d, ("fk", POSE), q, {"T": pose}, equation="T")
         summary = "Velocity of the tool over its angular velocity, in base axes, per joint rate."
-        _export(
-            d,
-            ("jacobian", summary),
-            q,
-            {"J": geometric},
-            "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
-            equation="J",
-        )
+        _export(d, ("jacobian", summary), q, {"J": geometric}, GEOMETRIC, equation="J")
 
     def _export_pose_determinant(
         self, d: Derivation, singular: Mapping[str, sp.Expr] | None, given: sp.Symbol | None

@@ -17,6 +17,7 @@ from given import beside
 
 from closedform.check.runners.node import Node
 from closedform.pipeline.run import generated
+from closedform.robots.mechanism import given_of
 
 TESTS = Path(__file__).parent
 MODULES = generated() / "js"
@@ -62,9 +63,12 @@ def test_the_contract_and_both_forms(robot: str) -> None:
     found = json.loads(node(script, MODULES / f"{robot}.js", json.dumps(sizes)))
     batches = {f"{name}_batch" for name in kernels}
     own = {*CONSTANTS, "DEFAULTS", "SKELETON", "Status"}
+    given = given_of(module)
+    own |= {"GIVEN"} if given else set()
     assert set(found["names"]) == {*kernels, *batches, *own}
     for name in CONSTANTS:
         assert tuple(found["constants"][name]) == getattr(module, name)
+    assert found["constants"].get("GIVEN") == given
     assert found["constants"]["DEFAULTS"] == module.Parameters()._asdict()
     skeleton = module.SKELETON._replace(
         joints={name: joint._asdict() for name, joint in module.SKELETON.joints.items()}

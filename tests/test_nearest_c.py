@@ -15,6 +15,8 @@ from closedform.robots import Robot
 
 C = Path(__file__).parents[1] / "generated" / "c"
 NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
+SEVEN = ("franka_arm", "srs_arm")
+"""Those whose inverse takes a number beside the target."""
 WARNINGS = (
     *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion"),
     *("-Wshadow", "-Werror"),
@@ -25,19 +27,22 @@ pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no 
 
 def compiled(folder: Path, *options: str) -> Path:
     """A library with the function of every robot of this test."""
+    arguments = (
+        "const real_t *p, const real_t *x, const real_t *given, const real_t *seed, "
+        "const real_t *l, const real_t *w, real_t *q, uint8_t *status, uint32_t *outside"
+    )
     calls = "".join(
         f'#include "{name}_nearest.h"\n'
-        f"int call_{name}(const real_t *p, const real_t *x, const real_t *seed, const real_t *l,\n"
-        "    const real_t *w, real_t *q, uint8_t *status, uint32_t *outside);\n"
-        f"int call_{name}(const real_t *p, const real_t *x, const real_t *seed, const real_t *l,\n"
-        "    const real_t *w, real_t *q, uint8_t *status, uint32_t *outside)\n"
-        f"{{ {name}_params params; memcpy(&params, p, sizeof params);\n"
-        f"  return {name}_nearest(&params, x, seed, l, w, q, status, outside); }}\n"
-        for name in NAMES
+        f"int call_{name}({arguments});\n"
+        f"int call_{name}({arguments})\n"
+        f"{{ {name}_params params; memcpy(&params, p, sizeof params); (void)given;\n"
+        f"  return {name}_nearest(&params, x, {'given, ' if name in SEVEN else ''}seed, l, w, q,\n"
+        "    status, outside); }\n"
+        for name in NAMES + SEVEN
     )
     (folder / "calls.c").write_text(calls, "utf-8")
     library = folder / "nearest.so"
-    robots = [str(C / f"{name}.c") for name in NAMES]
+    robots = [str(C / f"{name}.c") for name in NAMES + SEVEN]
     subprocess.run(
         ["cc", *WARNINGS, "-O0", "-fPIC", "-shared", f"-I{C}", *options, "-o", str(library),
          str(folder / "calls.c"), *robots, "-lm"],
@@ -56,15 +61,24 @@ def pointer(values: np.ndarray) -> ctypes.c_void_p:
 
 
 def nearest(
-    library: ctypes.CDLL, arm: Robot, x: np.ndarray, seed: np.ndarray, w: np.ndarray
+    library: ctypes.CDLL,
+    arm: Robot,
+    x: np.ndarray,
+    seed: np.ndarray,
+    w: np.ndarray,
+    given: float | None = None,
 ) -> tuple[int, np.ndarray, int, np.ndarray]:
     params = np.array(arm.parameters, dtype=float)
     limits = np.concatenate([arm.limits.lower, arm.limits.upper])
     q, status = np.empty(len(arm.joints)), np.zeros(1, np.uint8)
     outside = np.zeros(len(arm.branches), np.uint32)
-    arrays = [np.ascontiguousarray(a, dtype=float) for a in (params, x, seed, limits, w)]
+    beside = np.array([np.nan if given is None else given])
+    arrays = [np.ascontiguousarray(a, dtype=float) for a in (params, x, beside, seed, limits, w)]
+    pointers = [pointer(a) for a in arrays]
+    if given is None:
+        pointers[2] = ctypes.c_void_p(None)
     branch = getattr(library, f"call_{arm.name}")(
-        *map(pointer, arrays), pointer(q), pointer(status), pointer(outside)
+        *pointers, pointer(q), pointer(status), pointer(outside)
     )
     bits = (outside[:, None] >> np.arange(len(arm.joints)).astype(np.uint32)) & 1
     return branch, q, int(status[0]), bits.astype(bool)
@@ -76,20 +90,25 @@ def robot(name: str, parameters: object = None) -> Robot:
     return Robot(module, parameters, limits=(np.full(n, -4.0), np.full(n, 4.5)))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_regular_targets(library: ctypes.CDLL, name: str) -> None:
+@pytest.mark.parametrize("beside", ["theirs", "of the seed"])
+@pytest.mark.parametrize("name", NAMES + SEVEN)
+def test_regular_targets(library: ctypes.CDLL, name: str, beside: str) -> None:
     arm = robot(name)
+    seen = set()
     rng = np.random.default_rng(0)
     for _ in range(30):
         q = rng.uniform(-1, 1, len(arm.joints))
         x = arm.fk(q)
         x = x.p[0] if hasattr(x, "p") else x
         seed, weights = rng.uniform(-5, 5, len(q)), rng.uniform(0.5, 2, len(q))
-        expected = arm.nearest(x, seed, weights=weights)
-        branch, found, status, outside = nearest(library, arm, x, seed, weights)
+        given = float(arm.given_at(q)) if arm.given and beside == "theirs" else None
+        expected = arm.nearest(x, seed, weights=weights, given=given)
+        branch, found, status, outside = nearest(library, arm, x, seed, weights, given)
+        seen.add(status)
         assert branch == expected.branch and status == expected.status
         assert np.array_equal(outside, expected.outside)
         assert np.allclose(found, expected.q, rtol=0, atol=1e-8, equal_nan=True)
+    assert 0 in seen
 
 
 @pytest.mark.parametrize(
@@ -100,6 +119,11 @@ def test_regular_targets(library: ctypes.CDLL, name: str) -> None:
         ("planar_2r", (1.0, 1.0), [0.4, np.pi], 0),
         ("planar_2r", (1.0, 0.0), [0.4, 1.0], 1),
         ("ur_arm", None, [0.3, -1.1, 0.9, 0.4, 0.0, 0.7], None),
+        ("franka_arm", None, [0.3, 0.0, 0.4, -1.6, 0.7, 1.9, 0.8], 0),
+        ("franka_arm", None, [0.3, 0.5, 0.4, 0.0, 0.7, 1.9, 0.8], None),
+        ("srs_arm", None, [0.3, 0.0, 0.4, -1.2, 0.7, 0.9, 0.8], 0),
+        ("srs_arm", None, [0.3, 0.7, 0.4, -1.2, 0.7, 0.0, 0.8], 4),
+        ("srs_arm", None, [0.3, 0.0, 0.4, -1.2, 0.7, 0.0, 0.8], None),
         ("irb260", None, None, 0),
         ("hybrid_five_bar", None, None, 0),
     ],
@@ -108,6 +132,7 @@ def test_a_free_joint_keeps_the_value_of_the_seed(
     library: ctypes.CDLL, name: str, parameters: object, q: list[float] | None, kept: int | None
 ) -> None:
     arm = robot(name, parameters)
+    given = float(arm.given_at(q)) if arm.given else None
     if q is not None:
         x = arm.fk(q)
         seeds = np.array(q) + np.random.default_rng(1).normal(0, 0.05, (5, len(q)))
@@ -115,14 +140,16 @@ def test_a_free_joint_keeps_the_value_of_the_seed(
         x = np.array([0.0, 0.0, 0.9, 0.4] if name == "irb260" else [0.0, 3.5, 0.0])
         seeds = np.random.default_rng(1).normal(0, 0.5, (5, len(arm.joints)))
     for seed in seeds:
-        branch, found, status, _ = nearest(library, arm, x, seed, np.ones(len(seed)))
+        branch, found, status, _ = nearest(library, arm, x, seed, np.ones(len(seed)), given)
         assert status == SINGULAR and branch >= 0
         at = arm.fk(found)
         gap = np.nanmin(np.abs(at.p - x).max(-1)) if hasattr(at, "p") else np.abs(at - x).max()
         assert gap < 1e-11
+        if given is not None:
+            assert abs(arm.given_at(found) - given) < 1e-11
         if kept is not None:
             assert found[kept] == seed[kept]
-        expected = arm.nearest(x, seed)
+        expected = arm.nearest(x, seed, given=given)
         assert np.linalg.norm(found - seed) <= expected.distance * 1.001 + 1e-9
 
 
@@ -151,6 +178,29 @@ def test_a_seed_close_by_does_not_hide_a_nearer_posture(
         hidden += status == 0
         assert np.linalg.norm(found - seed) < arm.nearest(x, seed).distance + 1e-6
     assert hidden > 5
+
+
+@pytest.mark.parametrize("given", [None, 0.0, 0.8])
+def test_a_wrist_above_the_shoulder_has_no_arm_angle_but_a_posture(
+    library: ctypes.CDLL, given: float | None
+) -> None:
+    arm = robot("srs_arm")
+    q = np.array([0.5, np.arctan2(np.sin(1.4), 1 + np.cos(1.4)), 0.0, 1.4, 0.0, 0.9, 0.0])
+    seed = q + 0.1 * np.eye(7)[0]  # the elbow can go round: theta1 is free
+    branch, found, status, _ = nearest(library, arm, arm.fk(q), seed, np.ones(7), given)
+    assert status == SINGULAR and branch >= 0
+    assert found[0] == seed[0] and np.abs(arm.fk(found) - arm.fk(q)).max() < 1e-11
+    assert np.abs(found - q).max() < 0.2
+
+
+def test_a_given_joint_out_of_its_limits_is_told(library: ctypes.CDLL) -> None:
+    arm = robot("franka_arm")
+    q = np.array([0.3, 0.4, 0.4, -1.6, 0.7, 1.9, 0.8])
+    narrow = Robot(closedform.franka_arm, limits=([-4.0] * 7, [4.0] * 6 + [0.7]))
+    assert nearest(library, arm, arm.fk(q), q, np.ones(7))[0] >= 0
+    branch, _, status, outside = nearest(library, narrow, arm.fk(q), q, np.ones(7))
+    assert (branch, status) == (-1, 1)
+    assert outside[:, 6].any() and not outside[:, :6].any()
 
 
 def test_what_is_not_a_target(library: ctypes.CDLL) -> None:

@@ -14,13 +14,15 @@ import closedform
 from closedform.robots import Robot
 
 INDEX = Path(__file__).parents[1] / "generated" / "js" / "index.js"
+SEVEN = ("franka_arm", "srs_arm")
+"""Those whose inverse takes a number beside the target."""
 NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
 SCRIPT = """
 import * as closedform from "INDEX";
 import { readFileSync } from "node:fs";
 const cases = JSON.parse(readFileSync(0, "utf8"));
-const found = cases.map(({ name, x, seed, limits, weights, parameters }) =>
-    closedform.nearest(closedform[name], x, seed, { limits, weights }, parameters));
+const found = cases.map(({ name, x, seed, limits, weights, parameters, given }) =>
+    closedform.nearest(closedform[name], x, seed, { limits, weights, given }, parameters));
 process.stdout.write(JSON.stringify(found));
 """
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node is not installed")
@@ -53,20 +55,26 @@ def case(arm: Robot, x: np.ndarray, seed: np.ndarray, weights: np.ndarray) -> di
     }
 
 
+def giving(arm: Robot, q: np.ndarray) -> dict[str, float]:
+    return {"given": float(arm.given_at(q))} if arm.given else {}
+
+
 def test_regular_targets() -> None:
     rng = np.random.default_rng(0)
     cases, expected = [], []
-    for name in NAMES:
+    for name in NAMES + SEVEN:
         arm = robot(name)
         for _ in range(20):
-            x = arm.fk(rng.uniform(-1, 1, len(arm.joints)))
+            q = rng.uniform(-1, 1, len(arm.joints))
+            x = arm.fk(q)
             x = x.p[0] if hasattr(x, "p") else x
             if not np.isfinite(x).all():
                 continue
             n = len(arm.joints)
             seed, weights = rng.uniform(-5, 5, n), rng.uniform(0.5, 2, n)
-            cases.append(case(arm, x, seed, weights))
-            expected.append(arm.nearest(x, seed, weights=weights))
+            for given in (giving(arm, q), {}) if arm.given else ({},):
+                cases.append(case(arm, x, seed, weights) | given)
+                expected.append(arm.nearest(x, seed, weights=weights, **given))
     for found, right in zip(answers(cases), expected, strict=True):
         assert found["branch"] == right.branch and found["status"] == right.status
         assert found["outside"] == right.outside.tolist()
@@ -82,22 +90,39 @@ def test_free_joints_keep_their_values() -> None:
         ("spherical_wrist", None, [0.6, 0.0, 0.8], 0),
         ("planar_2r", {"l1": 1.0, "l2": 1.0}, [0.4, np.pi], 0),
         ("ur_arm", None, [0.3, -1.1, 0.9, 0.4, 0.0, 0.7], None),
+        ("franka_arm", None, [0.3, 0.0, 0.4, -1.6, 0.7, 1.9, 0.8], 0),
+        ("franka_arm", None, [0.3, 0.5, 0.4, 0.0, 0.7, 1.9, 0.8], None),
+        ("srs_arm", None, [0.3, 0.0, 0.4, -1.2, 0.7, 0.9, 0.8], 0),
+        ("srs_arm", None, [0.3, 0.7, 0.4, -1.2, 0.7, 0.0, 0.8], 4),
+        ("srs_arm", None, [0.3, 0.0, 0.4, -1.2, 0.7, 0.0, 0.8], None),
     ]
     cases, expected = [], []
     for name, parameters, q, kept in chosen:
         arm = robot(name, parameters)
         seed = np.array(q) + rng.normal(0, 0.05, len(q))
-        cases.append(case(arm, arm.fk(q), seed, np.ones(len(q))))
+        cases.append(case(arm, arm.fk(q), seed, np.ones(len(q))) | giving(arm, q))
         expected.append((arm, arm.fk(q), seed, kept))
     arm = robot("irb260")
     x, seed = np.array([0.0, 0.0, 0.9, 0.4]), np.array([1.0, 0.6, 2.3, -0.5])
     cases.append(case(arm, x, seed, np.ones(4)))
     expected.append((arm, x, seed, 0))
-    for found, (arm, x, seed, kept) in zip(answers(cases), expected, strict=True):
-        q = np.array(found["q"])
+    for one, found, (arm, x, seed, kept) in zip(cases, answers(cases), expected, strict=True):
+        q, given = np.array(found["q"]), one.get("given")
         assert found["status"] == 2 and np.abs(arm.fk(q) - x).max() < 1e-11
         assert kept is None or q[kept] == seed[kept]
-        assert found["distance"] <= arm.nearest(x, seed).distance * 1.001 + 1e-9
+        assert given is None or abs(arm.given_at(q) - given) < 1e-11
+        assert found["distance"] <= arm.nearest(x, seed, given=given).distance * 1.001 + 1e-9
+
+
+@pytest.mark.parametrize("given", [{}, {"given": 0.0}, {"given": 0.8}])
+def test_a_wrist_above_the_shoulder_has_no_arm_angle_but_a_posture(given: dict) -> None:
+    arm = robot("srs_arm")
+    q = np.array([0.5, np.arctan2(np.sin(1.4), 1 + np.cos(1.4)), 0.0, 1.4, 0.0, 0.9, 0.0])
+    seed = q + 0.1 * np.eye(7)[0]  # the elbow can go round: theta1 is free
+    (found,) = answers([case(arm, arm.fk(q), seed, np.ones(7)) | given])
+    assert found["status"] == 2 and found["q"][0] == seed[0]
+    assert np.abs(arm.fk(found["q"]) - arm.fk(q)).max() < 1e-11
+    assert np.abs(found["q"] - q).max() < 0.2
 
 
 def test_what_is_not_a_target() -> None:
@@ -107,6 +132,8 @@ def test_what_is_not_a_target() -> None:
     assert (found["branch"], found["status"]) == (-1, 1) and found["q"] == [None, None]
     with pytest.raises(AssertionError, match="nearest: seed has length 3, expected 2"):
         answers([{**far, "seed": [0, 0, 0]}])
+    with pytest.raises(AssertionError, match="nearest: the inverse needs the target alone"):
+        answers([{**far, "given": 0.1}])
 
 
 def test_rounding_of_a_singular_target_does_not_turn_the_wrist() -> None:

@@ -80,6 +80,11 @@ def test_a_wrist_above_the_shoulder_has_no_arm_angle_but_a_posture(arm: Robot) -
     assert (found.status == SINGULAR).all()
     assert abs(arm.fk(found.q) - arm.fk(q)).max() < 1e-12
     assert abs(found.q - q).max() < 1e-6
+    q[:, 0] += 0.1  # the elbow can go round: theta1 is free, whatever angle is given
+    for given in (None, 0.0, 0.8):
+        turned = arm.nearest(arm.fk(found.q), q, given=given)
+        assert (turned.status == SINGULAR).all() and (turned.q[:, 0] == q[:, 0]).all()
+        assert abs(arm.fk(turned.q) - arm.fk(found.q)).max() < 1e-12
 
 
 def test_a_path_keeps_the_arm_angle_or_follows_another(arm: Robot) -> None:
@@ -113,10 +118,12 @@ def test_the_other_functions_of_a_robot(arm: Robot) -> None:
 def test_what_must_be_given_is_said(arm: Robot) -> None:
     with pytest.raises(ValueError, match="also needs given=arm_angle"):
         arm.ik(np.eye(4))
-    six = robots.load("ur5e")
-    for call in (lambda: six.ik(np.eye(4), 0.1), lambda: six.nearest(np.eye(4), [0] * 6, given=0)):
+    for compiled in (False, True):
+        six = robots.load("ur5e", compiled=compiled)
         with pytest.raises(ValueError, match="needs the target alone"):
-            call()
+            six.ik(np.eye(4), 0.1)
+        with pytest.raises(ValueError, match="needs the target alone"):
+            six.nearest(np.eye(4), [0] * 6, given=0)
 
 
 def test_a_given_joint_is_that_of_the_maker() -> None:

@@ -186,7 +186,7 @@ class Mechanism:
 
         ``given`` is the input that an arm of seven joints needs beside the target, see ``given``.
         """
-        found = self.call("ik", self.inside(x), *self._to_give(given))
+        found = self.call("ik", self.inside(x), *self.to_give(given))
         return found if self._zero is None else found._replace(q=self.from_model(found.q))
 
     def given_at(self, q: ArrayLike) -> Array:
@@ -198,7 +198,7 @@ class Mechanism:
             return np.asarray(values[..., self.joints.index(self.given)])
         return np.asarray(self.call(self.given, self.to_model(values)))
 
-    def _to_give(self, given: ArrayLike | None) -> tuple[ArrayLike, ...]:
+    def to_give(self, given: ArrayLike | None) -> tuple[ArrayLike, ...]:
         """The inputs of the module's inverse beside the target."""
         if self.given is None:
             if given is not None:

@@ -84,22 +84,28 @@ def _compiled(search: Search, x: ArrayLike, seed: Array) -> Nearest | None:
     target = mechanism.inside(x)
     if np.shape(target) != mechanism.task_shape or search.weights.ndim > 1:
         return None
+    beside = mechanism.to_give(search.given_at(seed))
+    if any(map(np.ndim, beside)):
+        return None
     if mechanism.counts_as_model:
-        return _one(search, target, seed, np.array(limits))
+        return _one(search, (target, seed, np.array(limits)), beside)
     signs, offsets = mechanism.one_by_one
     start = signs * seed + offsets
     sides = np.sort(signs * limits + offsets, axis=0)
-    found = _one(search, target, start, sides)
+    found = _one(search, (target, start, sides), beside)
     # of two turns the lower one is taken, which the opposite sign would exchange
     if found is None or (abs(abs(found.q - start) - np.pi) < TIE)[signs < 0].any():
         return None
     return found._replace(q=signs * (found.q - offsets))
 
 
-def _one(search: Search, target: Any, seed: Array, limits: Array) -> Nearest | None:
-    """The answer of the compiled module, in its joints; None if Python has to decide."""
+def _one(search: Search, start: tuple[Any, ...], beside: tuple[ArrayLike, ...]) -> Nearest | None:
+    """The answer of the compiled module, in its joints; None if Python has to decide.
+
+    ``start`` is the target, the seed and the limits, and ``beside`` what the inverse also needs.
+    """
     q, status, branch, distance, outside = search.mechanism.module._nearest(
-        target, seed, limits, search.weights, params=search.mechanism.parameters
+        *start, search.weights, *beside, params=search.mechanism.parameters
     )
     if status not in (OK, UNREACHABLE) or (status == OK and not distance < np.inf):
         return None

@@ -29,6 +29,8 @@ BOWED = 1e-3
 CORRECTIONS, APPROACH = 3, 8
 """Steps of Newton's method from a posture on the curve, and from a seed."""
 CLOSE_BY = 1e-4
+BESIDE = 1e-10
+"""What was given is undefined where it changes much over so small a motion."""
 ROUNDING = 1e-14
 DIFFERENCE = 1e-3
 """The step of differences of fourth order; their rounding is that of a posture over it."""
@@ -275,16 +277,30 @@ class Task:
     def keeping(self, q: Array) -> Task:
         """The same, but what was given counts only where the answers ``q`` have it.
 
-        Others are where it is undefined, such as the arm angle of a wrist above the shoulder.
+        Others are where it is undefined, as the arm angle of a wrist above the shoulder is.  There
+        it may have any value, also the one that was given, but not to both sides.
         """
         if self.given is None:
             return self
         kept = np.abs(self._beside(q, self.given)) <= STRAIGHT
+        step = BESIDE * np.cos(np.arange(q.shape[-1]) + 1.0)
+        for other in (q - step, q + step):
+            kept &= np.abs(self._beside(other, self.given)) <= BOWED
         return replace(self, given=np.where(kept, self.given, np.nan))
 
     def _beside(self, q: Array, given: Array) -> Array:
         gap = given - self.mechanism.given_at(q)
-        return np.asarray(np.where(np.isnan(gap), 0.0, gap - TURN * np.rint(gap / TURN)))
+        return np.where(np.isnan(gap), 0.0, self._without_units(gap))
+
+    def _without_units(self, gap: Array) -> Array:
+        """Differences of what was given: a slide in sizes, an angle less its turns."""
+        joints = self.mechanism.joints
+        slides = [
+            name for name, turns in zip(joints, self.mechanism.revolute, strict=True) if not turns
+        ]
+        if self.mechanism.given in slides:
+            return np.asarray((gap.T / self.size).T)
+        return np.asarray(gap - TURN * np.rint(gap / TURN))
 
     def _beside_row(self, q: Array, given: Array) -> Array:
         """The derivatives of what was given, by central differences: (n, 1, joints)."""
@@ -293,7 +309,7 @@ class Task:
         def central(times: int) -> Array:
             steps = times * DIFFERENCE * np.eye(q.shape[-1])
             gap = np.stack([value(q + step) - value(q - step) for step in steps], axis=-1)
-            return np.asarray(gap - TURN * np.rint(gap / TURN)) / (2 * times * DIFFERENCE)
+            return self._without_units(gap) / (2 * times * DIFFERENCE)
 
         row = (4 * central(1) - central(2)) / 3
         return np.where(np.isnan(given)[:, None], 0.0, row)[:, None]

@@ -10,7 +10,7 @@
 
 #define CF_MOST_JOINTS 8
 #define CF_MOST_BRANCHES 32
-#define CF_MOST_ROWS 6
+#define CF_MOST_ROWS 7
 #define CF_MOST_NUMBERS 256 /* of the targets or the Jacobians of all assembly modes */
 
 #ifdef CLOSEDFORM_FLOAT
@@ -20,6 +20,8 @@
 #define CF_DAMPING CLOSEDFORM_C(1e-6)
 #define CF_NEARLY CLOSEDFORM_C(1e-5) /* a determinant that only rounding keeps from zero */
 #define CF_SLACK CLOSEDFORM_C(1e-5)
+#define CF_DIFFERENCE CLOSEDFORM_C(1e-2) /* the step of differences of fourth order */
+#define CF_BESIDE CLOSEDFORM_C(1e-6)
 #else
 #define CF_REACHED CLOSEDFORM_C(1e-12)
 #define CF_STRAIGHT CLOSEDFORM_C(1e-9)
@@ -27,6 +29,8 @@
 #define CF_DAMPING CLOSEDFORM_C(1e-13)
 #define CF_NEARLY CLOSEDFORM_C(1e-12)
 #define CF_SLACK CLOSEDFORM_C(1e-9) /* how far a joint may pass a limit, in rad */
+#define CF_DIFFERENCE CLOSEDFORM_C(1e-3)
+#define CF_BESIDE CLOSEDFORM_C(1e-10) /* a number that changes much over so little is undefined */
 #endif
 #define CF_INFINITE CLOSEDFORM_C(HUGE_VAL)
 #define CF_TURN CLOSEDFORM_C(6.283185307179586)
@@ -35,7 +39,8 @@
 #define CF_STEPS 24
 #define CF_BOWED CLOSEDFORM_C(1e-3) /* a line whose direction rounding spoils; what is left is corrected */
 
-/* The functions and the sizes of one robot. task: 16 for a pose, 9 for a rotation, or the number of
+/* The functions and the sizes of one robot. task: 16 for a pose, 17 for a pose and a number that is
+ * given beside it (the last of x, and of the rows of J), 9 for a rotation, or the number of
  * coordinates; angles and revolute have a bit for each coordinate and each joint. lengths: the power
  * of a length in the determinant, which is NULL if there is none. */
 typedef struct {
@@ -52,7 +57,13 @@ typedef struct {
     const void *params;
     const real_t *x;
     real_t size;
+    size_t rows; /* of the error; the number beside the pose does not count where it is undefined */
 } cf_task;
+
+static inline int cf_is_pose(const cf_robot *robot)
+{
+    return robot->task == 16 || robot->task == 17;
+}
 
 static inline real_t cf_less_turns(real_t angle)
 {
@@ -120,12 +131,13 @@ static inline real_t cf_error(const cf_task *t, const real_t *q, real_t e[CF_MOS
 {
     real_t at[CF_MOST_NUMBERS], R[9], largest = 0;
     t->robot->fk(t->params, q, at);
-    if (t->robot->task == 16) {
+    if (cf_is_pose(t->robot)) {
         cf_times_transposed(t->x, 4, at, 4, R);
         cf_rotation_vector(R, e + 3);
         for (size_t i = 0; i < 3; ++i)
             e[i] = (t->x[4 * i + 3] - R[3 * i] * at[3] - R[3 * i + 1] * at[7] - R[3 * i + 2] * at[11]) /
                    t->size;
+        if (t->rows == 7) e[6] = cf_gap(t, 16, at[16]);
     } else if (t->robot->task == 9) {
         cf_times_transposed(t->x, 3, at, 3, R);
         cf_rotation_vector(R, e);
@@ -133,7 +145,7 @@ static inline real_t cf_error(const cf_task *t, const real_t *q, real_t e[CF_MOS
         const real_t *found = at + cf_mode(t, at) * t->robot->task;
         for (size_t i = 0; i < t->robot->task; ++i) e[i] = cf_gap(t, i, found[i]);
     }
-    for (size_t i = 0; i < t->robot->rows; ++i) {
+    for (size_t i = 0; i < t->rows; ++i) {
         if (!(CF_LIBM(fabs)(e[i]) <= largest)) largest = CF_LIBM(fabs)(e[i]);
         if (!(e[i] - e[i] == 0)) return CF_INFINITE;
     }
@@ -143,7 +155,7 @@ static inline real_t cf_error(const cf_task *t, const real_t *q, real_t e[CF_MOS
 /* The Jacobian of the error, rows x joints. Returns whether it is finite. */
 static inline int cf_task_jacobian(const cf_task *t, const real_t *q, real_t *J)
 {
-    const size_t n = t->robot->joints, rows = t->robot->rows;
+    const size_t n = t->robot->joints, rows = t->rows;
     real_t every[CF_MOST_NUMBERS], at[CF_MOST_NUMBERS];
     size_t mode = 0;
     t->robot->jacobian(t->params, q, every);
@@ -152,9 +164,10 @@ static inline int cf_task_jacobian(const cf_task *t, const real_t *q, real_t *J)
         mode = cf_mode(t, at);
     }
     for (size_t i = 0; i < rows; ++i) {
-        const int length = t->robot->task == 16 ? i < 3
-                           : t->robot->task == 9 ? 0
-                                                 : !((t->robot->angles >> i) & 1u);
+        const size_t place = cf_is_pose(t->robot) ? i + 10 : i; /* in x, of the number beside a pose */
+        const int length = cf_is_pose(t->robot) && i < 6 ? i < 3
+                           : t->robot->task == 9          ? 0
+                                                          : !((t->robot->angles >> place) & 1u);
         for (size_t j = 0; j < n; ++j) {
             const real_t entry = every[(mode * t->robot->jacobian_rows + i) * n + j];
             if (!(entry - entry == 0)) return 0;
@@ -206,7 +219,7 @@ static inline real_t cf_polish(const cf_task *t, size_t kept, int times, real_t 
     real_t error = cf_error(t, q, e);
     for (int k = 0; k < times && error < CF_INFINITE && cf_task_jacobian(t, q, J); ++k) {
         real_t turn = 0, next;
-        cf_least_squares(t->robot->rows, n, J, kept, e, d);
+        cf_least_squares(t->rows, n, J, kept, e, d);
         for (size_t j = 0; j < n; ++j)
             if (cf_turns(t->robot, j)) turn = cf_max(turn, CF_LIBM(fabs)(d[j]));
         for (size_t j = 0; j < n; ++j) better[j] = q[j] + d[j] / cf_max(1, turn / CF_LONGEST);
@@ -222,7 +235,7 @@ static inline real_t cf_polish(const cf_task *t, size_t kept, int times, real_t 
  * or 0 if there are none. */
 static inline real_t cf_tangent(const cf_task *t, const real_t *J, size_t joint, real_t *rates)
 {
-    const size_t n = t->robot->joints, rows = t->robot->rows;
+    const size_t n = t->robot->joints, rows = t->rows;
     real_t column[CF_MOST_ROWS] = { 0 }, square = 0, largest = 0, left = 0;
     for (size_t i = 0; i < rows; ++i) {
         column[i] = -J[i * n + joint];
@@ -274,10 +287,48 @@ static inline int cf_nearly_singular(const cf_task *t, const real_t *q)
     return 0;
 }
 
+/* The derivatives of a function of the joints, which may be an angle. */
+static inline void cf_gradient(size_t n, void (*value)(const void *params, const real_t *q, real_t *found),
+    const void *params, const real_t *q, real_t *row)
+{
+    real_t at[CF_MOST_JOINTS], above, below, central[2];
+    memcpy(at, q, n * sizeof *q);
+    for (size_t j = 0; j < n; ++j) {
+        for (int k = 0; k < 2; ++k) {
+            const real_t step = (real_t)(k + 1) * CF_DIFFERENCE;
+            at[j] = q[j] + step;
+            value(params, at, &above);
+            at[j] = q[j] - step;
+            value(params, at, &below);
+            central[k] = cf_less_turns(above - below) / (2 * step);
+        }
+        row[j] = (4 * central[0] - central[1]) / 3;
+        at[j] = q[j];
+    }
+}
+
+/* The same task, but the number beside the pose counts only if a posture of the inverse has it, and
+ * postures to both sides of that one: where it is undefined it may have any value. */
+static inline cf_task cf_keeping(const cf_task *t, const real_t *q)
+{
+    cf_task own = *t;
+    real_t at[CF_MOST_NUMBERS], beside[CF_MOST_JOINTS];
+    if (t->robot->task != 17) return own;
+    for (int side = -1; side <= 1; ++side) {
+        for (size_t j = 0; j < t->robot->joints; ++j)
+            beside[j] = q[j] + (real_t)side * CF_BESIDE * CF_LIBM(cos)((real_t)(j + 1));
+        t->robot->fk(t->params, beside, at);
+        const real_t gap = CF_LIBM(fabs)(cf_gap(t, 16, at[16]));
+        if (!(gap <= (side == 0 ? CF_STRAIGHT : CF_BOWED))) own.rows = 6;
+    }
+    return own;
+}
+
 /* Move a singular posture along its self-motion until the free joint has the value of the seed, or
  * only if that is a straight line. Returns whether another side of the curve may be nearer. */
-static inline int cf_release(const cf_task *t, const real_t *seed, int only_straight, real_t *q)
+static inline int cf_release(const cf_task *task, const real_t *seed, int only_straight, real_t *q)
 {
+    const cf_task own = cf_keeping(task, q), *const t = &own;
     const size_t n = t->robot->joints;
     real_t e[CF_MOST_ROWS], J[CF_MOST_ROWS * CF_MOST_JOINTS], rates[CF_MOST_JOINTS], at[CF_MOST_JOINTS];
     real_t going[CF_MOST_JOINTS], moved, error;
@@ -418,7 +469,7 @@ static inline int cf_nearest_posture(const cf_robot *robot, const void *params, 
     real_t every[CF_MOST_BRANCHES * CF_MOST_JOINTS], wanted[CF_MOST_JOINTS], near[CF_MOST_JOINTS];
     uint8_t statuses[CF_MOST_BRANCHES];
     int best = -1, invalid = 1, other = 0, finite = 1;
-    cf_task task = { robot, params, x, 0 };
+    cf_task task = { robot, params, x, 0, robot->rows };
     robot->ik(params, x, every, statuses);
     for (size_t j = 0; j < n; ++j) {
         finite = finite && q_seed[j] - q_seed[j] == 0;

@@ -7,7 +7,7 @@
 #include "delta_nearest.h"
 #include "five_bar_nearest.h"
 #include "four_bar_nearest.h"
-#include "franka_arm.h"
+#include "franka_arm_nearest.h"
 #include "h6ar_nearest.h"
 #include "h6ar_loop_closed_nearest.h"
 #include "hybrid_five_bar_nearest.h"
@@ -23,7 +23,7 @@
 #include "slider_crank_nearest.h"
 #include "spherical_five_bar_nearest.h"
 #include "spherical_wrist_nearest.h"
-#include "srs_arm.h"
+#include "srs_arm_nearest.h"
 #include "stanford_arm_nearest.h"
 #include "three_prs.h"
 #include "ur_arm_nearest.h"
@@ -234,7 +234,7 @@ static void agile_wrist_nearest_one(const double *params, const double *const *i
 static void agile_wrist_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(9, 3, 8, agile_wrist_nearest_one,
+    cf_nearest_each(4, 9, 3, 8, agile_wrist_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -478,7 +478,7 @@ static void delta_nearest_one(const double *params, const double *const *in, voi
 static void delta_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(3, 3, 8, delta_nearest_one,
+    cf_nearest_each(4, 3, 3, 8, delta_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -722,7 +722,7 @@ static void five_bar_nearest_one(const double *params, const double *const *in, 
 static void five_bar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(2, 2, 4, five_bar_nearest_one,
+    cf_nearest_each(4, 2, 2, 4, five_bar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -928,7 +928,7 @@ static void four_bar_nearest_one(const double *params, const double *const *in, 
 static void four_bar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(1, 1, 2, four_bar_nearest_one,
+    cf_nearest_each(4, 1, 1, 2, four_bar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -1121,6 +1121,37 @@ static const cf_array franka_arm_ik_in[] = {
 static const cf_array franka_arm_ik_out[] = {
     { "q", 2, { 8, 7 }, 56, CF_REAL },
     { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static void franka_arm_nearest_one(const double *params, const double *const *in, void *const *out)
+{
+    uint32_t outside[8];
+    const int branch = franka_arm_nearest(
+        (const franka_arm_params *)params, in[0], in[4], in[1], in[2], in[3], out[0], out[1], outside);
+    cf_nearest_told(7, 8, branch, outside, in, out);
+}
+
+static void franka_arm_nearest_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    cf_nearest_each(5, 16, 7, 8, franka_arm_nearest_one,
+        n, params, in, in_stride, out, out_stride);
+}
+
+static const cf_array franka_arm_nearest_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+    { "q_seed", 1, { 7 }, 7, CF_REAL },
+    { "limits", 2, { 2, 7 }, 14, CF_REAL },
+    { "weights", 1, { 7 }, 7, CF_REAL },
+    { "theta7", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array franka_arm_nearest_out[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+    { "status", 0, { 0 }, 1, CF_STATUS },
+    { "branch", 0, { 0 }, 1, CF_REAL },
+    { "distance", 0, { 0 }, 1, CF_REAL },
+    { "outside", 2, { 8, 7 }, 56, CF_BOOL },
 };
 
 static const char *const h6ar_fields[] = { "L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp" };
@@ -1389,7 +1420,7 @@ static void h6ar_nearest_one(const double *params, const double *const *in, void
 static void h6ar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(6, 6, 4, h6ar_nearest_one,
+    cf_nearest_each(4, 6, 6, 4, h6ar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -1674,7 +1705,7 @@ static void h6ar_loop_closed_nearest_one(const double *params, const double *con
 static void h6ar_loop_closed_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(6, 6, 8, h6ar_loop_closed_nearest_one,
+    cf_nearest_each(4, 6, 6, 8, h6ar_loop_closed_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -1935,7 +1966,7 @@ static void hybrid_five_bar_nearest_one(const double *params, const double *cons
 static void hybrid_five_bar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(3, 3, 8, hybrid_five_bar_nearest_one,
+    cf_nearest_each(4, 3, 3, 8, hybrid_five_bar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -2178,7 +2209,7 @@ static void irb2400_nearest_one(const double *params, const double *const *in, v
 static void irb2400_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(16, 6, 8, irb2400_nearest_one,
+    cf_nearest_each(4, 16, 6, 8, irb2400_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -2534,7 +2565,7 @@ static void irb260_nearest_one(const double *params, const double *const *in, vo
 static void irb260_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(4, 4, 4, irb260_nearest_one,
+    cf_nearest_each(4, 4, 4, 4, irb260_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -2778,7 +2809,7 @@ static void linear_delta_nearest_one(const double *params, const double *const *
 static void linear_delta_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(3, 3, 8, linear_delta_nearest_one,
+    cf_nearest_each(4, 3, 3, 8, linear_delta_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -2983,7 +3014,7 @@ static void opw_arm_nearest_one(const double *params, const double *const *in, v
 static void opw_arm_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(16, 6, 8, opw_arm_nearest_one,
+    cf_nearest_each(4, 16, 6, 8, opw_arm_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -3227,7 +3258,7 @@ static void orthoglide_nearest_one(const double *params, const double *const *in
 static void orthoglide_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(3, 3, 8, orthoglide_nearest_one,
+    cf_nearest_each(4, 3, 3, 8, orthoglide_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -3469,7 +3500,7 @@ static void planar_2r_nearest_one(const double *params, const double *const *in,
 static void planar_2r_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(2, 2, 2, planar_2r_nearest_one,
+    cf_nearest_each(4, 2, 2, 2, planar_2r_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -3674,7 +3705,7 @@ static void puma560_nearest_one(const double *params, const double *const *in, v
 static void puma560_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(16, 6, 8, puma560_nearest_one,
+    cf_nearest_each(4, 16, 6, 8, puma560_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -3899,7 +3930,7 @@ static void rpr_planar_nearest_one(const double *params, const double *const *in
 static void rpr_planar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(2, 2, 1, rpr_planar_nearest_one,
+    cf_nearest_each(4, 2, 2, 1, rpr_planar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -4104,7 +4135,7 @@ static void scara_nearest_one(const double *params, const double *const *in, voi
 static void scara_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(4, 4, 2, scara_nearest_one,
+    cf_nearest_each(4, 4, 4, 2, scara_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -4310,7 +4341,7 @@ static void slider_crank_nearest_one(const double *params, const double *const *
 static void slider_crank_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(1, 1, 2, slider_crank_nearest_one,
+    cf_nearest_each(4, 1, 1, 2, slider_crank_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -4516,7 +4547,7 @@ static void spherical_five_bar_nearest_one(const double *params, const double *c
 static void spherical_five_bar_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(3, 2, 4, spherical_five_bar_nearest_one,
+    cf_nearest_each(4, 3, 2, 4, spherical_five_bar_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -4702,7 +4733,7 @@ static void spherical_wrist_nearest_one(const double *params, const double *cons
 static void spherical_wrist_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(9, 3, 2, spherical_wrist_nearest_one,
+    cf_nearest_each(4, 9, 3, 2, spherical_wrist_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -4935,6 +4966,37 @@ static const cf_array srs_arm_ik_out[] = {
     { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
+static void srs_arm_nearest_one(const double *params, const double *const *in, void *const *out)
+{
+    uint32_t outside[8];
+    const int branch = srs_arm_nearest(
+        (const srs_arm_params *)params, in[0], in[4], in[1], in[2], in[3], out[0], out[1], outside);
+    cf_nearest_told(7, 8, branch, outside, in, out);
+}
+
+static void srs_arm_nearest_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    cf_nearest_each(5, 16, 7, 8, srs_arm_nearest_one,
+        n, params, in, in_stride, out, out_stride);
+}
+
+static const cf_array srs_arm_nearest_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+    { "q_seed", 1, { 7 }, 7, CF_REAL },
+    { "limits", 2, { 2, 7 }, 14, CF_REAL },
+    { "weights", 1, { 7 }, 7, CF_REAL },
+    { "arm_angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array srs_arm_nearest_out[] = {
+    { "q", 1, { 7 }, 7, CF_REAL },
+    { "status", 0, { 0 }, 1, CF_STATUS },
+    { "branch", 0, { 0 }, 1, CF_REAL },
+    { "distance", 0, { 0 }, 1, CF_REAL },
+    { "outside", 2, { 8, 7 }, 56, CF_BOOL },
+};
+
 static const char *const stanford_arm_fields[] = { "d2" };
 static const double stanford_arm_values[] = STANFORD_ARM_DEFAULTS;
 
@@ -5121,7 +5183,7 @@ static void stanford_arm_nearest_one(const double *params, const double *const *
 static void stanford_arm_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(16, 6, 8, stanford_arm_nearest_one,
+    cf_nearest_each(4, 16, 6, 8, stanford_arm_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -5527,7 +5589,7 @@ static void ur_arm_nearest_one(const double *params, const double *const *in, vo
 static void ur_arm_nearest_many(size_t n, const double *params, const double *const *in,
     const size_t *in_stride, void *const *out, const size_t *out_stride)
 {
-    cf_nearest_each(16, 6, 8, ur_arm_nearest_one,
+    cf_nearest_each(4, 16, 6, 8, ur_arm_nearest_one,
         n, params, in, in_stride, out, out_stride);
 }
 
@@ -7212,6 +7274,10 @@ const cf_function cf_functions[] = {
       7, franka_arm_values, franka_arm_fields,
       2, franka_arm_ik_in, 2, franka_arm_ik_out,
       franka_arm_ik_one, franka_arm_ik_many },
+    { "franka_arm.nearest", "The posture nearest to a seed; see franka_arm_nearest.h.",
+      7, franka_arm_values, franka_arm_fields,
+      5, franka_arm_nearest_in, 5, franka_arm_nearest_out,
+      franka_arm_nearest_one, franka_arm_nearest_many },
     { "h6ar.fk",
       "Position of the tip, and yaw, roll and pitch.\n"
       "\n"
@@ -12739,6 +12805,10 @@ const cf_function cf_functions[] = {
       4, srs_arm_values, srs_arm_fields,
       2, srs_arm_ik_in, 2, srs_arm_ik_out,
       srs_arm_ik_one, srs_arm_ik_many },
+    { "srs_arm.nearest", "The posture nearest to a seed; see srs_arm_nearest.h.",
+      4, srs_arm_values, srs_arm_fields,
+      5, srs_arm_nearest_in, 5, srs_arm_nearest_out,
+      srs_arm_nearest_one, srs_arm_nearest_many },
     { "stanford_arm.pose",
       "Pose of the tool in the base frame.\n"
       "\n"

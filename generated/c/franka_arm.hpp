@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-#include "franka_arm.h"
+#include "franka_arm_nearest.h"
 
 namespace closedform::franka_arm {
 
@@ -84,6 +84,32 @@ struct IkResult {
     IkResult result;
     franka_arm_ik(&parameters, T.data(), theta7.data(), result.q.data(), result.status.data());
     return result;
+}
+
+/* The lower and the upper limits of all joints; without limits they are infinite. */
+struct Limits {
+    std::array<real_t, 7> lower, upper;
+};
+
+struct Nearest {
+    std::array<real_t, 7> q;
+    std::array<std::uint32_t, 8> outside; /* bits of joints, by branch */
+    int branch;                                /* -1 if there is none */
+    std::uint8_t status;
+};
+
+/* See franka_arm_nearest. */
+[[nodiscard]] inline Nearest nearest(std::span<const real_t, 16> T, const real_t *theta7, std::span<const real_t, 7> q_seed,
+    const Limits *limits = nullptr, const std::array<real_t, 7> *weights = nullptr,
+    const Parameters &parameters = defaults) noexcept
+{
+    static_assert(sizeof(Limits) == 2 * 7 * sizeof(real_t));
+    Nearest found;
+    found.branch = franka_arm_nearest(&parameters, T.data(), theta7, q_seed.data(),
+        limits != nullptr ? limits->lower.data() : nullptr,
+        weights != nullptr ? weights->data() : nullptr, found.q.data(), &found.status,
+        found.outside.data());
+    return found;
 }
 
 }  // namespace closedform::franka_arm

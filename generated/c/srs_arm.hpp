@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-#include "srs_arm.h"
+#include "srs_arm_nearest.h"
 
 namespace closedform::srs_arm {
 
@@ -98,6 +98,32 @@ struct IkResult {
     IkResult result;
     srs_arm_ik(&parameters, T.data(), arm_angle.data(), result.q.data(), result.status.data());
     return result;
+}
+
+/* The lower and the upper limits of all joints; without limits they are infinite. */
+struct Limits {
+    std::array<real_t, 7> lower, upper;
+};
+
+struct Nearest {
+    std::array<real_t, 7> q;
+    std::array<std::uint32_t, 8> outside; /* bits of joints, by branch */
+    int branch;                                /* -1 if there is none */
+    std::uint8_t status;
+};
+
+/* See srs_arm_nearest. */
+[[nodiscard]] inline Nearest nearest(std::span<const real_t, 16> T, const real_t *arm_angle, std::span<const real_t, 7> q_seed,
+    const Limits *limits = nullptr, const std::array<real_t, 7> *weights = nullptr,
+    const Parameters &parameters = defaults) noexcept
+{
+    static_assert(sizeof(Limits) == 2 * 7 * sizeof(real_t));
+    Nearest found;
+    found.branch = srs_arm_nearest(&parameters, T.data(), arm_angle, q_seed.data(),
+        limits != nullptr ? limits->lower.data() : nullptr,
+        weights != nullptr ? weights->data() : nullptr, found.q.data(), &found.status,
+        found.outside.data());
+    return found;
 }
 
 }  // namespace closedform::srs_arm

@@ -13,6 +13,8 @@ const FREE = 1e-6; // the target does not move
 const SHARE = 1e-3;
 const DAMPING = 1e-13;
 const SLACK = 1e-9; // how far a joint may pass a limit, in rad
+const DIFFERENCE = 1e-3; // the step of differences of fourth order
+const BESIDE = 1e-10; // a number that changes much over so little is undefined
 const NEARLY = 1e-12; // a determinant that only rounding keeps from zero
 const LONGEST = 0.5; // rad; a step along a self-motion
 const STEPS = 24;
@@ -34,6 +36,7 @@ const ANGLES = ["yaw", "pitch", "roll", "psi", "phi", "theta"];
  * @typedef {object} Options
  * @property {readonly [ArrayLike<number>, ArrayLike<number>]} [limits] the lower and the upper ones
  * @property {ArrayLike<number>} [weights] of the squares of the joints in the distance, 1 by default
+ * @property {number} [given] what `robot.ik` takes beside the target, by default its value at the seed
  */
 
 /**
@@ -56,12 +59,13 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
     const upper = checked(limits?.[1], n, "limits[1]", Infinity);
     const weight = checked(weights, n, "weights", 1);
     const q0 = checked(seed, n, "seed", 0);
-    const solutions = robot.ik(x, parameters);
+    const given = givenBeside(robot, options.given, q0, parameters);
+    const solutions = inverse(robot, x, given, parameters);
+    const task = new Task(robot, Array.from(x), parameters, given);
     /** @type {number[][]} */
     const every = solutions.q.map((/** @type {ArrayLike<number>} */ q) => Array.from(q));
     const finite = q0.every(Number.isFinite);
     const wanted = q0.map((v, j) => Math.min(Math.max(v, lower[j]), upper[j]));
-    const task = new Task(robot, Array.from(x), parameters);
     if (finite && solutions.status.includes(SINGULAR)) release(task, wanted, every, solutions.status);
     const bounds = { lower, upper, weight };
     const statuses = solutions.status.map((/** @type {number} */ status) => (finite ? status : INVALID));
@@ -73,6 +77,44 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
     const invalid = !finite || solutions.status.every((/** @type {number} */ s) => s === INVALID);
     if (found.branch < 0 && invalid) found.status = INVALID;
     return found;
+}
+
+/**
+ * What the inverse takes beside the target: a number, or undefined.
+ *
+ * @param {any} robot
+ * @param {number | undefined} given
+ * @param {readonly number[]} seed
+ * @param {Readonly<Record<string, number | undefined>>} parameters
+ * @returns {number | undefined}
+ */
+function givenBeside(robot, given, seed, parameters) {
+    if (robot.GIVEN !== undefined) return given ?? givenAt(robot, seed, parameters);
+    if (given !== undefined) throw new TypeError("nearest: the inverse needs the target alone, nothing given");
+    return undefined;
+}
+
+/**
+ * All branches.
+ *
+ * @param {any} robot
+ * @param {ArrayLike<number>} x
+ * @param {number | undefined} given
+ * @param {Readonly<Record<string, number | undefined>>} parameters
+ */
+function inverse(robot, x, given, parameters) {
+    return robot.ik(x, ...(given === undefined ? [] : [given]), parameters);
+}
+
+/**
+ * @param {any} robot
+ * @param {readonly number[]} q
+ * @param {Readonly<Record<string, number | undefined>>} parameters
+ * @returns {number}
+ */
+function givenAt(robot, q, parameters) {
+    const joint = robot.JOINTS.indexOf(robot.GIVEN);
+    return joint < 0 ? robot[robot.GIVEN](Array.from(q), parameters) : q[joint];
 }
 
 /**
@@ -118,7 +160,7 @@ function nearlySingular(task, q) {
     if (robot.determinant === undefined) return false;
     const named = task.angles.filter((angle) => !angle).length;
     const lengths = { 16: 3, 9: 0 }[task.x.length] ?? named;
-    const slides = task.revolute.filter((revolute) => !revolute).length;
+    const slides = task.revolute.filter((revolute) => !revolute).length - Number(task.slides);
     /** @type {number[]} */
     const found = [robot.determinant(Array.from(q), task.parameters)].flat();
     return found.some((value) => Math.abs(value) <= NEARLY * task.size ** (lengths - slides));
@@ -171,17 +213,62 @@ class Task {
      * @param {any} robot
      * @param {number[]} x
      * @param {Readonly<Record<string, number | undefined>>} parameters
+     * @param {number | undefined} given counts too, if it is not undefined
      */
-    constructor(robot, x, parameters) {
+    constructor(robot, x, parameters, given) {
         this.robot = robot;
         this.x = x;
         this.parameters = parameters;
+        this.given = given;
         this.n = robot.JOINTS.length;
         /** @type {boolean[]} */
         this.revolute = robot.JOINTS.map((/** @type {string} */ name) => robot.SKELETON.joints[name].kind === "revolute");
+        this.slides = this.revolute[robot.JOINTS.indexOf(robot.GIVEN)] === false;
         this.angles = robot.TASK.map((/** @type {string} */ name) => ANGLES.includes(name));
         const lengths = Object.values({ ...robot.DEFAULTS, ...parameters });
         this.size = lengths.reduce((sum, length) => sum + Math.abs(length ?? 0), 0) || 1;
+    }
+
+    /**
+     * The same, but what is given counts only if a posture of the inverse has it, and postures to both
+     * sides of that one: where it is undefined it may have any value.
+     *
+     * @param {readonly number[]} q
+     */
+    keeping(q) {
+        const kept = [-1, 0, 1].every((side) => {
+            const [gap] = this.beside(q.map((v, j) => v + side * BESIDE * Math.cos(j + 1)));
+            return Math.abs(gap) <= (side === 0 ? STRAIGHT : BOWED);
+        });
+        if (this.given === undefined || kept) return this;
+        return new Task(this.robot, this.x, this.parameters, undefined);
+    }
+
+    /**
+     * How far what is given is from its value at a posture; empty if nothing is.
+     *
+     * @param {readonly number[]} q
+     */
+    beside(q) {
+        if (this.given === undefined) return [];
+        const gap = this.given - givenAt(this.robot, q, this.parameters);
+        return [this.slides ? gap / this.size : lessTurns(gap)];
+    }
+
+    /**
+     * The derivatives of what is given, by the joints.
+     *
+     * @param {readonly number[]} q
+     */
+    gradient(q) {
+        return q.map((_, j) => {
+            const [near, far] = [DIFFERENCE, 2 * DIFFERENCE].map((step) => {
+                const [above, below] = [step, -step].map((by) =>
+                    givenAt(this.robot, q.map((v, i) => (i === j ? v + by : v)), this.parameters));
+                return this.slides ? (above - below) / (2 * step * this.size) : lessTurns(above - below) / (2 * step);
+            });
+            return (4 * near - far) / 3;
+        });
     }
 
     /** @param {readonly number[]} q */
@@ -206,7 +293,7 @@ class Task {
         const omega = rotationVector(R);
         if (row === 3) return omega;
         const v = R.map((r, i) => (this.x[4 * i + 3] - r[0] * at[3] - r[1] * at[7] - r[2] * at[11]) / this.size);
-        return [...v, ...omega];
+        return [...v, ...omega, ...this.beside(q)];
     }
 
     /** @param {readonly (readonly number[])[]} modes */
@@ -244,6 +331,7 @@ class Task {
             if (!row.every(Number.isFinite)) return undefined;
             rows.push(row);
         }
+        if (this.given !== undefined) rows.push(this.gradient(q));
         return rows;
     }
 }
@@ -379,12 +467,13 @@ function release(task, seed, every, statuses) {
 /**
  * Also says whether another side of the curve may be nearer.
  *
- * @param {Task} task
+ * @param {Task} whole
  * @param {readonly number[]} seed
  * @param {number[]} q
  * @param {boolean} onlyStraight
  */
-function moveTo(task, seed, q, onlyStraight) {
+function moveTo(whole, seed, q, onlyStraight) {
+    const task = whole.keeping(q);
     const J = task.jacobian(q);
     const { joint, conventional } = J === undefined ? { joint: -1, conventional: false } : freeJoint(q, J, true);
     const first = J === undefined || joint < 0 ? undefined : tangent(J, task.n, joint);
@@ -432,7 +521,8 @@ function nearSeed(task, seed) {
     const { q, error } = polished(task, joint, 3, kept.error <= REACHED ? kept.q : on.q);
     if (!(error <= REACHED)) return undefined;
     const close = q.map((v, j) => v + 1e-4 * Math.cos(j + 1));
-    const solutions = task.robot.ik(task.robot.fk(close, task.parameters), task.parameters);
+    const given = task.given === undefined ? undefined : givenAt(task.robot, close, task.parameters);
+    const solutions = inverse(task.robot, task.robot.fk(close, task.parameters), given, task.parameters);
     const gaps = solutions.q.map((/** @type {number[]} */ other) => apart(task, other, close));
     const known = gaps.map((/** @type {number} */ gap) => (gap >= 0 ? gap : Infinity));
     return { q, branch: known.indexOf(Math.min(...known)) };

@@ -5,9 +5,10 @@
 #include "closedform_module.h"
 #include "closedform_nearest.h"
 
-enum { CF_NEAREST_IN = 4, CF_NEAREST_OUT = 5, CF_MOST_TARGET = 16 };
+enum { CF_NEAREST_IN = 5, CF_NEAREST_OUT = 5, CF_MOST_TARGET = 16 };
 
-/* in: target, seed, limits, weights; out: q, status, branch, distance, outside. */
+/* in: target, seed, limits, weights, and what is given beside the target, if anything; out: q, status,
+ * branch, distance, outside. */
 static inline void
 cf_nearest_told(size_t joints, size_t branches, int branch, const uint32_t *outside,
                 const double *const *in, void *const *out)
@@ -27,17 +28,18 @@ cf_nearest_told(size_t joints, size_t branches, int branch, const uint32_t *outs
 
 /* One after the other; the table wants a batch of every function. */
 static inline void
-cf_nearest_each(size_t task, size_t joints, size_t branches, cf_single *one, size_t n,
+cf_nearest_each(size_t inputs, size_t task, size_t joints, size_t branches, cf_single *one, size_t n,
                 const double *params, const double *const *in, const size_t *in_stride,
                 void *const *out, const size_t *out_stride)
 {
-    const size_t sizes[CF_NEAREST_IN] = {task, joints, 2 * joints, joints};
+    const size_t sizes[CF_NEAREST_IN] = {task, joints, 2 * joints, joints, 1};
     double given[CF_NEAREST_IN][CF_MOST_TARGET], q[CF_MOST_JOINTS], branch, distance;
     uint8_t status, outside[CF_MOST_BRANCHES * CF_MOST_JOINTS];
-    const double *const values[CF_NEAREST_IN] = {given[0], given[1], given[2], given[3]};
+    const double *const values[CF_NEAREST_IN] = {given[0], given[1], given[2], given[3],
+                                                 given[4]};
     void *const found[CF_NEAREST_OUT] = {q, &status, &branch, &distance, outside};
     for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < CF_NEAREST_IN; k++) {
+        for (size_t k = 0; k < inputs; k++) {
             for (size_t j = 0; j < sizes[k]; j++) {
                 given[k][j] = in[k][j * in_stride[k] + i];
             }

@@ -16,9 +16,17 @@ ANGLES = ("yaw", "pitch", "roll", "psi", "phi", "theta")
 
 @dataclass(frozen=True)
 class CNearest:
-    """Sizes and calls of one robot; ``target`` is the argument of its inverse."""
+    """Sizes and calls of one robot.
+
+    ``target`` is the argument of its inverse, and ``given`` the one beside it, if any.  The shared
+    code sees both as one array of ``task`` numbers.
+    """
 
     target: str
+    target_size: int
+    given: str
+    given_at: str
+    """The statement that writes its value at a posture."""
     joints: int
     branches: int
     task: int
@@ -26,6 +34,8 @@ class CNearest:
     rows: int
     jacobian: str
     jacobian_rows: int
+    jacobian_size: int
+    """The entries of that function, before the row of what is given."""
     determinant: str
     """The name of a function for it, or NULL."""
     lengths: int
@@ -43,45 +53,56 @@ class CNearest:
 
 
 def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest | None:
-    """None if the inverse takes more than a target, or there is no Jacobian."""
+    """None without a Jacobian, and for an inverse of more than a target, or a pose and a number."""
     known = {f.name: f for f in functions}
     ik, fk = known.get("ik"), known.get("fk")
-    if ik is None or fk is None or len(ik.inputs) != 1:
+    if ik is None or fk is None:
         return None
     joints = derivation.actuated
-    task = ik.inputs[0].size
+    target, *beside = ik.inputs
+    if beside and (target.size, [a.size for a in beside]) != (16, [1]):
+        return None
+    task = target.size
     modes = fk.outputs[0].size // task
     jacobian = known.get("jacobian_space" if task in (9, 16) else "jacobian")
     if jacobian is None:
         return None
-    rows = {16: 6, 9: 3}.get(task, task)
+    rows = {16: 6, 9: 3}.get(task, task) + len(beside)
     kinds = {j.symbol: j.kind for j in derivation.joints}
     revolute = sum(1 << k for k, j in enumerate(joints) if kinds[j] == "revolute")
     named = sum(1 << k for k, name in enumerate(derivation.task) if name in ANGLES)
     lengths = {16: 3, 9: 0}.get(task, task - named.bit_count())
-    slides = len(joints) - revolute.bit_count()
+    slides = {j.name for j in joints if kinds[j] != "revolute"}
+    given = {a.name for a in beside}
+    angles = named if task not in (9, 16) else 0
+    angles |= sum(1 << task for name in given - slides)
     return CNearest(
-        target=ik.inputs[0].name,
+        target=target.name,
+        target_size=task,
+        given=beside[0].name if beside else "",
+        given_at=_given_at(derivation, beside[0].name) if beside else "",
         joints=len(joints),
         branches=ik.outputs[0].size // len(joints),
-        task=task,
+        task=task + len(beside),
         modes=modes,
         rows=rows,
         jacobian=jacobian.full,
-        jacobian_rows=jacobian.outputs[0].size // (modes * len(joints)),
+        jacobian_rows=jacobian.outputs[0].size // (modes * len(joints)) + len(beside),
+        jacobian_size=jacobian.outputs[0].size,
         determinant=f"{derivation.name}_nearest_determinant" if "determinant" in known else "NULL",
-        lengths=lengths - slides,
+        lengths=lengths - len(slides - given),
         fields=len(derivation.parameters),
         revolute=f"0x{revolute:x}u",
-        angles=f"0x{named if task not in (9, 16) else 0:x}u",
+        angles=f"0x{angles:x}u",
         fk_status=modes if len(fk.outputs) > 1 else 0,
         joint_names=", ".join(j.name for j in joints),
         limits=", ".join(_number(v) for side in derivation.limits or () for v in side),
         inputs=(
-            ik.inputs[0],
+            target,
             c_array("q_seed", (len(joints),), "real", "const "),
             c_array("limits", (2, len(joints)), "real", "const "),
             c_array("weights", (len(joints),), "real", "const "),
+            *beside,
         ),
         outputs=(
             c_array("q", (len(joints),), "real"),
@@ -91,6 +112,14 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
             c_array("outside", (ik.outputs[0].size // len(joints), len(joints)), "bool"),
         ),
     )
+
+
+def _given_at(derivation: Derivation, given: str) -> str:
+    names = [j.name for j in derivation.actuated]
+    if given in names:
+        return f"(void)params, *{given} = q[{names.index(given)}];"
+    name = derivation.name
+    return f"{name}_{given}((const {name}_params *)params, q, {given});"
 
 
 def _number(value: float) -> str:

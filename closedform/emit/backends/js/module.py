@@ -67,11 +67,13 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
         "SINGULARITIES": derivation.singularities,
     }
     limits = derivation.limits or ()
+    inverse = next((f for f in derivation.functions if f.name == "ik"), None)
     return {
         "banner": banner(derivation, lowered, "//"),
         "interface": described,
         "mechanism": described.mechanism.split("\n"),
         "labels": [(name, _strings(values)) for name, values in labels.items()],
+        "given": inverse.inputs[1].name if inverse and len(inverse.inputs) == 2 else "",
         "limits": [[repr(v).replace("inf", "Infinity") for v in side] for side in limits],
         "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
     }

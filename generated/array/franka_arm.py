@@ -1031,9 +1031,9 @@ def _ik(
     t19 = T11 * T14 + T21 * T24 + T31 * t17
     w_y = c_x_theta7 * t18 + s_x_theta7 * t19
     t20 = w_y * w_y
-    p_x = a7 - c_x_theta7 * t19 + s_x_theta7 * t18
+    u_x = a7 - c_x_theta7 * t19 + s_x_theta7 * t18
     s_z = d7 - T13 * T14 - T23 * T24 - T33 * t17
-    t21 = p_x * p_x + s_z * s_z
+    t21 = u_x * u_x + s_z * s_z
     t22 = t20 + t21
     far = ops.sqrt(t22)
     t23 = t16 - far
@@ -1132,14 +1132,14 @@ def _ik(
     span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t78 * t78), below6 + above6)
     t79 = 1.0 / (reach * span6)
     t80 = t71 * kept6 * t79
-    t81 = t79 * (p_x * t78)
+    t81 = t79 * (u_x * t78)
     s6 = ops.select(free6, 0.0, t80 - t81)
-    t82 = p_x * 2.0
+    t82 = u_x * 2.0
     t83 = t79 * (t82 * kept6)
     t84 = t79 * (s_z * t78)
     c6 = ops.select(free6, 1.0, t83 + t84)
     t85 = ops.sqrt(v_x * v_x)
-    w_x = p_x * c6 + s_z * s6
+    w_x = u_x * c6 + s_z * s6
     on_axis_5 = ops.min(t85, ops.sqrt(t20 + w_x * w_x)) <= t35
     dot_5 = v_x * w_x
     t86 = w_y * v_x
@@ -1288,13 +1288,13 @@ def _ik(
     span6_2 = ops.select(tangent6, ops.sqrt(t179), below6_2 + above6_2)
     t180 = 1.0 / ops.select(t154, reach_2 * span6_2, 1.0)
     t181 = t71 * kept6_2 * t180
-    t182 = t180 * (p_x * t178)
+    t182 = t180 * (u_x * t178)
     s6_2 = ops.select(free6, 0.0, t181 - t182)
     t183 = t180 * (t82 * kept6_2)
     t184 = t180 * (s_z * t178)
     c6_2 = ops.select(free6, 1.0, t183 + t184)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
-    dot_5_2 = v_x_2 * (p_x * c6_2 + s_z * s6_2)
+    dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
     t185 = t93 & ops.opposite(on_axis_5)
     t186 = w_y * v_x_2
     t187 = t186 * t186
@@ -1345,7 +1345,7 @@ def _ik(
     t215 = ops.select(free6, 0.0, t80 + t81)
     c6_bent_behind_front = ops.select(free6, 1.0, t84 - t83)
     t216 = t67 * (R1_11 * t215 + T13 * c6_bent_behind_front)
-    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t215
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t215
     t217 = w_x_bent_behind_front * w_x_bent_behind_front
     on_axis_5_bent_behind_front = ops.min(t85, ops.sqrt(t20 + t217)) <= t35
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
@@ -1362,7 +1362,7 @@ def _ik(
     t226 = ops.select(free6, 0.0, t181 + t182)
     c6_bent_behind_front_2 = ops.select(free6, 1.0, t184 - t183)
     t227 = R1_21 * t226 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (p_x * c6_bent_behind_front_2 - s_z * t226)
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t226)
     t228 = t93 & ops.opposite(on_axis_5_bent_behind_front)
     t229 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
     t230 = ops.select(t228, t187 + ops.select(t228, t229, 1.0), 1.0)
@@ -1424,14 +1424,14 @@ def _ik(
     span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t271, width6_over_ahead_front)
     t272 = 1.0 / (reach * span6_over_ahead_front)
     t273 = t71 * kept6_over_ahead_front * t272
-    t274 = t272 * (p_x * t270)
+    t274 = t272 * (u_x * t270)
     s6_over_ahead_front = ops.select(free6, 0.0, t273 - t274)
     t275 = t272 * (t82 * kept6_over_ahead_front)
     t276 = t272 * (s_z * t270)
     c6_over_ahead_front = ops.select(free6, 1.0, t275 + t276)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     t277 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
+    w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     t278 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
     on_axis_5_over_ahead_front = ops.min(t277, ops.sqrt(t278)) <= t35
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
@@ -1496,13 +1496,13 @@ def _ik(
     t310 = ops.select(t149, reach_2 * span6_over_ahead_front_2, 1.0)
     t311 = 1.0 / t310
     t312 = t71 * kept6_over_ahead_front_2 * t311
-    t313 = t311 * (p_x * t308)
+    t313 = t311 * (u_x * t308)
     s6_over_ahead_front_2 = ops.select(free6, 0.0, t312 - t313)
     t314 = t311 * (t82 * kept6_over_ahead_front_2)
     t315 = t311 * (s_z * t308)
     c6_over_ahead_front_2 = ops.select(free6, 1.0, t314 + t315)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
-    w_x_over_ahead_front_2 = p_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
+    w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
     t316 = t119 & ops.opposite(on_axis_5_over_ahead_front)
     t317 = w_y * v_x_over_ahead_front_2
@@ -1567,7 +1567,7 @@ def _ik(
     t361 = ops.select(free6, 0.0, t273 + t274)
     c6_over_behind_front = ops.select(free6, 1.0, t276 - t275)
     t362 = t115 * (R1_11 * t361 + T13 * c6_over_behind_front)
-    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t361
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t361
     t363 = w_x_over_behind_front * w_x_over_behind_front
     on_axis_5_over_behind_front = ops.min(t277, ops.sqrt(t20 + t363)) <= t35
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
@@ -1584,7 +1584,7 @@ def _ik(
     t372 = ops.select(free6, 0.0, t312 + t313)
     c6_over_behind_front_2 = ops.select(free6, 1.0, t315 - t314)
     t373 = R1_21 * t372 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (p_x * c6_over_behind_front_2 - s_z * t372)
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t372)
     t374 = t119 & ops.opposite(on_axis_5_over_behind_front)
     t375 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
     t376 = ops.select(t374, t318 + ops.select(t374, t375, 1.0), 1.0)

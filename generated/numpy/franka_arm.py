@@ -1074,11 +1074,11 @@ def _ik(
     t7 = T11 * T14 + T21 * T24 + T31 * t5
     w_y = c_x_theta7 * t6 + s_x_theta7 * t7
     t8 = w_y * w_y
-    p_x = a7 - c_x_theta7 * t7 + s_x_theta7 * t6
+    u_x = a7 - c_x_theta7 * t7 + s_x_theta7 * t6
     del t6, t7
     s_z = d7 - T13 * T14 - T23 * T24 - T33 * t5
     del t5
-    t9 = p_x * p_x + s_z * s_z
+    t9 = u_x * u_x + s_z * s_z
     far = np.sqrt(t8 + t9)
     t10 = t4 - far
     t11 = (t4 + far) * np.maximum(t10, 0.0)
@@ -1199,9 +1199,9 @@ def _ik(
     t59 = 1.0 / (reach * span6)
     del span6
     t60 = t47 * kept6 * t59
-    t61 = t59 * (p_x * t58)
+    t61 = t59 * (u_x * t58)
     s6 = _runtime.select(free6, 0.0, t60 - t61)
-    t62 = p_x * 2.0
+    t62 = u_x * 2.0
     t63 = t59 * (t62 * kept6)
     del kept6
     t64 = t59 * (s_z * t58)
@@ -1209,7 +1209,7 @@ def _ik(
     c6 = _runtime.select(free6, 1.0, t63 + t64)
     R2_13 = R1_11 * s6 - T13 * c6
     t65 = np.sqrt(v_x * v_x)
-    w_x = p_x * c6 + s_z * s6
+    w_x = u_x * c6 + s_z * s6
     on_axis_5 = np.minimum(t65, np.sqrt(t8 + w_x * w_x)) <= t16
     dot_5 = v_x * w_x
     del w_x
@@ -1291,7 +1291,7 @@ def _ik(
     c6_bent_behind_front = _runtime.select(free6, 1.0, t64 - t63)
     del t63, t64
     t100 = R1_11 * t99 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = p_x * c6_bent_behind_front - s_z * t99
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t99
     t101 = w_x_bent_behind_front * w_x_bent_behind_front
     on_axis_5_bent_behind_front = np.minimum(t65, np.sqrt(t8 + t101)) <= t16
     del t101, t65
@@ -1444,7 +1444,7 @@ def _ik(
     del reach, span6_over_ahead_front
     t158 = t47 * kept6_over_ahead_front * t157
     del t47
-    t159 = t157 * (p_x * t155)
+    t159 = t157 * (u_x * t155)
     s6_over_ahead_front = _runtime.select(free6, 0.0, t158 - t159)
     t160 = t157 * (t62 * kept6_over_ahead_front)
     del kept6_over_ahead_front, t62
@@ -1453,7 +1453,7 @@ def _ik(
     c6_over_ahead_front = _runtime.select(free6, 1.0, t160 + t161)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     t162 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
+    w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     t163 = t8 + w_x_over_ahead_front * w_x_over_ahead_front
     on_axis_5_over_ahead_front = np.minimum(t162, np.sqrt(t163)) <= t16
     del t163
@@ -1538,8 +1538,8 @@ def _ik(
     c6_over_behind_front = _runtime.select(free6, 1.0, t161 - t160)
     del t160, t161
     t192 = R1_11 * t191 + T13 * c6_over_behind_front
-    w_x_over_behind_front = p_x * c6_over_behind_front - s_z * t191
-    del p_x, s_z
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t191
+    del s_z, u_x
     t193 = w_x_over_behind_front * w_x_over_behind_front
     on_axis_5_over_behind_front = np.minimum(t162, np.sqrt(t8 + t193)) <= t16
     del t16, t162, t193, t8
@@ -1713,11 +1713,11 @@ def _ik_common(
     t8 = T11 * T14 + T21 * T24 + T31 * t6
     w_y = c_x_theta7 * t7 + s_x_theta7 * t8
     t9 = w_y * w_y
-    p_x = a7 - c_x_theta7 * t8 + s_x_theta7 * t7
+    u_x = a7 - c_x_theta7 * t8 + s_x_theta7 * t7
     del t7, t8
     s_z = d7 - T13 * T14 - T23 * T24 - T33 * t6
     del t6
-    t10 = p_x * p_x + s_z * s_z
+    t10 = u_x * u_x + s_z * s_z
     far = np.sqrt(t9 + t10)
     t11 = t5 - far
     t12 = (t5 + far) * np.maximum(t11, 0.0)
@@ -1758,9 +1758,9 @@ def _ik_common(
     t30 = t22 * root6 * t29
     t31 = above6 - below6
     del above6, below6
-    t32 = t29 * (p_x * t31)
+    t32 = t29 * (u_x * t31)
     s6 = t30 + t32
-    t33 = p_x * 2.0
+    t33 = u_x * 2.0
     t34 = t29 * (t33 * root6)
     del root6
     t35 = t29 * (s_z * t31)
@@ -1768,7 +1768,7 @@ def _ik_common(
     c6 = t34 - t35
     R2_23 = R1_21 * s6 - T23 * c6
     v_x = a5 + a4 * t21 - d3 * t25
-    w_x = p_x * c6 + s_z * s6
+    w_x = u_x * c6 + s_z * s6
     dot_5 = v_x * w_x
     t36 = w_y * v_x
     t37 = t36 * t36
@@ -1841,7 +1841,7 @@ def _ik_common(
     t73 = t34 + t35
     del t34, t35
     t74 = R1_21 * t72 - T23 * t73
-    t75 = p_x * t73 + s_z * t72
+    t75 = u_x * t73 + s_z * t72
     t76 = v_x * t75
     t77 = 1.0 / np.sqrt(t37 + t76 * t76)
     del t37
@@ -1900,7 +1900,7 @@ def _ik_common(
     del t22
     t104 = above6_over_ahead_front - below6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    t105 = t102 * (p_x * t104)
+    t105 = t102 * (u_x * t104)
     s6_over_ahead_front = t103 + t105
     t106 = t102 * (t33 * root6_over_ahead_front)
     del root6_over_ahead_front, t33
@@ -1909,7 +1909,7 @@ def _ik_common(
     c6_over_ahead_front = t106 - t107
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     v_x_over_ahead_front = a5 + a4 * t96 - d3 * t97
-    w_x_over_ahead_front = p_x * c6_over_ahead_front + s_z * s6_over_ahead_front
+    w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     t108 = w_y * v_x_over_ahead_front
     del w_y
@@ -1974,8 +1974,8 @@ def _ik_common(
     t134 = t106 + t107
     del t106, t107
     t135 = R1_21 * t133 - T23 * t134
-    t136 = p_x * t134 + s_z * t133
-    del p_x, s_z
+    t136 = u_x * t134 + s_z * t133
+    del s_z, u_x
     t137 = v_x_over_ahead_front * t136
     t138 = 1.0 / np.sqrt(t109 + t137 * t137)
     del t109

@@ -67,13 +67,15 @@ def nearest(
     seed: np.ndarray,
     w: np.ndarray,
     given: float | None = None,
+    *,
+    real: type = np.float64,
 ) -> tuple[int, np.ndarray, int, np.ndarray]:
     params = np.array(arm.parameters, dtype=float)
     limits = np.concatenate([arm.limits.lower, arm.limits.upper])
-    q, status = np.empty(len(arm.joints)), np.zeros(1, np.uint8)
+    q, status = np.empty(len(arm.joints), real), np.zeros(1, np.uint8)
     outside = np.zeros(len(arm.branches), np.uint32)
     beside = np.array([np.nan if given is None else given])
-    arrays = [np.ascontiguousarray(a, dtype=float) for a in (params, x, beside, seed, limits, w)]
+    arrays = [np.ascontiguousarray(a, dtype=real) for a in (params, x, beside, seed, limits, w)]
     pointers = [pointer(a) for a in arrays]
     if given is None:
         pointers[2] = ctypes.c_void_p(None)
@@ -191,6 +193,23 @@ def test_a_wrist_above_the_shoulder_has_no_arm_angle_but_a_posture(
     assert status == SINGULAR and branch >= 0
     assert found[0] == seed[0] and np.abs(arm.fk(found) - arm.fk(q)).max() < 1e-11
     assert np.abs(found - q).max() < 0.2
+
+
+def test_single_precision_takes_what_is_given(tmp_path: Path) -> None:
+    library = ctypes.CDLL(str(compiled(tmp_path, "-DCLOSEDFORM_FLOAT")))
+    above = np.arctan2(np.sin(1.4), 1 + np.cos(1.4))  # the wrist is above the shoulder
+    for name, q, status, kept in [
+        ("srs_arm", [0.3, 0.7, 0.4, -1.2, 0.7, 0.9, 0.8], 0, None),
+        ("srs_arm", [0.3, 0.0, 0.4, -1.2, 0.7, 0.9, 0.8], SINGULAR, 0),
+        ("srs_arm", [0.5, above, 0.0, 1.4, 0.0, 0.9, 0.0], SINGULAR, 0),
+        ("franka_arm", [0.3, 0.0, 0.4, -1.6, 0.7, 1.9, 0.8], SINGULAR, 0),
+    ]:
+        arm = robot(name)
+        given = float(arm.given_at(q))
+        seed = np.array(q) + 0.05 * np.eye(7)[0]
+        found = nearest(library, arm, arm.fk(q), seed, np.ones(7), given, real=np.float32)
+        assert found[2] == status and np.abs(arm.fk(found[1]) - arm.fk(q)).max() < 1e-5
+        assert kept is None or found[1][kept] == np.float32(seed[kept])
 
 
 def test_a_given_joint_out_of_its_limits_is_told(library: ctypes.CDLL) -> None:

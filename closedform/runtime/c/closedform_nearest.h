@@ -21,7 +21,7 @@
 #define CF_NEARLY CLOSEDFORM_C(1e-5) /* a determinant that only rounding keeps from zero */
 #define CF_SLACK CLOSEDFORM_C(1e-5)
 #define CF_DIFFERENCE CLOSEDFORM_C(1e-2) /* the step of differences of fourth order */
-#define CF_BESIDE CLOSEDFORM_C(1e-6)
+#define CF_BESIDE CLOSEDFORM_C(1e-5)
 #else
 #define CF_REACHED CLOSEDFORM_C(1e-12)
 #define CF_STRAIGHT CLOSEDFORM_C(1e-9)

@@ -107,7 +107,8 @@ def test_every_length_of_a_linkage_finds_its_segment() -> None:
     ("name", "written"),
     [
         ("theta2R", r"$\theta_{2}^{R}$"), ("l1", "$l_{1}$"), ("loff", r"$l_{\mathrm{off}}$"),
-        ("rho1", r"$\rho_{1}$"), ("tilt_x", r"$\mathrm{tilt}_{x}$"), ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
+        ("rho1", r"$\rho_{1}$"), ("tilt_x", r"$\mathrm{tilt}_{x}$"),
+        ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
     ],
 )  # fmt: skip
 def test_names_are_written_as_formulas(name: str, written: str) -> None:

@@ -66,8 +66,8 @@ def nearest(
     x: np.ndarray,
     seed: np.ndarray,
     w: np.ndarray,
-    given: float | None = None,
     *,
+    given: float | None = None,
     real: type = np.float64,
 ) -> tuple[int, np.ndarray, int, np.ndarray]:
     params = np.array(arm.parameters, dtype=float)
@@ -105,7 +105,7 @@ def test_regular_targets(library: ctypes.CDLL, name: str, beside: str) -> None:
         seed, weights = rng.uniform(-5, 5, len(q)), rng.uniform(0.5, 2, len(q))
         given = float(arm.given_at(q)) if arm.given and beside == "theirs" else None
         expected = arm.nearest(x, seed, weights=weights, given=given)
-        branch, found, status, outside = nearest(library, arm, x, seed, weights, given)
+        branch, found, status, outside = nearest(library, arm, x, seed, weights, given=given)
         seen.add(status)
         assert branch == expected.branch and status == expected.status
         assert np.array_equal(outside, expected.outside)
@@ -142,7 +142,7 @@ def test_a_free_joint_keeps_the_value_of_the_seed(
         x = np.array([0.0, 0.0, 0.9, 0.4] if name == "irb260" else [0.0, 3.5, 0.0])
         seeds = np.random.default_rng(1).normal(0, 0.5, (5, len(arm.joints)))
     for seed in seeds:
-        branch, found, status, _ = nearest(library, arm, x, seed, np.ones(len(seed)), given)
+        branch, found, status, _ = nearest(library, arm, x, seed, np.ones(len(seed)), given=given)
         assert status == SINGULAR and branch >= 0
         at = arm.fk(found)
         gap = np.nanmin(np.abs(at.p - x).max(-1)) if hasattr(at, "p") else np.abs(at - x).max()
@@ -189,7 +189,7 @@ def test_a_wrist_above_the_shoulder_has_no_arm_angle_but_a_posture(
     arm = robot("srs_arm")
     q = np.array([0.5, np.arctan2(np.sin(1.4), 1 + np.cos(1.4)), 0.0, 1.4, 0.0, 0.9, 0.0])
     seed = q + 0.1 * np.eye(7)[0]  # the elbow can go round: theta1 is free
-    branch, found, status, _ = nearest(library, arm, arm.fk(q), seed, np.ones(7), given)
+    branch, found, status, _ = nearest(library, arm, arm.fk(q), seed, np.ones(7), given=given)
     assert status == SINGULAR and branch >= 0
     assert found[0] == seed[0] and np.abs(arm.fk(found) - arm.fk(q)).max() < 1e-11
     assert np.abs(found - q).max() < 0.2
@@ -207,7 +207,7 @@ def test_single_precision_takes_what_is_given(tmp_path: Path) -> None:
         arm = robot(name)
         given = float(arm.given_at(q))
         seed = np.array(q) + 0.05 * np.eye(7)[0]
-        found = nearest(library, arm, arm.fk(q), seed, np.ones(7), given, real=np.float32)
+        found = nearest(library, arm, arm.fk(q), seed, np.ones(7), given=given, real=np.float32)
         assert found[2] == status and np.abs(arm.fk(found[1]) - arm.fk(q)).max() < 1e-5
         assert kept is None or found[1][kept] == np.float32(seed[kept])
 

@@ -10,6 +10,7 @@ from chains import arm, printed, solved
 from sympy import pi
 
 from closedform.proof.prove import prove
+from closedform.scaffold.new import new
 from closedform.scaffold.propose import NoChainError, propose
 
 H = sp.Rational(1, 2)
@@ -99,3 +100,9 @@ def test_why_slides_among_joints_that_turn_are_refused() -> None:
     with pytest.raises(NoChainError) as caught:
         propose(arm(rows, "t1 d2 d3 t4 t5 t6")[1])
     assert "slides apart from turns" in [t.name for t in caught.value.tried]
+
+
+def test_a_modified_table_of_one_joint_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    path.write_text("a, alpha, d, theta\n0.5, 0, 0, t\n", "utf-8")
+    assert new("arm", "dh", path, modified=True).inverse

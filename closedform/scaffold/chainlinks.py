@@ -86,7 +86,8 @@ class Singles:
         """The same with the origins of joints that meet in one point moved there; None if not."""
         joints = list(self.joints)
         lead = self.lead
-        if any(j.slides for j in joints[first : first + count]):
+        chosen = joints[first : first + count]
+        if len(chosen) < count or any(j.slides for j in chosen):
             return None
         for k in range(first, first + count - 1):
             shift, axis = joints[k].shift, joints[k].end * Z

@@ -106,3 +106,10 @@ def test_a_modified_table_of_one_joint_is_read(tmp_path: Path) -> None:
     path = tmp_path / "arm.csv"
     path.write_text("a, alpha, d, theta\n0.5, 0, 0, t\n", "utf-8")
     assert new("arm", "dh", path, modified=True).inverse
+
+
+def test_a_joint_that_does_not_move_the_tool_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    path.write_text("a, alpha, d, theta\n0.5, 0, 0, t1\n0.5, 0, 0, t2\n", "utf-8")
+    with pytest.raises(ValueError, match="because t2 does not move the tool"):
+        new("arm", "dh", path, modified=True)

@@ -77,10 +77,11 @@ def singular_everywhere(
     """The error for an arm whose Jacobian has the determinant zero."""
     rank, found = dependent_joints(J, joints)
     *most, last = map(str, found)
+    together = f"what {', '.join(most)} and {last} do to the tool is not independent"
+    because = together if most else f"{last} does not move the tool"
     return SingularEverywhereError(
         f"{name}: the arm is singular everywhere: its Jacobian has rank {rank}, not "
-        f"{len(joints)}, at every posture, because what {', '.join(most)} and {last} do to the "
-        f"tool is not independent.  Check the convention of the table (standard, unless it is read "
-        f"with modified=True or --modified), and whether an axis is given twice or too many axes "
-        f"are parallel or meet in a point"
+        f"{len(joints)}, at every posture, because {because}.  Check the convention of the table "
+        f"(standard, unless it is read with modified=True or --modified), and whether an axis is "
+        f"given twice or too many axes are parallel or meet in a point"
     )

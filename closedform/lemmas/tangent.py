@@ -196,6 +196,9 @@ class Anywhere:
         return Reached(turn.pair(turn.root, turn.width), turn.root)
 
 
+ANYWHERE = Anywhere()
+
+
 class Preferred(NamedTuple):
     """A root that more than the reach of two links speaks for, and when it exists."""
 

@@ -10,11 +10,11 @@ import sympy as sp
 from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.links import ANYWHERE, degenerate, differs_from_zero, named, vanishing
+from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
-from closedform.lemmas.tangent import ROUNDING, Goal, Tangency
+from closedform.lemmas.tangent import ANYWHERE, ROUNDING, Goal, Tangency
 from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label

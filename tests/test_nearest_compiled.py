@@ -13,7 +13,7 @@ TOOL = np.array([[0, 0, 1, 0.1], [0, 1, 0, -0.05], [-1, 0, 0, 0.2], [0, 0, 0, 1.
 
 
 def pair(name: str, **options: object) -> tuple[Robot, Robot]:
-    return robots.load(name, **options), robots.load(name, compiled=True, **options)
+    return robots.load(name, compiled=False, **options), robots.load(name, compiled=True, **options)
 
 
 def agree(plain: Robot, compiled: Robot, x: np.ndarray, seed: np.ndarray, **options) -> int:

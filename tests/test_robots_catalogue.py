@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -160,15 +161,26 @@ def test_the_irb_260_is_driven_by_its_motors() -> None:
 
 
 def test_a_robot_is_loaded_with_changes() -> None:
-    fast = robots.load("ur5e", compiled=True, tool=[0, 0, 0.1])
-    assert fast.module.__name__ == "closedform.generated.c.ur_arm"
+    fast = robots.load("ur5e", tool=[0, 0, 0.1])
     q = [0.3, -1.2, 1.5, 0.4, -0.7, 2.1]
-    plain = robots.load("ur5e")
+    plain = robots.load("ur5e", compiled=False)
     assert np.allclose(fast.fk(q)[:3, 3], plain.fk(q)[:3, 3] + 0.1 * plain.fk(q)[:3, 2])
     other = plain.replace(tool=[0, 0, 0.1])
     assert np.allclose(other.fk(q), fast.fk(q)) and other.limits == plain.limits
     with pytest.raises(ValueError, match="no robot 'UR5E'; did you mean ur5e"):
         robots.load("UR5E")
+
+
+def test_a_robot_takes_the_compiled_module_where_there_is_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    compiled, plain = (f"closedform.generated.{language}.ur_arm" for language in ("c", "numpy"))
+    assert robots.load("ur5e").module.__name__ == compiled
+    assert robots.load("ur5e", compiled=False).module.__name__ == plain
+    monkeypatch.setitem(sys.modules, compiled, None)  # as where no C was compiled
+    assert robots.load("ur5e").module.__name__ == plain
+    with pytest.raises(ImportError):
+        robots.load("ur5e", compiled=True)
 
 
 def test_the_command_lists_the_robots(capsys: pytest.CaptureFixture[str]) -> None:

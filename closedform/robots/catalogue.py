@@ -37,18 +37,18 @@ def names() -> list[str]:
     return list(entries())
 
 
-def load(name: str, *, compiled: bool = False, **options: Any) -> Robot:
+def load(name: str, *, compiled: bool | None = None, **options: Any) -> Robot:
     """A ready robot; ``options`` are those of `Robot`, such as another tool or other limits.
 
-    With ``compiled`` it computes with the C module of its family.
+    It computes with the C module of its family where that was built, otherwise with the NumPy
+    module; ``compiled`` chooses one of them.
     """
     if name not in entries():
         near = difflib.get_close_matches(name.lower(), names(), n=3)
         advice = f"; did you mean {' or '.join(near)}?" if near else ""
         raise ValueError(f"there is no robot {name!r}{advice}")
     entry = entries()[name]
-    language = "c" if compiled else "numpy"
-    module = import_module(f"closedform.generated.{language}.{entry['family']}")
+    module = _module(entry["family"], compiled)
     known: dict[str, Any] = {"label": name, "parameters": entry["parameters"]}
     for part in ("base", "tool"):
         if part in entry:
@@ -61,6 +61,16 @@ def load(name: str, *, compiled: bool = False, **options: Any) -> Robot:
     if "offsets" in zero:
         zero["offsets"] = in_radians(module, zero["offsets"])
     return Robot(module, **{**known, **zero, **options})
+
+
+def _module(family: str, compiled: bool | None) -> ModuleType:
+    if compiled is not False:
+        try:
+            return import_module(f"closedform.generated.c.{family}")
+        except ImportError:
+            if compiled:
+                raise
+    return import_module(f"closedform.generated.numpy.{family}")
 
 
 def in_radians(module: ModuleType, values: Any) -> Any:

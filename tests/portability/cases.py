@@ -28,6 +28,8 @@ from .driver import (
 POSTURES = 12
 TOLERANCE = {False: 1e-10, True: 2e-3}  # for a value of size 1, in double and in float
 NUDGE = {False: 1e-15, True: 1e-7}
+DECIDED_BY_ROUNDING = 0.2
+"""The thresholds of a status are wider in single precision, where this share may differ."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,8 @@ def _case(robot: str, d: Derivation, function: Function, single: bool) -> Case |
         moved = rows * (1 + sign * NUDGE[single] * 4)
         other = _joined(numpy_values(robot, function, moved, parameters))
         steady &= agree(other, expected, n_real, TOLERANCE[single] / 10).all(axis=1)
+    if single:  # rounding took the target off the sphere, for example, that a hand moves on
+        steady &= ~np.isnan(expected[:, :n_real]).all(axis=1)
     rows, expected = rows[steady][:POSTURES], expected[steady][:POSTURES]
     if not len(rows):
         return None
@@ -130,6 +134,9 @@ def mismatches(program: Program, wanted: Sequence[Case], *, single: bool) -> Ite
     for case, answer in zip(wanted, answers, strict=True):
         for form, values in _forms(answer):
             close = agree(values, case.expected, case.n_real, TOLERANCE[single])
+            statuses = close[:, case.n_real :]
+            if single and statuses.size and (~statuses).mean() <= DECIDED_BY_ROUNDING:
+                close[~statuses.all(axis=1)] = True
             if not close.all():
                 row, k = np.argwhere(~close)[0]
                 yield (

@@ -2,8 +2,9 @@
  *
  * A request is the number of a function, how many postures follow, the parameters, and the inputs of
  * one posture after the other. The answer has a line for each posture by itself and then one for
- * the batch: what floating-point exceptions were raised, real outputs, and bytes. Numbers are
- * hexadecimal, so that none is rounded on the way.
+ * the batch: what floating-point exceptions were raised, real outputs, and bytes. Numbers have 17
+ * digits, so that none is rounded on the way. %a would say the same, but C libraries for
+ * microcontrollers do not know it, nor %zu.
  */
 #if defined(__linux__)
 #define _GNU_SOURCE
@@ -55,7 +56,7 @@ static void *room(size_t n, size_t size)
 static int number(real_t *x)
 {
     double value;
-    const int found = scanf("%la", &value) == 1;
+    const int found = scanf("%lf", &value) == 1;
     *x = (real_t)value;
     return found;
 }
@@ -98,7 +99,7 @@ static int answer(const call *f, size_t n)
         clear();
         f->one(params, rows + i * f->n_in, out, bytes);
         raised();
-        for (size_t k = 0; k < f->n_real; ++k) printf(" %a", (double)out[k]);
+        for (size_t k = 0; k < f->n_real; ++k) printf(" %.17g", (double)out[k]);
         for (size_t k = 0; k < f->n_byte; ++k) printf(" %d", bytes[k]);
         printf("\n");
     }
@@ -106,7 +107,7 @@ static int answer(const call *f, size_t n)
     f->many(n, params, planes, out, bytes);
     raised();
     for (size_t i = 0; complete && i < n; ++i) {
-        for (size_t k = 0; k < f->n_real; ++k) printf(" %a", (double)out[k * n + i]);
+        for (size_t k = 0; k < f->n_real; ++k) printf(" %.17g", (double)out[k * n + i]);
         for (size_t k = 0; k < f->n_byte; ++k) printf(" %d", bytes[k * n + i]);
     }
     printf("\n");
@@ -121,8 +122,8 @@ int main(int argc, char **argv)
         (void)feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 #endif
     (void)argc, (void)argv;
-    size_t which, n;
-    while (scanf("%zu %zu", &which, &n) == 2)
+    unsigned long which, n;
+    while (scanf("%lu %lu", &which, &n) == 2)
         if (which >= sizeof calls / sizeof calls[0] || !answer(&calls[which], n)) return 1;
     return 0;
 }

@@ -168,7 +168,7 @@ class Program:
         for r in requests:
             numbers = [*r.parameters, *r.rows.ravel().tolist()]
             lines.append(f"{places[r.name]} {len(r.rows)}")
-            lines.append(" ".join(float(x).hex() for x in numbers))
+            lines.append(" ".join(repr(float(x)) for x in numbers))
         done = subprocess.run(
             [*self.runner, str(self.path), *arguments],
             input="\n".join(lines),
@@ -186,8 +186,8 @@ class Program:
     def _answer(lines: Any, n: int) -> Answer:
         rows = [next(lines).split() for _ in range(n)]
         flags, *values = next(lines).split()
-        numbers = [[float.fromhex(x) for x in row[1:]] for row in rows]
-        batch = np.array([float.fromhex(x) for x in values]).reshape(n, -1)
+        numbers = [[float(x) for x in row[1:]] for row in rows]
+        batch = np.array([float(x) for x in values]).reshape(n, -1)
         return Answer(np.array(numbers), batch, [int(row[0]) for row in rows], int(flags))
 
 

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -26,11 +27,36 @@ from portability.driver import ROBOTS, ROOT, RefusedError, compile_driver
 from portability.flags import FLAGS, RELEASE
 
 FEW = ("planar_2r", "spherical_wrist")
+
+
+@dataclass(frozen=True)
+class Target:
+    """Another processor: its cross compiler, without ``-gcc``, and what runs its programs."""
+
+    compiler: str
+    emulator: str
+    options: tuple[str, ...] = ()
+    flags: tuple[str, ...] = ()
+    link: tuple[str, ...] = ("-static",)
+
+
+HERE = Path(__file__).parent
+CORTEX_M4 = Target(
+    "arm-none-eabi",
+    "qemu-system-arm",
+    options=(
+        *("-M", "mps2-an386", "-display", "none", "-monitor", "none", "-serial", "none"),
+        *("-semihosting-config", "enable=on,target=native", "-kernel"),
+    ),
+    flags=("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"),
+    link=("--specs=rdimon.specs", "-T", str(HERE / "cortex_m.ld"), str(HERE / "cortex_m.c")),
+)
 TARGETS = {
-    "aarch64-linux-gnu": "qemu-aarch64",
-    "arm-linux-gnueabihf": "qemu-arm",
-    "s390x-linux-gnu": "qemu-s390x",
-    "powerpc64-linux-gnu": "qemu-ppc64",
+    "aarch64": Target("aarch64-linux-gnu", "qemu-aarch64"),
+    "32-bit ARM": Target("arm-linux-gnueabihf", "qemu-arm"),
+    "s390x": Target("s390x-linux-gnu", "qemu-s390x"),
+    "powerpc64": Target("powerpc64-linux-gnu", "qemu-ppc64"),
+    "Cortex-M4": CORTEX_M4,
 }
 PYTHONS = ("python3.11", "python3.12", "python3.13", "python3.14", "python3.13t", "python3.14t")
 NUMPY = ("numpy==1.26.*", "numpy")
@@ -56,15 +82,18 @@ def found(target: str) -> str | None:
 
 
 def values(
-    command: Sequence[str], robots: Sequence[str], *, runner: Sequence[str] = ()
+    command: Sequence[str],
+    robots: Sequence[str],
+    *,
+    runner: Sequence[str] = (),
+    link: Sequence[str] = (),
 ) -> Iterator[str]:
     for single in (False, True):
         kind = "float" if single else "double"
         with tempfile.TemporaryDirectory() as folder:
             try:
-                static = ["-static"] if runner else []
                 program = compile_driver(
-                    Path(folder), command, robots, single=single, runner=runner, link=static
+                    Path(folder), command, robots, single=single, runner=runner, link=link
                 )
                 wrong = list(mismatches(program, cases(robots, single=single), single=single))
             except RefusedError:
@@ -99,17 +128,19 @@ def builds(command: Sequence[str]) -> bool:
 
 
 def processors(robots: Sequence[str]) -> Iterator[tuple[str, str]]:
-    for target, emulator in TARGETS.items():
-        compiler = found(target)
-        runner = next((n for n in (emulator, f"{emulator}-static") if shutil.which(n)), None)
+    for name, target in TARGETS.items():
+        compiler = found(target.compiler)
+        emulators = (target.emulator, f"{target.emulator}-static")
+        runner = next((n for n in emulators if shutil.which(n)), None)
         if compiler is None or runner is None:
-            missing = f"{target}-gcc" if compiler is None else emulator
-            yield target, f"skipped: there is no {missing}"
-        elif not builds([compiler, "-static"]):
-            yield target, f"skipped: {compiler} has no C library"
+            missing = f"{target.compiler}-gcc" if compiler is None else target.emulator
+            yield name, f"skipped: there is no {missing}"
+        elif not builds([compiler, *target.flags, *target.link]):
+            yield name, f"skipped: {compiler} has no C library"
         else:
-            done = values([compiler, "-std=c99", *RELEASE], robots, runner=[runner])
-            yield target, ", ".join(done)
+            command = [compiler, "-std=c99", *RELEASE, *target.flags]
+            run = [runner, *target.options]
+            yield name, ", ".join(values(command, robots, runner=run, link=target.link))
 
 
 def interpreters(*, everything: bool) -> Iterator[tuple[str, str]]:

@@ -75,11 +75,25 @@ def test_an_arm_of_seven_joints_takes_what_is_given(name: str, joint: int) -> No
     assert several.q.shape == (2, 7)
 
 
-def test_many_postures_and_many_dimensions_are_taken_as_before() -> None:
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "kr6_r700", "stanford_arm", "iiwa14", "panda"])
+def test_a_batch_gives_the_answers_of_its_postures(name: str) -> None:
+    """Also where a joint is free or nothing is found, which Python decides."""
+    plain, compiled = pair(name)
+    q = np.random.default_rng(2).uniform(-1.2, 1.2, (3, 40, len(plain.joints)))
+    q[0, :5, -2] = 0  # the wrists that have one are aligned
+    x, seeds = plain.fk(q), q[1] + 0.1
+    x[1, 3] = np.nan
+    x[2, 4, :3, 3] = 99.0
+    for options in ({}, {"limits": [[-1] * q.shape[-1], [1] * q.shape[-1]]}):
+        found = compiled.nearest(x, seeds, **options)
+        assert {0, 1, 3} <= set(found.status.ravel().tolist())
+        for wanted, values in zip(plain.nearest(x, seeds, **options), found, strict=True):
+            np.testing.assert_allclose(values, wanted, atol=1e-7, strict=True)
+
+
+def test_many_dimensions_are_taken() -> None:
     plain, compiled = pair("ur5e")
     q = np.random.default_rng(2).uniform(-1.5, 1.5, (7, 6))
-    found = compiled.nearest(plain.fk(q), q[0])
-    np.testing.assert_allclose(found.q, plain.nearest(plain.fk(q), q[0]).q, atol=1e-9)
     d1 = np.array([0.1, 0.2])
     wide = compiled.replace(parameters=compiled.parameters._replace(d1=d1))
     assert wide.nearest(plain.fk(q[0]), q[0]).q.shape == (2, 6)

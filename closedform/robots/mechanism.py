@@ -83,12 +83,17 @@ class Mechanism:
         self.given = given_of(module)
         self._mounting = Mounting.of(module, self.parameters, self.base, self.tool)
 
+    @cached_property
+    def dimensions_vary(self) -> bool:
+        """Whether a dimension is an array, so that postures differ in it."""
+        return any(map(np.ndim, self.parameters))
+
     def part(self, lead: tuple[int, ...], rows: Any) -> Self:
         """The same mechanism for some of many postures, if dimensions differ among them.
 
         ``rows`` counts the postures of the leading axes ``lead`` in one row.
         """
-        if all(np.ndim(value) == 0 for value in self.parameters):
+        if not self.dimensions_vary:
             return self
         chosen = copy.copy(self)
         values = (np.broadcast_to(np.asarray(p, float), lead).ravel() for p in self.parameters)
@@ -98,7 +103,7 @@ class Mechanism:
 
     def of_branches(self, lead: tuple[int, ...]) -> Self:
         """The same mechanism for joints of shape (postures, branches, joints)."""
-        if all(np.ndim(value) == 0 for value in self.parameters):
+        if not self.dimensions_vary:
             return self
         chosen = self.part(lead, slice(None))
         chosen.parameters = self.module.Parameters(*(p[:, None] for p in chosen.parameters))
@@ -132,8 +137,10 @@ class Mechanism:
 
     def refuse_degrees(self, q: Array, name: str) -> None:
         """Raise if an angle is larger than any that a joint takes in radians."""
+        if (np.abs(q) <= MOST_TURNS * TURN).all():
+            return
         sizes = np.where(self.revolute & np.isfinite(q), np.abs(q), 0.0)
-        if sizes.size and sizes.max() > MOST_TURNS * TURN:
+        if sizes.max() > MOST_TURNS * TURN:
             worst = sizes.reshape(-1, len(self.joints)).max(0)
             k = int(worst.argmax())
             raise ValueError(
@@ -263,7 +270,7 @@ class Mechanism:
         """The number of axes of a target: 2 for a matrix, 1 for coordinates."""
         return len(self.task_shape)
 
-    @property
+    @cached_property
     def task_shape(self) -> tuple[int, ...]:
         """The shape of a target."""
         entries = len(self.module.TASK)

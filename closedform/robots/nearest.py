@@ -47,13 +47,30 @@ class Candidates(NamedTuple):
 
 def nearest(search: Search, x: ArrayLike, q_seed: ArrayLike) -> Nearest:
     """The solution with the least weighted distance from ``q_seed`` within the limits."""
-    mechanism, limits = search.mechanism, search.limits
-    seed = mechanism.as_joints(q_seed, "q_seed")
-    single = _compiled(search, x, seed)
-    if single is not None:
-        return single
-    search = replace(search, given=search.given_at(seed))
-    found = mechanism.ik(x, search.given)
+    seed = search.mechanism.as_joints(q_seed, "q_seed")
+    search = search.at_seed(seed)
+    found = _compiled(search, x, seed)
+    if found is None:
+        return _composed(search, x, seed)
+    answer, undecided = found
+    if not undecided.any():
+        return answer
+    if not undecided.ndim:
+        return _composed(search, x, seed)
+    lead, shape = undecided.shape, search.mechanism.task_shape
+    if search.given is not None:
+        search = replace(search, given=np.broadcast_to(search.given, lead)[undecided])
+    targets = np.broadcast_to(np.asarray(x, float), (*lead, *shape))[undecided]
+    rest = _composed(search, targets, _over(seed, lead, 1)[undecided])
+    for whole, part in zip(map(np.asarray, answer), rest, strict=True):
+        whole[undecided] = part
+    return answer
+
+
+def _composed(search: Search, x: ArrayLike, seed: Array) -> Nearest:
+    """The same, from all branches of the inverse."""
+    limits = search.limits
+    found = search.mechanism.ik(x, search.given)
     lead = np.broadcast_shapes(
         found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
     )
@@ -72,44 +89,40 @@ def nearest(search: Search, x: ArrayLike, q_seed: ArrayLike) -> Nearest:
     return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in every))
 
 
-def _compiled(search: Search, x: ArrayLike, seed: Array) -> Nearest | None:
-    """One posture by the compiled module; None if it is not, or there is more to decide."""
+def _compiled(
+    search: Search, x: ArrayLike, seed: Array
+) -> tuple[Nearest, NDArray[np.bool_]] | None:
+    """What the compiled module finds, and where there is more to decide; None if it cannot."""
     mechanism, limits = search.mechanism, search.limits
     call = getattr(mechanism.module, "_nearest", None)
-    axes = {seed.ndim, limits.lower.ndim, limits.upper.ndim}
-    if call is None or axes != {1} or mechanism.one_by_one is None:
+    if call is None or mechanism.one_by_one is None:
         return None
-    if any(map(np.ndim, mechanism.parameters)):
+    several = (limits.lower, limits.upper, search.weights)
+    if any(a.ndim > 1 for a in several) or mechanism.dimensions_vary:
         return None
     target = mechanism.inside(x)
-    if np.shape(target) != mechanism.task_shape or search.weights.ndim > 1:
+    if np.shape(target)[-mechanism.task_axes :] != mechanism.task_shape:
         return None
-    beside = mechanism.to_give(search.given_at(seed))
-    if any(map(np.ndim, beside)):
-        return None
-    if mechanism.counts_as_model:
-        return _one(search, (target, seed, np.array(limits)), beside)
     signs, offsets = mechanism.one_by_one
-    start = signs * seed + offsets
-    sides = np.sort(signs * limits + offsets, axis=0)
-    found = _one(search, (target, start, sides), beside)
-    # of two turns the lower one is taken, which the opposite sign would exchange
-    if found is None or (abs(abs(found.q - start) - np.pi) < TIE)[signs < 0].any():
-        return None
-    return found._replace(q=signs * (found.q - offsets))
-
-
-def _one(search: Search, start: tuple[Any, ...], beside: tuple[ArrayLike, ...]) -> Nearest | None:
-    """The answer of the compiled module, in its joints; None if Python has to decide.
-
-    ``start`` is the target, the seed and the limits, and ``beside`` what the inverse also needs.
-    """
-    q, status, branch, distance, outside = search.mechanism.module._nearest(
-        *start, search.weights, *beside, params=search.mechanism.parameters
+    start, sides = seed, np.array(limits)
+    if not mechanism.counts_as_model:
+        start, sides = signs * seed + offsets, np.sort(signs * sides + offsets, axis=0)
+    q, status, branch, distance, outside = call(
+        target,
+        start,
+        sides,
+        search.weights,
+        *mechanism.to_give(search.given),
+        params=mechanism.parameters,
     )
-    if status not in (OK, UNREACHABLE) or (status == OK and not distance < np.inf):
-        return None
-    return Nearest(q, status, np.array(branch, np.intp)[()], distance, outside)
+    known = (status == UNREACHABLE) | (status == OK) & (distance < np.inf)
+    if not mechanism.counts_as_model:
+        # of two turns the lower one is taken, which the opposite sign would exchange
+        halfway = abs(abs(q - start) - np.pi) < TIE
+        known &= ~halfway[..., signs < 0].any(-1)
+        q = signs * (q - offsets)
+    branch = np.array(branch, np.intp)[()]
+    return Nearest(q, status, branch, distance, outside), np.asarray(~known)
 
 
 def _over(a: NDArray[Any], lead: tuple[int, ...], core: int) -> NDArray[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,8 +38,8 @@ class Search:
             )
         return cls(mechanism, limits, weighed, given)
 
-    def given_at(self, seed: Array) -> ArrayLike | None:
-        """What is given beside the target, by default its value at the seed."""
+    def at_seed(self, seed: Array) -> Search:
+        """The same, where what is given beside the target is, by default, its value at the seed."""
         if self.given is None and self.mechanism.given is not None:
-            return self.mechanism.given_at(seed)
-        return self.given
+            return replace(self, given=self.mechanism.given_at(seed))
+        return self

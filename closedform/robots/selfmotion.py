@@ -106,7 +106,8 @@ def loose_branches(
         rows = np.repeat(np.arange(len(targets)), branches)
         task = Task(mechanism, targets, _of_each(given, lead)).part(rows, lead)
         J = task.jacobian(np.nan_to_num(q).reshape(-1, n))
-        small = np.abs(np.linalg.det(J)).reshape(-1, branches) <= NEARLY / DIFFERENCE
+        with np.errstate(invalid="ignore"):  # NaN for a target that is not finite
+            small = np.abs(np.linalg.det(J)).reshape(-1, branches) <= NEARLY / DIFFERENCE
     return np.asarray(singular | small.reshape(status.shape) & (status == OK))
 
 

@@ -55,7 +55,7 @@ def track(search: Search, xs: ArrayLike, q0: ArrayLike, max_step: ArrayLike | No
         raise ValueError(f"q0 has shape {seed.shape}, expected ({len(mechanism.joints)},)")
     if max_step is None:
         max_step = np.where(mechanism.revolute, MAX_STEP, np.inf)
-    given = search.given_at(seed)
+    given = search.at_seed(seed).given
     if given is not None:
         given = np.broadcast_to(np.asarray(given, dtype=float), len(targets))
     steps = np.asarray(max_step, dtype=float)

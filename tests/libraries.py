@@ -19,13 +19,6 @@ C = ROOT / "generated" / "c"
 ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
 FORWARD = [name for name in ROBOTS if f" {name}_fk(" in (C / f"{name}.h").read_text()]
 """Those with a forward map."""
-EXPLORED = [
-    name
-    for name in FORWARD
-    if (C / f"{name}.h").read_text().partition(f" {name}_ik(")[2].partition(")")[0].count("const")
-    == 2
-]
-"""Those whose inverse takes the target alone, beside the dimensions."""
 # Without folding of identical functions: pose and fk may be one, and gcc would tell of it once.
 FLAGS = "-std=c99 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast -march=x86-64-v3"
 FLAGS += " -fno-ipa-icf"

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from libraries import EXPLORED
+from libraries import FORWARD
 
 if find_spec("playwright") is None:  # each worker would import it to collect this file
     pytest.skip("Playwright is not installed", allow_module_level=True)
@@ -22,7 +22,7 @@ CHROMIUM = (
     shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 )
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-NAMES = EXPLORED
+NAMES = FORWARD
 """The mechanisms that have an explorer."""
 HEAVIEST = 1_000_000
 """Bytes of a page with all that it loads, but the figures."""
@@ -47,6 +47,7 @@ STATE = """() => {
         branch: explorer.branch,
         reached: explorer.reached,
         parameters: m.parameters,
+        beside: m.beside,
         postures: explorer.postures(),
     };
 }"""
@@ -141,7 +142,7 @@ def agrees(name, state):
     size = sum(map(abs, params))
     x = np.array(state["x"], dtype=float)
     x = x.reshape({16: (4, 4), 9: (3, 3)}.get(len(x), (len(x),)))
-    q, status = robot.ik(x, params)
+    q, status = robot.ik(x, *state["beside"], params)
     assert [p["status"] for p in state["postures"]] == status.tolist()
     for k, posture in enumerate(state["postures"]):
         if status[k] not in (0, 2):
@@ -407,7 +408,8 @@ MAP = """([branch, map]) => {
     const { size, axes, low, width } = section;
     const plain = (values) => Array.from(values, (v) => (Number.isNaN(v) ? null : v));
     const [value, factor] = [plain(section.value), plain(section.factor)];
-    return { x, size, axes, low, width, value, factor };
+    const { beside } = document.querySelector(".explorer").explorer.mechanism;
+    return { x, beside, size, axes, low, width, value, factor };
 }"""
 
 
@@ -424,7 +426,7 @@ def test_a_map_shows_what_the_module_computes(tab, site, name):
         x[..., found["axes"][0]] = found["low"][0] + cells
         x[..., found["axes"][1]] = (found["low"][1] + cells)[:, None]
         pose = x.reshape(n, n, 4, 4) if x.shape[-1] == 16 else x
-        q, status = (a[:, :, branch] for a in robot.ik(pose))
+        q, status = (a[:, :, branch] for a in robot.ik(pose, *found["beside"]))
         value = np.array(found["value"], dtype=float).reshape(n, n)
         factor = np.array(found["factor"], dtype=float).reshape(-1, n, n)
         reached = (status == 0) | (status == 2)

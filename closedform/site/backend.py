@@ -197,15 +197,20 @@ def info(derivation: Derivation) -> dict[str, Any]:
         },
         "joints": {j.name: {"label": label(j.name)} for j in derivation.joints},
         "task": [label(name) for name in derivation.task],
+        "given": _given(derivation),
     }
+
+
+def _given(derivation: Derivation) -> str:
+    """What the inverse takes beside the target, as people write it."""
+    beside = (a for f in derivation.functions if f.name == "ik" for a in f.inputs[1:])
+    return " ".join(label(a.name).replace("_", " ") for a in beside)
 
 
 def unexplored(derivation: Derivation) -> str:
     """Why a mechanism has no explorer, or an empty string."""
     if not derivation.has_forward_map:
         return "This mechanism has no forward map in closed form"
-    if any(f.name == "ik" and len(f.inputs) > 1 for f in derivation.functions):
-        return "The inverse of this mechanism takes more than the pose of the hand"
     return ""
 
 

@@ -88,6 +88,7 @@ export class Explorer {
         this.q = [...q];
         this.reached = Boolean(x?.every(Number.isFinite));
         if (this.reached) {
+            this.mechanism.takeGiven(q);
             this.aim(x);
             const gaps = this.found.map((p) => (reaches(p.status) ? this.mechanism.apart(p.q, q) : Infinity));
             const least = Math.min(...gaps);
@@ -171,6 +172,13 @@ export class Explorer {
         this.trail = [];
         this.meetings.clear();
         this.takeJoints(this.q);
+    }
+
+    /** Give another value beside the target; the hand keeps its place. */
+    give(value) {
+        this.mechanism.given = value;
+        this.meetings.clear();
+        this.takeTarget(this.x);
     }
 
     moveFree(value) {
@@ -272,7 +280,8 @@ export class Explorer {
         if (!section || !(layers.workspace || layers.map)) return;
         const fixed = this.x.filter((_, k) => !section.axes.includes(k));
         const { map, workspace } = layers;
-        const of = JSON.stringify([fixed, this.branch, this.mechanism.parameters, map, workspace]);
+        const { parameters, given } = this.mechanism;
+        const of = JSON.stringify([fixed, given, this.branch, parameters, map, workspace]);
         if (of !== this.sectionOf) {
             this.sectionOf = of;
             section.start(this.x, this.branch, COARSE, layers);

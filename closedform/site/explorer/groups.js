@@ -57,14 +57,10 @@ export function branches(explorer) {
 export function joints(explorer) {
     const m = explorer.mechanism;
     const sliders = m.joints.map((name, k) => {
-        const slide = m.slides[k];
-        const most = 2.5 * Math.max(Math.abs(m.info.general[k]), Math.abs(m.info.home[k]), 0.2);
         return slider({
             label: m.label(k),
             title: name,
-            unit: slide ? "" : "rad",
-            min: slide ? 0 : -Math.PI,
-            max: slide ? most : Math.PI,
+            ...rangeOf(m, k),
             changed: (value) => explorer.takeJoints(explorer.q.with(k, value)),
         });
     });
@@ -99,10 +95,31 @@ export function target(explorer) {
         const changed = (value) => take(set(explorer.x, value));
         return { get, ...slider({ label: name, unit, min, max, changed }) };
     });
+    if (m.robot.GIVEN !== undefined) sliders.unshift({ get: () => m.given, ...given(explorer) });
     const show = () => {
         if (explorer.x) sliders.forEach((s) => s.show(s.get(explorer.x)));
     };
-    return { element: group("Target", false, ...sliders.map((s) => s.row)), show };
+    const open = m.robot.GIVEN !== undefined;
+    return { element: group("Target", open, ...sliders.map((s) => s.row)), show };
+}
+
+/** What the inverse takes beside the target: it moves the mechanism while the hand stands still. */
+function given(explorer) {
+    const { joints, robot, info } = explorer.mechanism;
+    const joint = joints.indexOf(robot.GIVEN);
+    return slider({
+        label: `${info.given}, hand kept`,
+        title: robot.GIVEN,
+        ...rangeOf(explorer.mechanism, joint),
+        changed: (value) => explorer.give(value),
+    });
+}
+
+/** The range of a joint, or of another angle, and its unit. */
+function rangeOf(m, joint) {
+    if (!m.slides[joint]) return { unit: "rad", min: -Math.PI, max: Math.PI };
+    const most = 2.5 * Math.max(Math.abs(m.info.general[joint]), Math.abs(m.info.home[joint]), 0.2);
+    return { unit: "", min: 0, max: most };
 }
 
 /** @param {Explorer} explorer @returns {Group} */

@@ -33,6 +33,8 @@ export class Mechanism {
         this.nearest = nearest;
         this.info = info;
         this.parameters = { ...robot.DEFAULTS };
+        /** What the inverse takes beside the target, if it takes anything. */
+        this.given = undefined;
         this.joints = robot.JOINTS;
         this.branches = robot.BRANCHES;
         this.modes = robot.ASSEMBLY_MODES.length || 1;
@@ -83,9 +85,22 @@ export class Mechanism {
         return this.places.length > this.joints.length;
     }
 
+    /** Take what is given beside the target from a posture, if the inverse needs it. */
+    takeGiven(q) {
+        const { GIVEN } = this.robot;
+        if (GIVEN === undefined) return;
+        const joint = this.joints.indexOf(GIVEN);
+        this.given = joint < 0 ? this.robot[GIVEN](q, this.parameters) : q[joint];
+    }
+
+    /** The inputs of the inverse beside the target and the dimensions. */
+    get beside() {
+        return this.given === undefined ? [] : [this.given];
+    }
+
     /** All branches of the inverse: `mode` is the assembly mode that reaches the target. */
     postures(x) {
-        const { q, status } = this.robot.ik(x, this.parameters);
+        const { q, status } = this.robot.ik(x, ...this.beside, this.parameters);
         return this.branches.map((name, index) => {
             const joints = Array.from(q[index]);
             const mode = reaches(status[index]) ? this.modeOf(joints, x) : 0;
@@ -144,7 +159,7 @@ export class Mechanism {
     moved(x, q, joint, value) {
         const seed = [...q];
         seed[joint] = value;
-        const found = this.nearest(this.robot, x, seed, {}, this.parameters);
+        const found = this.nearest(this.robot, x, seed, { given: this.given }, this.parameters);
         return found.q.every(Number.isFinite) ? found.q : null;
     }
 

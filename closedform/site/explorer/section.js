@@ -125,10 +125,15 @@ export class Section {
             across[i] = this.low[0] + (i - row * this.size + 0.5) * step;
             up[i] = this.low[1] + (this.row + row + 0.5) * step;
         }
-        const { q, status } = this.run(this.kernels.ik[this.branch], n, [this.targets]);
+        const { q, status } = this.run(this.kernels.ik[this.branch], n, [this.targets, ...this.beside(n)]);
         const reached = [];
         for (let i = 0; i < n; i++) if (reaches(status[i])) reached.push(i);
         return { reached, q: reached.length === n ? q : taken(q, n, reached), n };
+    }
+
+    /** What n targets take beside them: the value that is seen. */
+    beside(n) {
+        return this.mechanism.beside.map((value) => new Float64Array(n).fill(value));
     }
 
     run(kernel, n, args) {

@@ -31,20 +31,22 @@ export function sentence({ mechanism: m, x, found, branch, free, reached, meetin
 /** All numbers of what is seen, as JSON. */
 export function numbers({ mechanism: m, x, q, found }) {
     const branches = found.map((p) => ({ name: p.name, status: p.status, q: p.q }));
-    const all = { robot: m.info.name, parameters: m.parameters, target: x, joints: q, branches };
+    const beside = m.given === undefined ? {} : { [m.robot.GIVEN]: m.given };
+    const all = { robot: m.info.name, parameters: m.parameters, target: x, ...beside, joints: q, branches };
     return JSON.stringify(all, (_, v) => (Number.isNaN(v) ? null : v), 1);
 }
 
 /** Lines that compute what is seen, in one language. */
 export function lines(language, mechanism, x, q) {
-    const { robot, info, parameters } = mechanism;
+    const { robot, info, parameters, beside } = mechanism;
     const changed = Object.entries(parameters).filter(([name, v]) => v !== robot.DEFAULTS[name]);
     const list = (values) => Array.from(values).map(String).join(", ");
-    return writers[language]({ ...info, robot, changed, x: list(x), q: list(q), sizes: [x.length, q.length] });
+    const sizes = [x.length, q.length];
+    return writers[language]({ ...info, robot, changed, x: list(x), beside, q: list(q), sizes });
 }
 
 const writers = {
-    Python({ name, changed, x, q, robot }) {
+    Python({ name, changed, x, beside, q, robot }) {
         const given = changed.map(([n, v]) => `${n}=${v}`).join(", ");
         const target = { 16: ".reshape(4, 4)", 9: ".reshape(3, 3)" }[robot.TASK.length] ?? "";
         return [
@@ -53,13 +55,15 @@ const writers = {
             "",
             `params = ${name}.Parameters(${given})`,
             `x = np.array([${x}])${target}`,
-            `q, status = ${name}.ik(x, params)  # a row for each of ${name}.BRANCHES`,
+            `q, status = ${name}.ik(${["x", ...beside, "params"].join(", ")})  # a row for each of ${name}.BRANCHES`,
             `print(${name}.fk([${q}], params))  # the posture that is seen`,
             "",
         ].join("\n");
     },
-    C({ name, changed, x, q, robot, sizes: [n, m] }) {
+    C({ name, changed, x, beside, q, robot, sizes: [n, m] }) {
         const b = robot.BRANCHES.length;
+        const given = beside.map((value) => `    const real_t ${robot.GIVEN}[1] = { ${value} };`);
+        const inputs = ["&params", "x", ...beside.map(() => robot.GIVEN), "q", "status"].join(", ");
         return [
             `#include "${name}.h"`,
             "#include <stdio.h>",
@@ -68,11 +72,12 @@ const writers = {
             "{",
             `    ${name}_params params = ${name.toUpperCase()}_DEFAULTS;`,
             `    const real_t x[${n}] = { ${x} };`,
+            ...given,
             `    real_t q[${b * m}]; /* ${b} branches of ${m} joints; seen is ${q} */`,
             `    uint8_t status[${b}];`,
             "",
             ...changed.map(([p, v]) => `    params.${p} = ${v};`),
-            `    ${name}_ik(&params, x, q, status);`,
+            `    ${name}_ik(${inputs});`,
             `    for (int i = 0; i < ${b * m}; ++i)`,
             `        printf("%.15g%c", q[i], i % ${m} == ${m - 1} ? '\\n' : ' ');`,
             "    return 0;",
@@ -80,13 +85,13 @@ const writers = {
             "",
         ].join("\n");
     },
-    JavaScript({ name, changed, x, q }) {
+    JavaScript({ name, changed, x, beside, q }) {
         const given = changed.map(([n, v]) => `${n}: ${v}`).join(", ");
         return [
             `import * as ${name} from "closedform/${name}";`,
             "",
             `const parameters = {${given ? ` ${given} ` : ""}};`,
-            `const { q, status } = ${name}.ik([${x}], parameters); // for each of BRANCHES`,
+            `const { q, status } = ${name}.ik(${[`[${x}]`, ...beside, "parameters"].join(", ")}); // for each of BRANCHES`,
             `console.log(q, status, ${name}.fk([${q}], parameters)); // and the posture that is seen`,
             "",
         ].join("\n");

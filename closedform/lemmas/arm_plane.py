@@ -150,6 +150,7 @@ def arm_plane(
             r"The algorithm has the polar coordinates of $w$ and $v$, and the vectors $f_i$ by the "
             r"sines and cosines of these."
         ),
+        matrix="M",
     )
     beta, phi, chi, angle = (any_pair(f"tau{k}") for k in range(1, 5))
     at = {v1: far * beta.c, v2: far * beta.s, c: angle.c, s: angle.s}

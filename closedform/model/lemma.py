@@ -40,7 +40,8 @@ class Lemma(Shown):
     The rest is for the text.  ``roles`` says what each letter of the ``statement`` stands for here,
     in the order in which a reader needs them: an expression, a vector or LaTeX.  ``letters`` writes
     names of the program as the statement does.  A lemma in vectors is told as such, and its
-    coordinates are left to the algorithm; ``vectors`` says how that computes them.
+    coordinates are left to the algorithm; ``vectors`` says how that computes them.  ``matrix`` is
+    the letter of the matrix that holds all unknowns, if there is one.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Lemma(Shown):
     roles: tuple[tuple[str, Any], ...] = ()
     letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
     vectors: str = ""
+    matrix: str = ""
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]

@@ -113,6 +113,7 @@ class Told:
     # The derivation
 
     def given(self) -> str:
+        page, joints = self.page, {s.name: s for s in self.page.derivation.actuated}
         texts = []
         for array in self.function.inputs:
             if array.shape == (4, 4):
@@ -120,19 +121,30 @@ class Told:
                     r"the pose $T = \begin{bmatrix} R & p \\ 0 & 1 \end{bmatrix}$ with the "
                     r"rotation $R = (R_{ij})$ and the position $p = (p_x, p_y, p_z)$"
                 )
+            elif array.shape == ():
+                text = f"${page.math(array.entries[0])}$"
+                if array.name in joints:
+                    text = f"the value {text} of ${page.math(joints[array.name])}$"
+                else:
+                    text = f"the {escape(array.name.replace('_', ' '))} {text}"
+                texts.append(text)
             else:
-                texts += whole(self.page.assigned(array, {}))
-        return ", ".join(texts)
+                texts += whole(page.assigned(array, {}))
+        return ", and ".join(texts)
 
     def order(self) -> str:
         """The unknowns, in the order in which they are solved for."""
-        groups = [
-            "(" + ",\\ ".join(map(self.page.math, s.unknowns)) + ")"
-            if len(s.unknowns) > 1
-            else self.page.math(s.unknowns[0])
-            for s in self.solvings
-        ]
-        return ", then ".join(f"${g}$" for g in groups)
+        groups = []
+        for s in self.solvings:
+            names = self.sought(s)
+            groups.append(f"({', '.join(names)})" if len(names) > 1 else names[0])
+        return ", then ".join(groups)
+
+    def sought(self, solving: Solving) -> list[str]:
+        """The unknowns of a step; the matrix, where they are its entries."""
+        if solving.lemma.matrix:
+            return [f"${solving.lemma.matrix}$"]
+        return [f"${self.page.math(u)}$" for u in solving.unknowns]
 
     def joints(self) -> list[tuple[str, str]]:
         """The joints in the unknowns of the steps, where these are others."""
@@ -155,7 +167,7 @@ class Told:
         return {
             "number": number,
             "several": len(shown) > 1,
-            "unknowns": enumeration([f"${page.math(u)}$" for u in solving.unknowns]),
+            "unknowns": enumeration(self.sought(solving)),
             "from": self.origin(shown, solving),
             "blocks": blocks(rows),
             "lemma": titled(solving.lemma.name),
@@ -261,7 +273,7 @@ class Told:
         if page.derivation.assembly_modes:
             source = "From the equations of the loop"
         verb = "follow equations" if several else "follows an equation"
-        unknowns = enumeration([f"${page.math(u)}$" for u in solving.unknowns])
+        unknowns = enumeration(self.sought(solving))
         if before:
             known = "is" if len(before) == 1 else "are"
             return f"{source} {verb} in {unknowns}, where {enumeration(before)} {known} known:"

@@ -151,7 +151,8 @@ format: .venv/dev.stamp  ## format the Python that is written by hand
 figures: native .venv/dev.stamp  ## draw every figure: PDF in build/figures, what the pages show in docs
 	$(BIN)/closedform figures -o build/figures --docs docs
 
-pdf: $(PDFS)  ## compile the derivations to PDF, one for each mechanism, in build/pdf
+pdf: figures  ## compile the derivations to PDF, one for each mechanism, in build/pdf
+	@$(MAKE) --no-print-directory $(PDFS)
 
 # What TeX reads of the figures that were drawn; without any, there are none in the PDF.
 define TEX

@@ -91,8 +91,9 @@ class Site(Backend):
         home = {
             **context,
             "explorer": explorer(cards[LIVE].info),
-            "errors": sum(sum(p.errors().values()) for p in found),
-            "papers": len(found),
+            "errors": sum(p.errors()["Errors"] for p in found),
+            "papers": sum(p.errors()["Errors"] > 0 for p in found),
+            "lesser": sum(len(p.entries) - p.errors()["Errors"] for p in found),
         }
         return {
             Path("index.md"): render("site/home.md.jinja", home),
@@ -111,7 +112,7 @@ def page(mechanism: Mechanism) -> str:
         {**row, "kind": css(claim.kind), "said": claim.kind}
         for row, claim in zip(found["claims"], proof.claims, strict=True)
     ]
-    md = Markdown(places(found))
+    md = Markdown(places(found), [work["key"] for work in found["works"]])
     sheet = Sheet(derivation)
     for shown, step in zip(found["steps"], derivation.steps, strict=True):
         shown["rows"] = [[md(cell) for cell in row] for row in shown["rows"]]

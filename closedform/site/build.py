@@ -65,7 +65,7 @@ CONFIGURATION: dict[str, Any] = {
     "html_copy_source": False,
     "html_show_sourcelink": False,
     "html_theme_options": {"source_repository": "", "navigation_with_keys": False},
-    "myst_enable_extensions": ["colon_fence", "attrs_inline"],
+    "myst_enable_extensions": ["colon_fence", "attrs_inline", "dollarmath"],
     "myst_heading_anchors": 4,
     "smartquotes": False,
     "autodoc_member_order": "bysource",

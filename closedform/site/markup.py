@@ -45,10 +45,14 @@ class Place:
 
 
 class Markdown:
-    """Translates sentences and displays of one page; ``places`` are those that it may refer to."""
+    """Translates sentences and displays of one page.
 
-    def __init__(self, places: Mapping[str, Place]):
+    ``places`` are those that it may refer to, and ``works`` the keys of those that it lists.
+    """
+
+    def __init__(self, places: Mapping[str, Place], works: Sequence[str] = ()):
         self.places = places
+        self.works = tuple(works)
         self.commands: Mapping[str, Callable[[str], str]] = {
             r"\texttt": lambda t: f"`{plain(t)}`",
             r"\emph": lambda t: f"*{self(t)}*",
@@ -113,7 +117,9 @@ class Markdown:
 
     def cited(self, keys: str) -> str:
         """Links to the works at the end of the page."""
-        return " ".join(f'<a class="cited" href="#work-{k}">[{k}]</a>' for k in keys.split(","))
+        numbers = {key: n for n, key in enumerate(self.works, 1)}
+        links = (f'<a class="cited" href="#work-{k}">{numbers[k]}</a>' for k in keys.split(","))
+        return f"[{', '.join(links)}]"
 
     def display(self, block: Block) -> str:
         """Numbered equations below each other."""

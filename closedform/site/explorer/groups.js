@@ -108,8 +108,8 @@ function given(explorer) {
     const { joints, robot, info } = explorer.mechanism;
     const joint = joints.indexOf(robot.GIVEN);
     return slider({
-        label: `${info.given}, hand kept`,
-        title: robot.GIVEN,
+        label: info.given,
+        title: `${robot.GIVEN}: the hand stands still`,
         ...rangeOf(explorer.mechanism, joint),
         changed: (value) => explorer.give(value),
     });

@@ -90,6 +90,38 @@ def test_a_wrong_call_has_exit_code_2() -> None:
         assert stop.value.code == 2
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["check", "-j", "0"], "it must be a whole number of 1 or more, not '0'"),
+        (["check", "-j", "two"], "it must be a whole number of 1 or more, not 'two'"),
+        (["derive", "--timeout", "-3"], "it must be a number of 0 or more, not '-3'"),
+        (["derive", "--timeout", "soon"], "it must be a number of 0 or more, not 'soon'"),
+    ],
+)
+def test_a_wrong_number_is_told_in_words(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(arguments)
+    assert said in capsys.readouterr().err
+
+
+def test_options_without_an_effect_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "--sources"]) == 2
+    assert "--sources is for --robots" in capsys.readouterr().err
+
+
+def test_a_missing_script_is_told_without_a_list(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "missing/arm.py"]) == 2
+    assert capsys.readouterr().err.strip() == "closedform: there is no file missing/arm.py"
+
+
+def test_no_claims_are_told(slider: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["claims", str(slider)]) == 0
+    assert "slider has no claims" in capsys.readouterr().out
+
+
 def test_show_prints_text_and_latex(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "planar_2r"]) == 0
     assert "Planar 2R arm" in capsys.readouterr().out
@@ -262,8 +294,10 @@ def test_claims_are_judged_and_changed(slider: Path, capsys: pytest.CaptureFixtu
     told = capsys.readouterr().out
     assert "eq. (1): refuted: at $a = 1$" in told
     assert "    holds instead: $x = a + q_1$" in told
-    assert "    reading: other: proved: " in told
+    assert "    reading: other: proved\n" in told
     assert "strict: AttributeError" in told
+    assert main(["claims", str(slider), "--only", "nowhere"]) == 0
+    assert "no claim of slider has 'nowhere' in its label" in capsys.readouterr().out
     assert main(["claims", str(slider), "--only", "weak", "--mutate"]) == 0
     told = capsys.readouterr().out
     assert "eq. (1)" not in told

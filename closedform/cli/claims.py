@@ -36,10 +36,14 @@ def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]
     from closedform.model.claims import HOLDS
     from closedform.proof.claims import judge
 
-    claims = [c for c in derivation.claims if options.only in c.label]
     if options.paper:
         yield from _coverage(derivation, options.paper)
         return
+    claims = [c for c in derivation.claims if options.only in c.label]
+    if not derivation.claims:
+        yield f"{derivation.name} has no claims: it quotes no paper"
+    elif not claims:
+        yield f"no claim of {derivation.name} has {options.only!r} in its label"
     for claim in claims:
         try:
             result = judge(claim, derivation.errata)
@@ -48,7 +52,8 @@ def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]
             continue
         yield f"{claim.label}: {result.kind}" + (f": {result.evidence}" if result.evidence else "")
         for reading in result.readings:
-            yield f"    reading: {reading.text}: {reading.kind}: {reading.evidence}"
+            evidence = f": {reading.evidence}" if reading.evidence else ""
+            yield f"    reading: {reading.text}: {reading.kind}{evidence}"
         if result.corrected:
             yield f"    holds instead: {result.corrected}"
         if not options.mutate:

@@ -134,6 +134,8 @@ def robots_listed(sources: bool) -> str:
 
 def list_command(options: argparse.Namespace) -> None:
     """List the derivations, or the ready robots."""
+    if options.sources and not options.robots:
+        raise CommandError("--sources is for --robots: closedform list --robots --sources", 2)
     if options.robots:
         console.write(robots_listed(options.sources))
         return
@@ -409,10 +411,10 @@ def _find(names: Sequence[str]) -> list[pipeline.Source]:
 
 
 def _unknown(kind: str, name: str, known: Sequence[str]) -> str:
+    if name.endswith(".py"):
+        return f"there is no file {name}"
     close = difflib.get_close_matches(name, known)
     hint = f"did you mean {' or '.join(close)}?" if close else f"known: {', '.join(known)}"
-    if name.endswith(".py"):
-        hint = f"there is no such file; {hint}"
     return f"unknown {kind} {name}; {hint}"
 
 
@@ -456,7 +458,8 @@ def _write(root: Path, printed: pipeline.Files) -> list[Path]:
     try:
         return pipeline.write(root, printed)
     except OSError as error:
-        raise CommandError(f"cannot write to {root}: {_reason(error)}") from error
+        where = f"cannot write to {root}: "
+        raise CommandError(where + _reason(error).removeprefix(f"{root}: ")) from error
 
 
 def _alone() -> contextlib.AbstractContextManager[None]:

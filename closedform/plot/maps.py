@@ -347,7 +347,7 @@ def _task_plane(
     chosen = list(plane or list(places)[:2]) if r.flat else list(plane or ("x", "z"))
     if len(chosen) != 2 or not all(n in places for n in chosen):
         known = ", ".join([*places, *r.module.JOINTS])
-        raise ValueError(f"the plane of {r.name} needs two of {known}; not {chosen}")
+        raise ValueError(f"the plane of {r.name} needs two of {known}; not {', '.join(chosen)}")
     hand = r.module.SKELETON.points.index(r.module.SKELETON.hand)
     seen = r.points(r.draw(2000, seed=2))[..., hand, :].reshape(-1, 3)
     seen = seen[np.isfinite(seen).all(1)]
@@ -440,10 +440,10 @@ def _quantity(
         values = np.asarray(r.call(function, q))
         return (in_mode(values) if values.ndim >= q.ndim else values), function
     if function not in ("manipulability", "condition"):
-        raise ValueError(
-            f"{r.name} has no function {function}; there are manipulability, condition and "
-            f"{', '.join(n for n in r.module.__all__ if n.islower())}"
+        known = dict.fromkeys(
+            ["manipulability", "condition", *(n for n in r.module.__all__ if n.islower())]
         )
+        raise ValueError(f"{r.name} has no function {function}; there are {', '.join(known)}")
     name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")
     J = np.asarray(r.call(name, q))
     J = in_mode(J) if r.modes else J

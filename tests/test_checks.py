@@ -520,7 +520,7 @@ class TestForAll:
         assert check.judge().kind == kind
 
     def test_a_given_point_is_tried_first(self) -> None:
-        assert evidence(ForAll(x > 0, among=[{x: sp.Integer(-5)}])) == "not at $x = -5$"
+        assert evidence(ForAll(x > 0, among=[{x: sp.Integer(-5)}])) == "it fails at $x = -5$"
 
     def test_a_domain_without_a_counterexample_proves_nothing(self) -> None:
         with pytest.raises(Undecided):

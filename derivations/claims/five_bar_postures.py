@@ -313,12 +313,12 @@ def range_of_CD(bar: FiveBar) -> dict[str, Check]:
     corner = sp.acos(L0 / (2 * L1))
     ends = [({t2: pi, t3: sp.S.Zero}, L0 + 2 * L1), ({t2: sp.S.Zero, t3: pi}, L0 - 2 * L1)]
     return {
-        "CD <= L0 + 2 L1": Identity(*design.longest(bar.CD, t2, t3)),
-        "CD >= L0 - 2 L1": Identity(*design.shortest(bar.CD, t2, t3)),
-        "both occur": Identity(
+        r"$CD \le L_0 + 2 L_1$": Identity(*design.longest(bar.CD, t2, t3)),
+        r"$CD \ge L_0 - 2 L_1$": Identity(*design.shortest(bar.CD, t2, t3)),
+        "both bounds are reached": Identity(
             [bar.CD.dot(bar.CD).subs(at) for at, _ in ends], [end**2 for _, end in ends]
         ),
-        "C and D meet if L0 <= 2 L1": Identity(
+        r"C and D meet if $L_0 \le 2 L_1$": Identity(
             bar.CD.subs({t2: corner, t3: pi - corner}), sp.zeros(3, 1)
         ),
     }

@@ -158,8 +158,8 @@ def wrong_frames(d: Derivation, r: Robot) -> None:
         Gravity.MOTION,
         why="Eqs. (3) to (5) are read from Fig. 3, which shows pure yaw and pure roll in the "
         "planes of the base.  Eq. (9) turns the wrist about the axes of the fore-arm.  If yaw or "
-        "roll differs from zero, the two agree only if the other one is zero and the fore-arm is "
-        "level; the inverse uses (3) and (4) for all postures.",
+        "roll differs from zero, the two agree, apart from the sign in (3), only if the other one "
+        "is zero and the fore-arm is level; the inverse uses (3) and (4) for all postures.",
         use=r"For $d = [d]$ m, 10 degrees of yaw and a fore-arm at $\theta_{23} = 45^\circ$, (4) "
         "puts the right tip [gap] mm from where (9) has it; the distance grows with yaw and roll.",
         numbers={

@@ -61,10 +61,10 @@ def error(d: Derivation, r: Robot) -> None:
         "admits $\\alpha l = 3$; but half the line between the tips is "
         r"$d/(\cos\psi\cos\phi) = 4$, so a link has to be longer than $4 - g_s = 3.5$.",
         use="The tip is misplaced whenever the robot rolls.  At 30 degrees of yaw and roll the "
-        "wrist of the example ($d = [d]$ m, $\\alpha l = [al]$ m) is [gap] mm shorter than (8) has "
-        "it.  Wrist links as short as (10) allows reach their singular configuration before both "
-        r"angles are at their limits, unless $\beta_{\min}$ is large: for limits of 30 degrees and "
-        "$g_s = [gs]$ m, if it is below [enough] degrees.",
+        "wrist of the example ($d = [d]$ m, $\\alpha l = [al]$ m, $g_s = [gs]$ m) is [gap] mm "
+        "shorter than (8) has it.  Wrist links as short as (10) allows reach their singular "
+        r"configuration before both angles are at their limits, unless $\beta_{\min}$ is large: "
+        "for limits of 30 degrees and this $g_s$, if it is below [enough] degrees.",
         numbers={
             **{name: (r.example[getattr(r.m, name)], 2) for name in ("d", "al", "gs")},
             "enough": (sp.acos(flat / steep) * 180 / pi, 1),

@@ -202,7 +202,7 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
         there, then = bar.postures(at), bar.postures(again)
         return Every(
             {
-                "its value there": Identity(ratio.subs(at), sp.S.One, names=NAMES, postures=there),
+                "the value there": Identity(ratio.subs(at), sp.S.One, names=NAMES, postures=there),
                 "after one more period": Identity(
                     ratio.subs(again), sp.S.One, names=NAMES, postures=then
                 ),
@@ -317,7 +317,7 @@ def loci(d: Derivation, bar: FiveBar) -> None:
             "a singular posture": closed_and(inside, det_A=Eq(inside.cross, 0)),
         }
         if "inside" not in places:
-            parts["P = (y, ρ) of a singular posture is at the boundary"] = ForAll(
+            parts[r"the point P = $(y, \rho)$ of a singular posture is at the boundary"] = ForAll(
                 Eq(border, 0), among=[point]
             )
         return Every(parts)
@@ -388,8 +388,8 @@ def loci(d: Derivation, bar: FiveBar) -> None:
             {
                 "CD by the angle of CP and DP": Identity(apart, 2 * L2**2 - 2 * bar.gram[1, 2]),
                 **range_of_CD(bar),
-                "CD can be as long": implies(given, wanted[1], bar.lengths),
-                "CD can be as short": implies(
+                r"CD can be as long as $\sqrt{2} L_2$": implies(given, wanted[1], bar.lengths),
+                r"CD can be as short as $\sqrt{2} L_2$": implies(
                     given, wanted[0], bar.lengths, [{L0: sp.Rational(7, 2), L1: one, L2: one}]
                 ),
             }

@@ -51,8 +51,8 @@ from closedform import (
 )
 
 NEVER = (
-    "C and D never meet, so L0 > 2 L1",
-    "C, P and D are never in line, so 2 L2 > L0 + 2 L1",
+    "C and D never meet, so $L_0 > 2 L_1$",
+    "C, P and D are never in line, so $2 L_2 > L_0 + 2 L_1$",
 )
 GIVEN_REACH = (
     "for a given reach $L_1 + L_2$, as in the paper's reference [7]; without a bound on the "
@@ -481,10 +481,10 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         falls = {f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)}
         return Every(
             {
-                "for L0 = 0, where the volumes are equal": ForAll(
+                "for $L_0 = 0$, where the volumes are equal": ForAll(
                     relation(sp.expand(at_zero - serial_arm), 0)
                 ),
-                **{f"{n}: the volume falls as L0 grows": c for n, c in falls.items()},
+                **{f"{n}: the volume falls as $L_0$ grows": c for n, c in falls.items()},
             }
         )
 
@@ -517,7 +517,9 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         square_kappas = [m.conditions for m in (isotropic(), isotropic().other_mode())]
         for i in matrices:
             first, second = (kappas[i] for kappas in square_kappas)
-            parts[f"the condition numbers of {'AB'[i]} differ"] = Not(Identity(first, second))
+            parts[rf"the condition numbers of $\mathbf{{{'AB'[i]}}}$ differ"] = Not(
+                Identity(first, second)
+            )
         return Every(parts)
 
     claim(

@@ -288,8 +288,8 @@ def serial(d: Derivation, bar: FiveBar) -> None:
     def listed(named: frozenset[str]) -> Check:
         return Every(
             {
-                "an entry of B vanishes in these cases": Listing(
-                    named, bar.serial_cases, "an entry of B vanishes with"
+                "the list of the paper": Listing(
+                    named, bar.serial_cases, r"postures at which an entry of $\mathbf{B}$ vanishes"
                 ),
                 "aligned bars are at the boundary": serial_by_position(bar),
                 "P can be on AB inside": closed_and(

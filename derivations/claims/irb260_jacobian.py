@@ -300,10 +300,10 @@ def moved_twists(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None
         r"motions of the joints before it are already in it. Eqs. (19) and (20) exponentiate and "
         r"move primed twists again, so that $\xi_i'$ even stands on both sides of eq. (20). What "
         r"is moved is the twist $\xi_i$ at home, of eqs. (1) to (5) and (9).",
-        use=r"Eq. (20) is the paper's only formula for the columns of the Jacobian. With its "
-        r"primes each axis is turned twice: at $\theta_1 = 90^\circ$ the axis of joint 2 points "
-        r"along $x$ instead of $-y$, and a velocity or a control law computed from it is wrong in "
-        "direction.",
+        use=r"Eq. (20) is the formula by which the paper computes the columns of the Jacobian. "
+        r"With its primes each axis is turned twice: at $\theta_1 = 90^\circ$ the axis of joint 2 "
+        r"points along $x$ instead of $-y$, and a velocity or a control law computed from it is "
+        "wrong in direction.",
     )
     text = (
         r"$\begin{{aligned}} \left(\frac{{\partial g_{{st}}}}{{\partial \theta_i}} g_{{st}}^{{-1}} "

@@ -76,7 +76,7 @@ def verification(d: Derivation, arm: Palletiser) -> None:
                             "the pose is another one": Not(
                                 Identity(mounted.subs(at_home), arm.pose.subs(at_home))
                             ),
-                            "the velocity of the test contains neither l2 nor l5": Identity(
+                            "the velocity of the test contains neither $l_2$ nor $l_5$": Identity(
                                 [e.diff(s) for e in arm.velocity for s in arm.lengths[1::3]],
                                 [0] * 6,
                             ),

@@ -315,7 +315,8 @@ def inverse(d: Derivation, arm: Arm, known: Notation) -> None:
         "(8).  With the printed row, the columns $a$ and $p$ of the product are not those of "
         "$A_2$.",
         use="Eq. (10) uses the first two rows only and is not affected.  A program with the "
-        "printed matrix loses the position: its product with $A_1^{-1}$ does not contain $-a_1$.",
+        "printed matrix loses the position: the last column of its product "
+        "with $A_1^{-1}$ does not contain $-a_1$.",
     )
     for label, text, paraphrase in (
         ("eq. (9), second factor", f"$T_2^0 = {NAMED}$", True),

@@ -301,10 +301,12 @@ def inverse_orientation(d: Derivation, wrist: Wrist, known: Notation) -> None:
         why="If $\\sin\\theta = 0$, then $R_{13} = R_{23} = R_{31} = R_{32} = 0$, and eqs. (13) "
         "and (16) contain atan2(0, 0).  These rotations can be reached: the first and the last "
         "axis coincide, and only the sum or the difference of their angles is determined.  One of "
-        "the two may be chosen.",
+        "the two may be chosen.  Above eq. (16), $\\theta$ stands for $\\theta_5$.",
         use="The home position of the wrist, $\\theta_4 = \\theta_5 = \\theta_6 = 0$, is such a "
-        "case.  With the usual atan2(0, 0) = 0 both angles come out as 0, so the hand is turned "
-        "about its axis by a wrong angle unless the rotation is the identity.",
+        "case.  A program that takes atan2(0, 0) as 0 gets 0 for both angles.  This is right for "
+        "the identity and for a half turn about $y$; for every other such rotation the hand is "
+        "turned about its axis by a wrong angle.  In floating point, $-R_{31}$ can be $-0$, and "
+        "atan2(0, $-0$) is $180^\\circ$: then even the identity comes out wrong.",
     )
     outer = EULER[0], EULER[2]
     inverse_claim(claim, wrist, wrist.R, "eq. (13)", outer=outer, middle=EULER[1], free="φ")

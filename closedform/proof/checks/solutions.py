@@ -238,7 +238,12 @@ class Solves(Check):
                 gap = values(formula.subs(SIGN, s), sampled) - sampled[unknown]
                 close &= np.abs(np.angle(np.exp(1j * gap))) < _CLOSE
             found |= close
-        return share("it misses the posture itself", ~found, self.postures, sampled)
+        return share(
+            "it misses the posture from which the target was computed",
+            ~found,
+            self.postures,
+            sampled,
+        )
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,11 @@ class ForAll(Check):
     def judge(self) -> Verdict:
         relation = _placed(sp.sympify(self.relation, strict=True), self.on)
         if relation in (sp.true, sp.false):
-            return Verdict(PROVED if relation == sp.true else REFUTED)
+            return (
+                Verdict(PROVED)
+                if relation == sp.true
+                else Verdict(REFUTED, _violation(relation, {}))
+            )
         where = [_placed(c, self.on) for c in self.where]
         violated = _first([*where, _negated(relation)], self.among)
         if violated is not None:
@@ -180,7 +184,7 @@ class Exists(Check):
         if self.never is not None:
             opposite = self.never.judge()
             if opposite.kind == PROVED:
-                return Verdict(REFUTED, opposite.evidence or ("there is none",))
+                return Verdict(REFUTED, _opposite(opposite.evidence))
         raise Undecided("no point was found, and nothing proves that there is none")
 
 
@@ -194,7 +198,9 @@ class Not(Check):
         verdict = self.check.judge()
         if verdict.kind not in (PROVED, REFUTED):
             return verdict
-        return Verdict(REFUTED if verdict.kind == PROVED else PROVED, verdict.evidence)
+        if verdict.kind == PROVED:
+            return Verdict(REFUTED, _opposite(verdict.evidence))
+        return Verdict(PROVED, verdict.evidence)
 
 
 @dataclass(frozen=True)
@@ -237,4 +243,9 @@ def _simple(relations: Sequence[Expr]) -> Point | None:
 
 
 def _violation(relation: Expr, point: Point) -> tuple[Any, ...]:
-    return ("not at ", dict(point)) if point else ("it does not hold",)
+    return ("it fails at ", dict(point)) if point else ("it does not hold",)
+
+
+def _opposite(evidence: tuple[Any, ...]) -> tuple[Any, ...]:
+    """What refutes a statement whose opposite is proved."""
+    return ("the opposite is proved: ", *evidence) if evidence else ("the opposite is proved",)

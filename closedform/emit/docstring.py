@@ -216,10 +216,14 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
         names = joints
     elif function.name == "fk" and array.size == len(derivation.task):
         names = derivation.task
+    reduced = [angle for _, angle in Turns.of(function, derivation).entries()]
     if names:
-        return _listed(names, _units(derivation), array.shape, BOUNDED)
-    if all(angle for _, angle in Turns.of(function, derivation).entries()):
+        return _listed(names, _units(derivation), array.shape, BOUNDED if any(reduced) else ANGLE)
+    if all(reduced):
         return f"{'Angles' if array.shape else 'Angle'} {BOUNDED}."
+    given = next((a for f in derivation.functions for a in f.inputs if a.name == array.name), None)
+    if given and array.shape == given.shape:
+        return _listed([str(e) for e in given.entries], _units(derivation), array.shape, ANGLE)
     return ""
 
 
@@ -293,6 +297,7 @@ def _units(derivation: Derivation) -> dict[str, str]:
         for statement in function.body:
             values += [getattr(statement, "value", sp.S.Zero), *getattr(statement, "values", ())]
         angles |= {str(s) for e in values for s in _in_circular_functions(e) if s in given}
+        angles |= {str(s) for e in _revolute(derivation, function) for s in e.free_symbols & given}
     for inverse in derivation.inverses:
         solver = derivation[inverse.function]
         if solver.result == "Solutions" and len(solver.symbols) == len(derivation.task):
@@ -301,6 +306,19 @@ def _units(derivation: Derivation) -> dict[str, str]:
     units |= dict.fromkeys(angles, ANGLE)
     units |= {j.name: ANGLE if j.kind == "revolute" else LENGTH for j in derivation.joints}
     return units
+
+
+def _revolute(derivation: Derivation, function: Function) -> list[sp.Expr]:
+    """What a function gives for the revolute joints, if it is linear with numbers as factors."""
+    kinds = [j.kind for j in derivation.joints if j.symbol in derivation.actuated]
+    found = [
+        e
+        for array in function.outputs
+        if array.name == "q" and array.size == len(kinds)
+        for e, kind in zip(array.entries, kinds, strict=True)
+        if kind == "revolute"
+    ]
+    return [e for e in found if all(s.is_Symbol for s in e.as_coefficients_dict())]
 
 
 @cache

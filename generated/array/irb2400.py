@@ -858,14 +858,14 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT) -> 
     Parameters
     ----------
     motors : array_like, shape (..., 6)
-        m1 to m6.
+        m1 to m6 in rad.
     params : Parameters, optional
         The dimensions. Each may be an array that broadcasts with the leading axes.
 
     Returns
     -------
     q : array, shape (..., 6)
-        theta1 to theta6 in rad, in (-pi, pi].
+        theta1 to theta6 in rad.
 
     Raises
     ------
@@ -916,6 +916,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     motors : array, shape (..., 6)
+        m1 to m6 in rad.
 
     Raises
     ------

@@ -212,14 +212,14 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT) -> 
     Parameters
     ----------
     motors : array_like, shape (..., 4)
-        m1, m2, m3, m5.
+        m1, m2, m3, m5 in rad.
     params : Parameters, optional
         The dimensions. Each may be an array that broadcasts with the leading axes.
 
     Returns
     -------
     q : array, shape (..., 4)
-        theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+        theta1, theta2, theta3, theta5 in rad.
 
     Raises
     ------
@@ -268,6 +268,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     motors : array, shape (..., 4)
+        m1, m2, m3, m5 in rad.
 
     Raises
     ------

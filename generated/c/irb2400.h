@@ -204,12 +204,12 @@ void irb2400_jacobian_body_batch(size_t n, const irb2400_params *params,
  * Inputs
  * ------
  * motors : const real_t[6]
- *     m1 to m6.
+ *     m1 to m6 in rad.
  *
  * Outputs
  * -------
  * q : real_t[6]
- *     theta1 to theta6 in rad, in (-pi, pi].
+ *     theta1 to theta6 in rad.
  *
  * Notes
  * -----
@@ -232,6 +232,7 @@ void irb2400_joints_from_motors_batch(size_t n, const irb2400_params *params,
  * Outputs
  * -------
  * motors : real_t[6]
+ *     m1 to m6 in rad.
  *
  * Notes
  * -----

@@ -77,12 +77,12 @@ void irb260_joint4_batch(size_t n, const irb260_params *params,
  * Inputs
  * ------
  * motors : const real_t[4]
- *     m1, m2, m3, m5.
+ *     m1, m2, m3, m5 in rad.
  *
  * Outputs
  * -------
  * q : real_t[4]
- *     theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+ *     theta1, theta2, theta3, theta5 in rad.
  *
  * Notes
  * -----
@@ -105,6 +105,7 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
  * Outputs
  * -------
  * motors : real_t[4]
+ *     m1, m2, m3, m5 in rad.
  *
  * Notes
  * -----

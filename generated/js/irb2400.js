@@ -991,9 +991,9 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
  *
  * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
- * @param {ArrayLike<number>} motors 6 numbers. m1 to m6.
+ * @param {ArrayLike<number>} motors 6 numbers. m1 to m6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers. theta1 to theta6 in rad, in (-pi, pi].
+ * @returns {number[]} 6 numbers. theta1 to theta6 in rad.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */
@@ -1053,7 +1053,7 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers.
+ * @returns {number[]} 6 numbers. m1 to m6 in rad.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

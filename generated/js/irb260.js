@@ -189,9 +189,9 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
  *
  * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
- * @param {ArrayLike<number>} motors 4 numbers. m1, m2, m3, m5.
+ * @param {ArrayLike<number>} motors 4 numbers. m1, m2, m3, m5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 4 numbers. theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+ * @returns {number[]} 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */
@@ -247,7 +247,7 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 4 numbers.
+ * @returns {number[]} 4 numbers. m1, m2, m3, m5 in rad.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

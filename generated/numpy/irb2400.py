@@ -888,7 +888,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     Parameters
     ----------
     motors : array_like, shape (..., 6)
-        m1 to m6.
+        m1 to m6 in rad.
     params : Parameters, optional
         The dimensions. Each may be an array that broadcasts with the leading axes.
     out : ndarray, optional
@@ -897,7 +897,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     Returns
     -------
     q : ndarray of float64, shape (..., 6)
-        theta1 to theta6 in rad, in (-pi, pi].
+        theta1 to theta6 in rad.
 
     Raises
     ------
@@ -950,6 +950,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
     Returns
     -------
     motors : ndarray of float64, shape (..., 6)
+        m1 to m6 in rad.
 
     Raises
     ------

@@ -212,7 +212,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     Parameters
     ----------
     motors : array_like, shape (..., 4)
-        m1, m2, m3, m5.
+        m1, m2, m3, m5 in rad.
     params : Parameters, optional
         The dimensions. Each may be an array that broadcasts with the leading axes.
     out : ndarray, optional
@@ -221,7 +221,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     Returns
     -------
     q : ndarray of float64, shape (..., 4)
-        theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+        theta1, theta2, theta3, theta5 in rad.
 
     Raises
     ------
@@ -272,6 +272,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
     Returns
     -------
     motors : ndarray of float64, shape (..., 4)
+        m1, m2, m3, m5 in rad.
 
     Raises
     ------

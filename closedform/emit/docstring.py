@@ -189,7 +189,7 @@ def results_of(derivation: Derivation, function: Function, wording: Wording) -> 
         Item(
             a.name,
             wording.kind(dtype, branches, a.shape),
-            _output_text(derivation, function, a),
+            _output_text(derivation, function, a, wording),
         )
         for a in function.outputs
     ]
@@ -202,11 +202,11 @@ def results_of(derivation: Derivation, function: Function, wording: Wording) -> 
     return items
 
 
-def _output_text(derivation: Derivation, function: Function, array: Array) -> str:
+def _output_text(derivation: Derivation, function: Function, array: Array, wording: Wording) -> str:
     if function.name == "singularities":
         return f"One factor for each singular set: {'; '.join(derivation.singularities)}."
     if len(array.shape) > 1:
-        return _matrix_text(derivation, function, array)
+        return _matrix_text(derivation, function, array, wording)
     joints = [s.name for s in derivation.actuated]
     inverse = next((i for i in derivation.inverses if i.function == function.name), None)
     names: Sequence[str] = ()
@@ -240,10 +240,12 @@ def _requirement(derivation: Derivation, array: Array) -> str:
     return ""
 
 
-def _matrix_text(derivation: Derivation, function: Function, array: Array) -> str:
+def _matrix_text(derivation: Derivation, function: Function, array: Array, wording: Wording) -> str:
     """A sentence about a matrix that is returned: what it is, or what its columns belong to."""
     if function.name == "skeleton":
-        return "Coordinates x, y, z of each point."
+        assert derivation.skeleton is not None
+        order = ", in the order of `SKELETON.points`" if wording.constants else ""
+        return f"Coordinates x, y, z of each point{order}: {', '.join(derivation.skeleton.points)}."
     if function.name in TARGETS and (target := _requirement(derivation, array)):
         return target
     if array.shape == (4, 4) and list(array.entries[-4:]) == [0, 0, 0, 1]:

@@ -86,7 +86,7 @@ def skeleton(
     places = {name: sp.Matrix(list(map(sp.sympify, at))) for name, at in points.items()}
     function = d.function(
         "skeleton",
-        "Points of the mechanism in the base frame, in the order of SKELETON.points.",
+        "Points of the mechanism in the base frame.",
         {**(pose or {}), "q": d.actuated if inputs is None else tuple(inputs)},
         {"points": sp.Matrix([list(at) for at in places.values()])},
         program=program,

@@ -548,7 +548,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -560,7 +560,8 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 22, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, B1, C1, B1a,
+        B1b, C1a, C1b, A2, B2, C2, B2a, B2b, C2a, C2b, A3, B3, C3, B3a, B3b, C3a, C3b, P.
 
     Raises
     ------

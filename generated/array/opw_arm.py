@@ -283,7 +283,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -295,7 +295,8 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 8, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, corner1,
+        joint2, joint3, corner3, joint4, joint5, tool.
 
     Raises
     ------

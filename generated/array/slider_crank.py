@@ -229,7 +229,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 4, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, A2, B1, B2.
 
     Raises
     ------

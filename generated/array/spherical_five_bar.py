@@ -526,7 +526,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -538,7 +538,8 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 6, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: A0, A1, B1, A2,
+        B2, P.
 
     Raises
     ------

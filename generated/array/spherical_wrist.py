@@ -251,7 +251,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: centre, hand.
 
     Raises
     ------

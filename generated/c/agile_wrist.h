@@ -235,7 +235,7 @@ void agile_wrist_passive_angles_batch(size_t n, const agile_wrist_params *params
     real_t *phi, size_t phi_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -245,7 +245,7 @@ void agile_wrist_passive_angles_batch(size_t n, const agile_wrist_params *params
  * Outputs
  * -------
  * points : real_t[132], shape (4, 11, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: U1, U2, U3, W1, W2, W3, V1, V2, V3, O, P.
  *
  * Notes
  * -----

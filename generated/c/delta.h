@@ -80,7 +80,7 @@ void delta_fk_batch(size_t n, const delta_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -90,7 +90,8 @@ void delta_fk_batch(size_t n, const delta_params *params,
  * Outputs
  * -------
  * points : real_t[132], shape (2, 22, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, B1, C1, B1a, B1b, C1a, C1b, A2, B2, C2, B2a, B2b,
+ *     C2a, C2b, A3, B3, C3, B3a, B3b, C3a, C3b, P.
  *
  * Notes
  * -----

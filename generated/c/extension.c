@@ -5877,7 +5877,7 @@ const cf_function cf_functions[] = {
       1, agile_wrist_passive_angles_in, 1, agile_wrist_passive_angles_out,
       agile_wrist_passive_angles_one, agile_wrist_passive_angles_many },
     { "agile_wrist.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -5891,7 +5891,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 4, 11, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: U1, U2, U3, W1,\n"
+      "    W2, W3, V1, V2, V3, O, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -5998,7 +5999,7 @@ const cf_function cf_functions[] = {
       1, delta_fk_in, 2, delta_fk_out,
       delta_fk_one, delta_fk_many },
     { "delta.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6012,7 +6013,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 22, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, B1, C1, B1a,\n"
+      "    B1b, C1a, C1b, A2, B2, C2, B2a, B2b, C2a, C2b, A3, B3, C3, B3a, B3b, C3a, C3b, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -6406,7 +6408,7 @@ const cf_function cf_functions[] = {
       1, five_bar_passive_angles_in, 1, five_bar_passive_angles_out,
       five_bar_passive_angles_one, five_bar_passive_angles_many },
     { "five_bar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6420,7 +6422,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 5, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, B1, A2, B2, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -6742,7 +6744,7 @@ const cf_function cf_functions[] = {
       1, four_bar_fk_in, 2, four_bar_fk_out,
       four_bar_fk_one, four_bar_fk_many },
     { "four_bar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6756,7 +6758,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 4, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, A2, B1, B2.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -7034,7 +7036,7 @@ const cf_function cf_functions[] = {
       1, franka_arm_pose_in, 1, franka_arm_pose_out,
       franka_arm_pose_one, franka_arm_pose_many },
     { "franka_arm.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7048,7 +7050,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 8, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, joint2,\n"
+      "    corner3, joint4, joint5, joint6, joint7, tool.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -7373,7 +7376,7 @@ const cf_function cf_functions[] = {
       1, h6ar_arm_tips_in, 1, h6ar_arm_tips_out,
       h6ar_arm_tips_one, h6ar_arm_tips_many },
     { "h6ar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7387,7 +7390,10 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 20, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, column,\n"
+      "    shoulder_right, elbow_right, corner_right, tip_right, shoulder_left, elbow_left,\n"
+      "    corner_left, tip_left, elbow_virtual, corner_virtual, tip_virtual, foot_right,\n"
+      "    foot_left, gear_right, gear_left, gear_centre, pitch, hand.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -7777,7 +7783,7 @@ const cf_function cf_functions[] = {
       1, h6ar_loop_closed_pose_in, 1, h6ar_loop_closed_pose_out,
       h6ar_loop_closed_pose_one, h6ar_loop_closed_pose_many },
     { "h6ar_loop_closed.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7791,7 +7797,10 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 18, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, column,\n"
+      "    shoulder_right, elbow_right, corner_right, tip_right, shoulder_left, elbow_left,\n"
+      "    corner_left, tip_left, elbow_virtual, corner_virtual, tip_virtual, gear_right,\n"
+      "    gear_left, gear_centre, pitch, hand.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -8226,7 +8235,7 @@ const cf_function cf_functions[] = {
       1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
       hybrid_five_bar_passive_angles_one, hybrid_five_bar_passive_angles_many },
     { "hybrid_five_bar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -8240,7 +8249,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 5, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A, B, C, D, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -8596,7 +8605,7 @@ const cf_function cf_functions[] = {
       1, irb2400_pose_in, 1, irb2400_pose_out,
       irb2400_pose_one, irb2400_pose_many },
     { "irb2400.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -8610,7 +8619,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 7, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, corner1,\n"
+      "    joint2, joint3, joint4, joint5, tool.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -9052,7 +9062,7 @@ const cf_function cf_functions[] = {
       1, irb260_pose_in, 1, irb260_pose_out,
       irb260_pose_one, irb260_pose_many },
     { "irb260.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9066,7 +9076,9 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 11, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, column,\n"
+      "    shoulder, elbow, wrist, flange, hand, lower_rod_turret, lower_rod_plate,\n"
+      "    upper_rod_plate, upper_rod_bracket.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -9455,7 +9467,7 @@ const cf_function cf_functions[] = {
       1, linear_delta_fk_in, 2, linear_delta_fk_out,
       linear_delta_fk_one, linear_delta_fk_many },
     { "linear_delta.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9469,7 +9481,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 22, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, B1, C1, B1a,\n"
+      "    B1b, C1a, C1b, A2, B2, C2, B2a, B2b, C2a, C2b, A3, B3, C3, B3a, B3b, C3a, C3b, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -9815,7 +9828,7 @@ const cf_function cf_functions[] = {
       1, opw_arm_pose_in, 1, opw_arm_pose_out,
       opw_arm_pose_one, opw_arm_pose_many },
     { "opw_arm.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9829,7 +9842,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 8, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, corner1,\n"
+      "    joint2, joint3, corner3, joint4, joint5, tool.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -10101,7 +10115,7 @@ const cf_function cf_functions[] = {
       1, orthoglide_fk_in, 2, orthoglide_fk_out,
       orthoglide_fk_one, orthoglide_fk_many },
     { "orthoglide.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10115,7 +10129,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 19, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, B1, B1a, B1b,\n"
+      "    C1a, C1b, A2, B2, B2a, B2b, C2a, C2b, A3, B3, B3a, B3b, C3a, C3b, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -10521,7 +10536,7 @@ const cf_function cf_functions[] = {
       1, planar_2r_orientation_in, 1, planar_2r_orientation_out,
       planar_2r_orientation_one, planar_2r_orientation_many },
     { "planar_2r.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10535,7 +10550,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 3, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, elbow, hand.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -10791,7 +10806,7 @@ const cf_function cf_functions[] = {
       1, puma560_pose_in, 1, puma560_pose_out,
       puma560_pose_one, puma560_pose_many },
     { "puma560.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10805,7 +10820,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 5, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, joint3,\n"
+      "    corner3, joint4, joint5.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -11107,7 +11123,7 @@ const cf_function cf_functions[] = {
       1, rpr_planar_passive_angles_in, 1, rpr_planar_passive_angles_out,
       rpr_planar_passive_angles_one, rpr_planar_passive_angles_many },
     { "rpr_planar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11121,7 +11137,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 3, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, A2, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -11399,7 +11415,7 @@ const cf_function cf_functions[] = {
       1, scara_pose_in, 1, scara_pose_out,
       scara_pose_one, scara_pose_many },
     { "scara.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11413,7 +11429,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 5, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, corner1,\n"
+      "    joint2, joint3, slide3.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -11672,7 +11689,7 @@ const cf_function cf_functions[] = {
       1, slider_crank_fk_in, 2, slider_crank_fk_out,
       slider_crank_fk_one, slider_crank_fk_many },
     { "slider_crank.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11686,7 +11703,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 4, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, A2, B1, B2.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -11977,7 +11994,7 @@ const cf_function cf_functions[] = {
       1, spherical_five_bar_fk_in, 2, spherical_five_bar_fk_out,
       spherical_five_bar_fk_one, spherical_five_bar_fk_many },
     { "spherical_five_bar.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11991,7 +12008,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 6, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: A0, A1, B1, A2,\n"
+      "    B2, P.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -12300,7 +12318,7 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_pose_in, 1, spherical_wrist_pose_out,
       spherical_wrist_pose_one, spherical_wrist_pose_many },
     { "spherical_wrist.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12314,7 +12332,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 2, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: centre, hand.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -12508,7 +12526,7 @@ const cf_function cf_functions[] = {
       1, srs_arm_pose_in, 1, srs_arm_pose_out,
       srs_arm_pose_one, srs_arm_pose_many },
     { "srs_arm.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12522,7 +12540,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 5, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, joint2,\n"
+      "    joint4, joint6, tool.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -12839,7 +12858,7 @@ const cf_function cf_functions[] = {
       1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
       stanford_arm_pose_one, stanford_arm_pose_many },
     { "stanford_arm.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12853,7 +12872,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 3, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, joint3,\n"
+      "    slide3.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -13311,7 +13331,7 @@ const cf_function cf_functions[] = {
       2, three_prs_singularities_in, 1, three_prs_singularities_out,
       three_prs_singularities_one, three_prs_singularities_many },
     { "three_prs.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -13327,7 +13347,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 10, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: P, A1, B1, C1, A2,\n"
+      "    B2, C2, A3, B3, C3.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -13442,7 +13463,7 @@ const cf_function cf_functions[] = {
       1, ur_arm_pose_in, 1, ur_arm_pose_out,
       ur_arm_pose_one, ur_arm_pose_many },
     { "ur_arm.skeleton",
-      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "Points of the mechanism in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -13456,7 +13477,8 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 7, 3)\n"
-      "    Coordinates x, y, z of each point.\n"
+      "    Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, joint2,\n"
+      "    joint3, joint4, joint5, joint6, tool.\n"
       "\n"
       "Raises\n"
       "------\n"

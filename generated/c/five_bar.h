@@ -101,7 +101,7 @@ void five_bar_passive_angles_batch(size_t n, const five_bar_params *params,
     real_t *theta, size_t theta_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -111,7 +111,7 @@ void five_bar_passive_angles_batch(size_t n, const five_bar_params *params,
  * Outputs
  * -------
  * points : real_t[30], shape (2, 5, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, B1, A2, B2, P.
  *
  * Notes
  * -----

@@ -73,7 +73,7 @@ void four_bar_fk_batch(size_t n, const four_bar_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -83,7 +83,7 @@ void four_bar_fk_batch(size_t n, const four_bar_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (2, 4, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, A2, B1, B2.
  *
  * Notes
  * -----

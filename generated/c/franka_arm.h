@@ -65,7 +65,7 @@ void franka_arm_pose_batch(size_t n, const franka_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -75,7 +75,8 @@ void franka_arm_pose_batch(size_t n, const franka_arm_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (8, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, joint2, corner3, joint4, joint5, joint6, joint7,
+ *     tool.
  */
 void franka_arm_skeleton(const franka_arm_params *params, const real_t q[7],
     real_t points[24]);

@@ -124,7 +124,7 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
     real_t *tips, size_t tips_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -134,7 +134,10 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
  * Outputs
  * -------
  * points : real_t[60], shape (20, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, column, shoulder_right, elbow_right,
+ *     corner_right, tip_right, shoulder_left, elbow_left, corner_left, tip_left, elbow_virtual,
+ *     corner_virtual, tip_virtual, foot_right, foot_left, gear_right, gear_left, gear_centre,
+ *     pitch, hand.
  *
  * Notes
  * -----

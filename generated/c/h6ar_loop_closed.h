@@ -110,7 +110,7 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -120,7 +120,9 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
  * Outputs
  * -------
  * points : real_t[54], shape (18, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, column, shoulder_right, elbow_right,
+ *     corner_right, tip_right, shoulder_left, elbow_left, corner_left, tip_left, elbow_virtual,
+ *     corner_virtual, tip_virtual, gear_right, gear_left, gear_centre, pitch, hand.
  *
  * Notes
  * -----

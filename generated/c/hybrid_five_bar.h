@@ -104,7 +104,7 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     real_t *theta, size_t theta_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -114,7 +114,7 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
  * Outputs
  * -------
  * points : real_t[30], shape (2, 5, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A, B, C, D, P.
  *
  * Notes
  * -----

@@ -63,7 +63,7 @@ void irb2400_pose_batch(size_t n, const irb2400_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -73,7 +73,7 @@ void irb2400_pose_batch(size_t n, const irb2400_params *params,
  * Outputs
  * -------
  * points : real_t[21], shape (7, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, corner1, joint2, joint3, joint4, joint5, tool.
  */
 void irb2400_skeleton(const irb2400_params *params, const real_t q[6],
     real_t points[21]);

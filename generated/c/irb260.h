@@ -164,7 +164,7 @@ void irb260_pose_batch(size_t n, const irb260_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -174,7 +174,8 @@ void irb260_pose_batch(size_t n, const irb260_params *params,
  * Outputs
  * -------
  * points : real_t[33], shape (11, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, column, shoulder, elbow, wrist, flange, hand,
+ *     lower_rod_turret, lower_rod_plate, upper_rod_plate, upper_rod_bracket.
  *
  * Notes
  * -----

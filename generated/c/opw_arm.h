@@ -66,7 +66,7 @@ void opw_arm_pose_batch(size_t n, const opw_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -76,7 +76,8 @@ void opw_arm_pose_batch(size_t n, const opw_arm_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (8, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, corner1, joint2, joint3, corner3, joint4,
+ *     joint5, tool.
  */
 void opw_arm_skeleton(const opw_arm_params *params, const real_t q[6],
     real_t points[24]);

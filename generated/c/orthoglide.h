@@ -89,7 +89,7 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -99,7 +99,8 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
  * Outputs
  * -------
  * points : real_t[114], shape (2, 19, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, B1, B1a, B1b, C1a, C1b, A2, B2, B2a, B2b, C2a,
+ *     C2b, A3, B3, B3a, B3b, C3a, C3b, P.
  *
  * Notes
  * -----

@@ -104,7 +104,7 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
     real_t *phi, size_t phi_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -114,7 +114,7 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
  * Outputs
  * -------
  * points : real_t[9], shape (3, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, elbow, hand.
  */
 void planar_2r_skeleton(const planar_2r_params *params, const real_t q[2],
     real_t points[9]);

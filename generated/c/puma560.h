@@ -60,7 +60,7 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -70,7 +70,7 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
  * Outputs
  * -------
  * points : real_t[15], shape (5, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, joint3, corner3, joint4, joint5.
  */
 void puma560_skeleton(const puma560_params *params, const real_t q[6],
     real_t points[15]);

@@ -95,7 +95,7 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
     real_t *theta, size_t theta_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -105,7 +105,7 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
  * Outputs
  * -------
  * points : real_t[18], shape (2, 3, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, A2, P.
  *
  * Notes
  * -----

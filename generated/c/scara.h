@@ -58,7 +58,7 @@ void scara_pose_batch(size_t n, const scara_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -68,7 +68,7 @@ void scara_pose_batch(size_t n, const scara_params *params,
  * Outputs
  * -------
  * points : real_t[15], shape (5, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, corner1, joint2, joint3, slide3.
  */
 void scara_skeleton(const scara_params *params, const real_t q[4],
     real_t points[15]);

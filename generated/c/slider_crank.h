@@ -70,7 +70,7 @@ void slider_crank_fk_batch(size_t n, const slider_crank_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -80,7 +80,7 @@ void slider_crank_fk_batch(size_t n, const slider_crank_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (2, 4, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A1, A2, B1, B2.
  *
  * Notes
  * -----

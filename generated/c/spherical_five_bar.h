@@ -75,7 +75,7 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
     uint8_t *status, size_t status_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -85,7 +85,7 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
  * Outputs
  * -------
  * points : real_t[36], shape (2, 6, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: A0, A1, B1, A2, B2, P.
  *
  * Notes
  * -----

@@ -79,7 +79,7 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -89,7 +89,7 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
  * Outputs
  * -------
  * points : real_t[6], shape (2, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: centre, hand.
  */
 void spherical_wrist_skeleton(const spherical_wrist_params *params,
     const real_t q[3], real_t points[6]);

@@ -62,7 +62,7 @@ void srs_arm_pose_batch(size_t n, const srs_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -72,7 +72,7 @@ void srs_arm_pose_batch(size_t n, const srs_arm_params *params,
  * Outputs
  * -------
  * points : real_t[15], shape (5, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, joint2, joint4, joint6, tool.
  */
 void srs_arm_skeleton(const srs_arm_params *params, const real_t q[7],
     real_t points[15]);

@@ -59,7 +59,7 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -69,7 +69,7 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
  * Outputs
  * -------
  * points : real_t[9], shape (3, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, joint3, slide3.
  */
 void stanford_arm_skeleton(const stanford_arm_params *params,
     const real_t q[6], real_t points[9]);

@@ -221,7 +221,7 @@ void three_prs_singularities_batch(size_t n, const three_prs_params *params,
     real_t *factors, size_t factors_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -233,7 +233,7 @@ void three_prs_singularities_batch(size_t n, const three_prs_params *params,
  * Outputs
  * -------
  * points : real_t[30], shape (10, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: P, A1, B1, C1, A2, B2, C2, A3, B3, C3.
  *
  * Notes
  * -----

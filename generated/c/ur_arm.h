@@ -63,7 +63,7 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * Inputs
  * ------
@@ -73,7 +73,7 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
  * Outputs
  * -------
  * points : real_t[21], shape (7, 3)
- *     Coordinates x, y, z of each point.
+ *     Coordinates x, y, z of each point: base, joint2, joint3, joint4, joint5, joint6, tool.
  */
 void ur_arm_skeleton(const ur_arm_params *params, const real_t q[6],
     real_t points[21]);

@@ -1237,7 +1237,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
  *   minus_minus.
@@ -1245,7 +1245,7 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 4 branches of 33 numbers (11 x 3 in row order). Coordinates x, y, z of
- *     each point.
+ *     each point, in the order of `SKELETON.points`: U1, U2, U3, W1, W2, W3, V1, V2, V3, O, P.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

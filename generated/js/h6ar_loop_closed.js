@@ -857,7 +857,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
  *   cannot reach the middle of the tips.
@@ -867,7 +867,10 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 54 numbers (18 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 54 numbers (18 x 3 in row order). Coordinates x, y, z of each point, in
+ *     the order of `SKELETON.points`: base, column, shoulder_right, elbow_right, corner_right,
+ *     tip_right, shoulder_left, elbow_left, corner_left, tip_left, elbow_virtual,
+ *     corner_virtual, tip_virtual, gear_right, gear_left, gear_centre, pitch, hand.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

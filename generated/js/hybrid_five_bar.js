@@ -407,7 +407,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
@@ -415,7 +415,7 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 15 numbers (5 x 3 in row order). Coordinates x, y, z of
- *     each point.
+ *     each point, in the order of `SKELETON.points`: A, B, C, D, P.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

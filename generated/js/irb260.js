@@ -519,13 +519,15 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The rods are drawn at a quarter of l3; the paper gives no distance.
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 33 numbers (11 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 33 numbers (11 x 3 in row order). Coordinates x, y, z of each point, in
+ *     the order of `SKELETON.points`: base, column, shoulder, elbow, wrist, flange, hand,
+ *     lower_rod_turret, lower_rod_plate, upper_rod_plate, upper_rod_bracket.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

@@ -562,7 +562,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
@@ -571,7 +571,8 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 66 numbers (22 x 3 in row order). Coordinates x, y, z of
- *     each point.
+ *     each point, in the order of `SKELETON.points`: A1, B1, C1, B1a, B1b, C1a, C1b, A2, B2,
+ *     C2, B2a, B2b, C2a, C2b, A3, B3, C3, B3a, B3b, C3a, C3b, P.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

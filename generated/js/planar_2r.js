@@ -299,11 +299,12 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 9 numbers (3 x 3 in row order). Coordinates x, y, z of each point, in the
+ *     order of `SKELETON.points`: base, elbow, hand.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

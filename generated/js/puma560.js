@@ -250,11 +250,12 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 15 numbers (5 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 15 numbers (5 x 3 in row order). Coordinates x, y, z of each point, in
+ *     the order of `SKELETON.points`: base, joint3, corner3, joint4, joint5.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

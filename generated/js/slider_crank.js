@@ -224,7 +224,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
@@ -232,7 +232,7 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 1 number. theta in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 12 numbers (4 x 3 in row order). Coordinates x, y, z of
- *     each point.
+ *     each point, in the order of `SKELETON.points`: A1, A2, B1, B2.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

@@ -470,7 +470,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
@@ -478,7 +478,7 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 18 numbers (6 x 3 in row order). Coordinates x, y, z of
- *     each point.
+ *     each point, in the order of `SKELETON.points`: A0, A1, B1, A2, B2, P.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

@@ -254,11 +254,12 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers (2 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 6 numbers (2 x 3 in row order). Coordinates x, y, z of each point, in the
+ *     order of `SKELETON.points`: centre, hand.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

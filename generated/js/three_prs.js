@@ -1178,7 +1178,7 @@ const _SKELETON = _runtime.kernel({
 });
 
 /**
- * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ * Points of the mechanism in the base frame.
  *
  * - The target and the joints have to belong together, as ik gives them.
  *
@@ -1186,7 +1186,8 @@ const _SKELETON = _runtime.kernel({
  *     rad.
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 30 numbers (10 x 3 in row order). Coordinates x, y, z of each point.
+ * @returns {number[]} 30 numbers (10 x 3 in row order). Coordinates x, y, z of each point, in
+ *     the order of `SKELETON.points`: P, A1, B1, C1, A2, B2, C2, A3, B3, C3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
  */

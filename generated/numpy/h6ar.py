@@ -804,7 +804,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -818,7 +818,10 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 20, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: base, column,
+        shoulder_right, elbow_right, corner_right, tip_right, shoulder_left, elbow_left,
+        corner_left, tip_left, elbow_virtual, corner_virtual, tip_virtual, foot_right,
+        foot_left, gear_right, gear_left, gear_centre, pitch, hand.
 
     Raises
     ------

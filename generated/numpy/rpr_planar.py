@@ -346,7 +346,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -360,7 +360,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 3, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: A1, A2, P.
 
     Raises
     ------

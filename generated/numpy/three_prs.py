@@ -1285,7 +1285,7 @@ _SKELETON = _runtime.Kernel(
 
 
 def skeleton(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+    """Points of the mechanism in the base frame.
 
     Parameters
     ----------
@@ -1301,7 +1301,8 @@ def skeleton(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAULT, *,
     Returns
     -------
     points : ndarray of float64, shape (..., 10, 3)
-        Coordinates x, y, z of each point.
+        Coordinates x, y, z of each point, in the order of `SKELETON.points`: P, A1, B1, C1, A2,
+        B2, C2, A3, B3, C3.
 
     Raises
     ------

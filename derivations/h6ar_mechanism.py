@@ -304,7 +304,7 @@ def condition(m: Dimensions) -> sp.Expr:
     return sum(m) / m.d
 
 
-def play(
+def allowances(
     program: Program, m: Dimensions, apart: sp.Expr, gap: Iterable[sp.Expr] = ()
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Scales of what a target may be missed by: at the tip, and at the tips of the real arms.

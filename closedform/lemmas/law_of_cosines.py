@@ -128,9 +128,15 @@ def _tangency(
     at = Amplitude(
         x=x, a=sp.S.Zero, b=h, c=h - below, sigma=triangle.sigma, h=h, below=below, above=above
     )
-    play = (r + size * ROUNDING) * ROUNDING
+    allowance = (r + size * ROUNDING) * ROUNDING
     return Tangency(
-        chain=chain, at=at, root=lever, width=span, play=play, suffix=f"_{name}", free=sp.false
+        chain=chain,
+        at=at,
+        root=lever,
+        width=span,
+        allowance=allowance,
+        suffix=f"_{name}",
+        free=sp.false,
     )
 
 

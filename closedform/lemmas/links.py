@@ -133,9 +133,11 @@ def turn(
         flag = p.vanishes(f"free{tag}", at.h, chain.size, f"the axis of {x.name} is met", free=(x,))
     root = p.let(f"root{tag}", at.root, nonnegative=True)
     width = p.let(f"width{tag}", at.below + at.above, nonnegative=True)
-    play = 2 * missed_by * ROUNDING
+    allowance = 2 * missed_by * ROUNDING
     found = toward.reached(
-        Tangency(chain=chain, at=at, root=root, width=width, play=play, suffix=tag, free=flag)
+        Tangency(
+            chain=chain, at=at, root=root, width=width, allowance=allowance, suffix=tag, free=flag
+        )
     )
     pair, means = named(chain, x, found.pair)
     across = a * pair.c - b * pair.s if found.root is None else -sigma * found.root

@@ -24,22 +24,22 @@ MOVED = SHARE / 4
 of the hand and three sums of lengths; so the size of the inverse, which counts the coordinates
 instead, may be a quarter of that of the forward map."""
 
-SEEN = sp.Rational(5, 4)
-"""What functions of the hand tolerate, in units of what the forward map does."""
+LOOSER = sp.Rational(5, 4)
+"""What functions of the hand tolerate, as a multiple of what the forward map does."""
 
 
-def seen(body: Sequence[Statement]) -> list[Statement]:
-    """The forward map as functions of the hand compute it.
+def loosened(body: Sequence[Statement]) -> list[Statement]:
+    """The forward map with the larger tolerances that functions of the hand have.
 
-    Where a flag has the scale of a bound, it keeps this.
+    A flag that has the scale of a bound changes with it.
     """
     scales = {s.scale for s in body if isinstance(s, Bound)}
     return [
-        replace(s, scale=s.scale * SEEN)
+        replace(s, scale=s.scale * LOOSER)
         if isinstance(s, Bound | Vanishes) and s.scale in scales
         else s
         for s in body
     ]
 
 
-__all__ = ["MOVED", "SHARE", "seen"]
+__all__ = ["MOVED", "SHARE", "loosened"]

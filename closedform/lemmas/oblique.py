@@ -179,7 +179,7 @@ class LinksPastTurn(Links):
         """
         across = turn.let("aside", sp.sqrt(self.axis[0] ** 2 + self.axis[1] ** 2))
         turn = turn.renamed(self._as_far(turn, across), f"{turn.name}_2")
-        turn = replace(turn, play=turn.let("play", turn.play * across))
+        turn = replace(turn, allowance=turn.let("play", turn.allowance * across))
         for k in range(3, STEPS + 3):
             turn = turn.renamed(self._closer(turn), f"{turn.name}_{k}")
         return turn.pair

@@ -66,14 +66,14 @@ class Turn:
     """A turn that may be changed: its pair in names that end in ``name``.
 
     It moves the target by the ``lever`` times its angle and ``beside`` times half the square, which
-    may add up to ``play``.
+    may add up to ``allowance``.
     """
 
     chain: Chain
     pair: Pair
     lever: sp.Expr
     beside: sp.Expr
-    play: sp.Expr
+    allowance: sp.Expr
     name: str
 
     def let(self, name: str, value: sp.Expr) -> sp.Symbol:
@@ -86,7 +86,7 @@ class Turn:
             pair=Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
             lever=self.lever,
             beside=self.beside,
-            play=self.play,
+            allowance=self.allowance,
             name=name,
         )
 
@@ -111,7 +111,7 @@ class Turn:
         small = sine**2 / (1 + sp.Abs(cosine))
         versine = self.let("versine", sp.Piecewise((small, cosine > 0), (1 - cosine, True)))
         cost = self.let("cost", sp.Abs(self.lever * sine) + sp.Abs(self.beside) * versine)
-        allowed = cost <= self.let("whole", self.play)
+        allowed = cost <= self.let("whole", self.allowance)
         s, c = (
             self.let(n, sp.Piecewise((value, allowed), (sp.Integer(k), True)))
             for n, value, k in (("sine", sine, 0), ("cosine", cosine, 1))
@@ -122,9 +122,9 @@ class Turn:
         """The smallest turn that brings a point within reach, up to rounding of the target."""
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
-        play = self.chain.size * ROUNDING
-        low = self.let("low", sp.Max(0, goal.low - play) ** 2)
-        high = self.let("high", (goal.high + play) ** 2)
+        allowance = self.chain.size * ROUNDING
+        low = self.let("low", sp.Max(0, goal.low - allowance) ** 2)
+        high = self.let("high", (goal.high + allowance) ** 2)
         miss = self.let("miss", square - sp.Max(low, sp.Min(high, square)))
         slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", goal.bend)
         inner = self.let("inner", slope**2 - bend * miss)
@@ -150,7 +150,7 @@ class Tangency:
     at: Amplitude
     root: sp.Symbol
     width: sp.Symbol
-    play: sp.Expr
+    allowance: sp.Expr
     """What rounding may change the right side of the equation by."""
     suffix: str
     free: Any
@@ -161,7 +161,7 @@ class Tangency:
         both = self.at.pair(root, width)
         return Pair(choose(self.free, 0, both.s), choose(self.free, 1, both.c))
 
-    def kept(self, square: sp.Expr, tangent: sp.Symbol) -> Reached:
+    def with_square(self, square: sp.Expr, tangent: sp.Symbol) -> Reached:
         """The pair for another ``square`` of the root, where the turn is tangent."""
         p, at, suffix = self.chain.program, self.at, self.suffix
         whole = sp.sqrt(4 * square + (at.above - at.below) ** 2)
@@ -249,7 +249,7 @@ class LinksAtHeight:
         """The pair of the turn, from the root within reach that is nearest to the computed one."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
         tangent = nearly_tangent(p, turn.root, at.h, suffix)
-        return turn.kept(self.square_in_reach(p, at, turn.chain.size, suffix), tangent)
+        return turn.with_square(self.square_in_reach(p, at, turn.chain.size, suffix), tangent)
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,7 @@ class LinkAtHeight:
         height = sp.Abs(self.height)
         own = sp.Max(0, (self.length - height) * (self.length + height))
         square = sp.Piecewise((own, self.length < at.h), (at.below * at.above, True))
-        return turn.kept(p.let(f"held{suffix}", square, nonnegative=True), tangent)
+        return turn.with_square(p.let(f"held{suffix}", square, nonnegative=True), tangent)
 
 
 @dataclass(frozen=True)
@@ -290,7 +290,12 @@ class Links:
         tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
         near = self.nearest(
             Turn(
-                chain=chain, pair=found, lever=turn.root, beside=at.c, play=turn.play, name=suffix
+                chain=chain,
+                pair=found,
+                lever=turn.root,
+                beside=at.c,
+                allowance=turn.allowance,
+                name=suffix,
             ).renamed(found, f"{suffix}_1")
         )
         s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)

@@ -85,8 +85,8 @@ def two_sines(
         "spent_along", used_up(left), scale, "no margin left: a sine is at most 1"
     )
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
-    play = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
-    program.bound("kept_along", left, play, "a sine is at most 1")
+    allowance = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
+    program.bound("kept_along", left, allowance, "a sine is at most 1")
     lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
     eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
     part = program.let("eased", choose(spent, part + whole * eased, part))

@@ -89,7 +89,13 @@ def tilt(
     root = p.let(f"root{tag}", at.root, nonnegative=True)
     found = toward.reached(
         Tangency(
-            chain=chain, at=at, root=root, width=width, play=2 * ROUNDING, suffix=tag, free=flag
+            chain=chain,
+            at=at,
+            root=root,
+            width=width,
+            allowance=2 * ROUNDING,
+            suffix=tag,
+            free=flag,
         )
     )
     pair, means = named(chain, x, found.pair)

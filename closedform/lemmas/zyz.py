@@ -194,14 +194,14 @@ class Reaching:
         farthest = p.let("farthest", sp.Min(most, r + self.offset))
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
-    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
+    def moved(self, u: Pair, gain: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
         """Flags: u may be in doubt, the nearest direction in reach is u within rounding, it is u.
 
-        That direction is returned too.  ``play`` is what multiplies an error of u in the target.
+        That direction is returned too.  ``gain`` is what multiplies an error of u in the target.
         """
         p, size = self.chain.program, self.chain.size
         (x, y), (least, most) = self.target, self._reach
-        close = p.vanishes("close", play * self.lever - size / 2**11, size, "it may be in doubt")
+        close = p.vanishes("close", gain * self.lever - size / 2**11, size, "it may be in doubt")
         ex, ey = x - self.offset * u.c, y - self.offset * u.s
         there = p.let("here", sp.sqrt(ex**2 + ey**2))
         reach = p.let("in_reach", sp.Min(sp.Max(there, least), most))
@@ -211,7 +211,7 @@ class Reaching:
         v = self._at(reach, p.let("side", side), "near")
         inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
-        doubt = play * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
+        doubt = gain * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
         near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
         return close, near, inside, v
 

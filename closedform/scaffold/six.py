@@ -23,7 +23,7 @@ from closedform.scaffold.wrists import Carried, is_normal
 
 
 @dataclass(frozen=True)
-class Ahead:
+class TurnGoal:
     """What a turn has to leave within reach of two ``links``: a wrist, and what it turns.
 
     That is, as it is written with ``{}`` for the pair of the turn, the ``point`` that the wrist
@@ -82,19 +82,19 @@ class SixMaker(SubproblemMaker):
         lift = replace(four, turn=two.turn + three.turn + four.turn)
         left = times(one.end.T, f"(turned({{}}).T * {times(arm.lead[:3, :3].T, R)})")
         place = times(one.end.T, f"(turned({{}}).T * p - {source(one.shift)})")
-        ahead = Ahead(
+        goal = TurnGoal(
             [lift, five, six],
             (two.shift, three.shift),
             place,
             self.last_axis(arm, left),
             constant=w,
         )
-        links = self._goal(ahead)
+        links = self._links(goal)
         beside = two.shift[2] + three.shift[2] + w[2]
         q, pair = self._seen_in_plane(one, beside, links)
         self.add(f"left1 = ik.matrix('left1', {left.format(pair)})")
         M = self.without_tool(arm.tool[:3, :3], "left1")
-        self._reach(ahead, q, pair)
+        self._reach(goal, q, pair)
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         u, v = two.shift, three.shift
@@ -131,7 +131,7 @@ class SixMaker(SubproblemMaker):
             a, b = turning(s, g)
             before = times(three.end, "turned({})")
             offset = f"{source(three.shift)} + {{}} * {source(s)}"
-            ahead = Ahead(
+            goal = TurnGoal(
                 wrist=[lift, five, six],
                 links=(one.shift, two.shift),
                 point="p",
@@ -140,10 +140,10 @@ class SixMaker(SubproblemMaker):
                 onward=followed(before, four.end),
             )
             sides = a, b, p[2] - height - g[2] * s[2]
-            fourth = self._turn(four, sides, self._goal(ahead))
+            fourth = self._turn(four, sides, self._links(goal))
             self.add(f"R_before = {before.format(fourth)}")
             self.vector("to_end", offset.format("R_before"))
-            self._reach(ahead, "p", fourth)
+            self._reach(goal, "p", fourth)
             self.wrist_about(lift, five, six, M, followed("R_before", four.end))
         else:
             self.add(f"M = ik.matrix('M', {M})")
@@ -151,18 +151,18 @@ class SixMaker(SubproblemMaker):
             u = sp.Matrix([sp.Symbol(f"M[2, {i}]") for i in range(3)])
             a, b = turning(u, t)
             place = f"p - M * turned({{}}).T * {source(t)}"
-            ahead = Ahead(
+            goal = TurnGoal(
                 [lift, four, five],
                 (one.shift, two.shift),
                 place,
                 f"M * turned({{}}).T * {source(five.end.T * Z)}",
                 constant=three.shift,
             )
-            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]), self._goal(ahead))
+            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]), self._links(goal))
             self.vector("p", place.format(sixth), "p3")
             left = followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
-            self._reach(ahead, "p", sixth)
+            self._reach(goal, "p", sixth)
             self.orientation([lift, four, five], "left1")
             self.vector("to_end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * to_end")
@@ -240,37 +240,37 @@ class SixMaker(SubproblemMaker):
         middle = times(one.end.T, f"(turned({first}).T * M)")
         return followed(f"{middle} * {both}", four.end.T)
 
-    def _goal(self, ahead: Ahead) -> str:
+    def _links(self, goal: TurnGoal) -> str:
         """The name of the goal of a turn before a wrist."""
-        parts = [ahead.point, ahead.axis, ahead.onward, ahead.offset]
-        if ahead.constant is not None:
-            parts[2:] = source(ahead.wrist[0].end), source(ahead.constant)
+        parts = [goal.point, goal.axis, goal.onward, goal.offset]
+        if goal.constant is not None:
+            parts[2:] = source(goal.wrist[0].end), source(goal.constant)
         point, axis, onward, offset = (f"lambda pair: {e.format('pair')}" for e in parts)
-        lengths = ", ".join(ahead.lengths)
-        if ahead.is_normal:
-            length, turned = ahead.numbers
+        lengths = ", ".join(goal.lengths)
+        if goal.is_normal:
+            length, turned = goal.numbers
             arguments = f"{point}, {lengths}, {axis}, {length}, {turned}"
             self.add(f"links = LinksAndWrist({arguments})")
             return "links"
-        first, middle, _ = ahead.wrist
-        x, sense = self.middle(first, middle, ahead.onward)
+        first, middle, _ = goal.wrist
+        x, sense = self.middle(first, middle, goal.onward)
         arguments = f"{point}, {lengths}, {axis}, {onward}, {source(middle.end * Z)}, {offset}, {x}"
         more = ", sense=-1" if sense < 0 else ""
         self.add(f"links = LinksAndObliqueWrist({arguments}{more})")
         return "links"
 
-    def _reach(self, ahead: Ahead, q: str, pair: str) -> None:
+    def _reach(self, goal: TurnGoal, q: str, pair: str) -> None:
         """Keep a wrist within reach of links where it is free or tangent.
 
         ``q`` and ``pair`` are the names of the point and of the pair before.
         """
-        if not ahead.is_normal:
-            entries = point("to_end") if ahead.constant is None else ahead.constant
-            offset = "to_end" if ahead.constant is None else source(entries)
-            self.carried = Carried(q, offset, ahead.lengths, entries)
+        if not goal.is_normal:
+            entries = point("to_end") if goal.constant is None else goal.constant
+            offset = "to_end" if goal.constant is None else source(entries)
+            self.carried = Carried(q, offset, goal.lengths, entries)
             return
-        length, turned = ahead.numbers
-        lengths = ", ".join(ahead.lengths)
+        length, turned = goal.numbers
+        lengths = ", ".join(goal.lengths)
         arguments = f"offset={length}, ahead={turned}, lever={pair}.lever"
         self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {arguments})")
         self.more = ", reaching=reaching"

@@ -83,7 +83,7 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
         raise TableError(f"{file}: there are no joints")
     chain = _chain(joints, choice.base, choice.tool, file)
     table = Table(notes=[*notes])
-    away = Away.of(chain)
+    moved = Displacement.of(chain)
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.doubt = _doubt(chain)
     place = sp.eye(4)
@@ -92,7 +92,7 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
         where = f"{file}, joint {shown_name(joint.name)}"
         there = _product(place, joint.origin)
         place = _meant_turns(there, where, table.notes)
-        away.turn(joint, between(place, there))
+        moved.turn(joint, between(place, there))
         if joint.kind == "fixed":
             continue
         if joint.mimics:
@@ -118,12 +118,12 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
         f"{shown_name(chain[-1].child)}"
     )
-    table.notes += away.notes(file)
+    table.notes += moved.notes(file)
     use_exact(table, file)
     return table
 
 
-class Away:
+class Displacement:
     """How far what was taken for other numbers moves the tool, in any posture."""
 
     def __init__(self) -> None:
@@ -132,20 +132,20 @@ class Away:
         self.slides = False
 
     @classmethod
-    def of(cls, chain: Sequence[Joint]) -> Away:
-        away, after = cls(), 0.0
+    def of(cls, chain: Sequence[Joint]) -> Displacement:
+        found, after = cls(), 0.0
         for joint in reversed(chain):
             if MOVING.get(joint.kind) == "prismatic":
-                away.slides = True
-            away.after[joint.name] = after
+                found.slides = True
+            found.after[joint.name] = after
             if joint.written is not None:
                 place, axis = joint.written
-                away.turn(joint, between(joint.origin, place))
-                away.moved += _size(joint.origin[:3, 3] - place[:3, 3])
+                found.turn(joint, between(joint.origin, place))
+                found.moved += _size(joint.origin[:3, 3] - place[:3, 3])
                 if joint.kind in MOVING:
-                    away.turn(joint, 2 * _between(joint.axis, axis))
+                    found.turn(joint, 2 * _between(joint.axis, axis))
             after += _size(joint.origin[:3, 3])
-        return away
+        return found
 
     def turn(self, joint: Joint, angle: float) -> None:
         """Add a turn of what comes after a joint."""
@@ -238,9 +238,9 @@ class _Mimic:
     def _sense(self, direction: Sequence[sp.Expr], point: Sequence[sp.Expr]) -> int:
         """1 or -1 if an axis is that of this joint, in its direction or against it; else 0."""
         own = (self.place[:3, :3] * self.joint.axis).applyfunc(sp.expand)
-        other, away = sp.Matrix(direction), sp.Matrix(point) - self.place[:3, 3]
+        other, between_axes = sp.Matrix(direction), sp.Matrix(point) - self.place[:3, 3]
         same = own.cross(other).applyfunc(sp.simplify).is_zero_matrix
-        if not same or not own.cross(away).applyfunc(sp.simplify).is_zero_matrix:
+        if not same or not own.cross(between_axes).applyfunc(sp.simplify).is_zero_matrix:
             return 0
         return 1 if sp.simplify(own.dot(other)) > 0 else -1
 
@@ -249,13 +249,13 @@ def _without_short(
     chain: Sequence[Joint], ignore: float, file: str, notes: list[str]
 ) -> list[Joint]:
     """The chain with lengths of at most ``ignore`` as 0; the notes say how far that is from it."""
-    kept, away = [], 0.0
+    kept, moved = [], 0.0
     for joint in chain:
         place = joint.origin.copy()
         short = [i for i in range(3) if 0 < abs(float(place[i, 3])) <= ignore]
         if short:
             lengths = [float(place[i, 3]) for i in short]
-            away += math.hypot(*lengths)
+            moved += math.hypot(*lengths)
             notes.append(
                 f"{file}, joint {shown_name(joint.name)}: {', '.join(f'{e:.6g}' for e in lengths)} "
                 f"is taken for 0, because of --ignore"
@@ -263,10 +263,10 @@ def _without_short(
             for i in short:
                 place[i, 3] = sp.S.Zero
         kept.append(replace(joint, origin=place))
-    if away:
+    if moved:
         notes.append(
-            f"{file}: without these lengths the tool is at most {_rounded_up(away)} from where the "
-            f"file has it, and turned as there"
+            f"{file}: without these lengths the tool is at most {_rounded_up(moved)} from where "
+            f"the file has it; its orientation is the same"
         )
     return kept
 

@@ -46,7 +46,7 @@ class CPrinter(Printer):
         self._divided = Counter(n.args[1].id for n in lowered.schedule() if n.op == "div")
         self._tested: dict[int, str] = {}
         self._deciding = set(deciding_products(lowered))
-        self._awaited = awaited(lowered.schedule())
+        self._before_slow = needed_by_slow(lowered.schedule())
 
     def _before_arctangents(self) -> set[int]:
         """The nodes that need no ``atan2``."""
@@ -165,7 +165,7 @@ class CPrinter(Printer):
         """
         condition, value, _ = select.args
         computed = strip_sign(value).op not in LEAVES
-        return hardly_ever(condition) and (computed or select.id in self._awaited)
+        return hardly_ever(condition) and (computed or select.id in self._before_slow)
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         """Comparisons of calls get a name, an int, because clang warns about ``&`` between them."""
@@ -175,8 +175,8 @@ class CPrinter(Printer):
         return compares_calls or super().deserves_name(node, text, uses)
 
 
-def awaited(schedule: Sequence[Node]) -> set[int]:
-    """The values that a quotient or a square root needs.
+def needed_by_slow(schedule: Sequence[Node]) -> set[int]:
+    """The values that a quotient or a square root waits for.
 
     There are none in an inverse: it computes its branches side by side, and jumps would part them.
     """

@@ -303,8 +303,9 @@ s1 = f.let("s1", choose(no_first, 0, elbow_y / l1))
 full = linear_pair(theta2, n[1] * c1 - n[0] * s1, n[0] * c1 + n[1] * s1)
 d.step(
     "Inverse from the full pose",
-    "The elbow is at p - l2 n, which gives theta1.  Then the first column of A_1^{-1} T = A_2 "
-    "gives theta2.  The other entries of eq. (9) are conditions on the pose.",
+    "The first column n of T is the direction of the last link, so the elbow is at p - l2 n, which "
+    "gives theta1.  Then the first column of A_1^{-1} T = A_2 gives theta2.  The other entries of "
+    "eq. (9) are conditions on the pose.",
     {
         r"\theta_1": atan2(origin[1] - l2 * n[1], origin[0] - l2 * n[0]),
         r"\theta_2": full[theta2],

@@ -159,15 +159,28 @@ d.branches = flip.labels
 p = Program()
 require_rotation(p, given)
 angles = zyz_angles(p, given, q, sigma).lemma
+undone, remaining = (rotation("z", theta4).T * M for M in (R, given))
 d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
 d.step(
     "Inverse orientation",
-    "The third column of R gives theta4 and theta5, up to the sign of sin(theta5).  theta6 follows "
-    "from the rotation that remains after theta4.  Eq. (16) takes it from the third row instead, "
-    "which hardly depends on theta6 if theta5 is small.",
-    {r"\theta_4": angles[theta4], r"\theta_5": angles[theta5], r"\theta_6": angles[theta6]},
+    "The third column of R gives theta4, up to the sign of sin(theta5), and then theta5.  theta6 "
+    "follows from the rotation that remains after theta4.  Eq. (16) takes it from the third row "
+    "instead, which hardly depends on theta6 if theta5 is small.",
+    {
+        r"\theta_4": sp.atan2(sigma * given[1, 2], sigma * given[0, 2]),
+        r"\theta_5": sp.atan2(remaining[0, 2], given[2, 2]),
+        r"\theta_6": sp.atan2(remaining[1, 0], remaining[1, 1]),
+    },
     published=("(13)", "(16)"),
     uses=[by_angles],
+    proves="The third column of R is sin(theta5) times the direction of theta4, above the cosine "
+    "of theta5.  After theta4 is undone, it holds the sine of theta5, and the second row holds "
+    "the sine and the cosine of theta6.",
+    equal=[
+        (R[:, 2], sp.Matrix([sin(theta5) * cos(theta4), sin(theta5) * sin(theta4), cos(theta5)])),
+        (undone[0, 2], sin(theta5)),
+        (undone[1, :], sp.Matrix([[sin(theta6), cos(theta6), 0]])),
+    ],
 )
 d.function(
     "ik",

@@ -265,6 +265,8 @@ class Told:
         solvable = {*self.inverse.unknowns, *rank.defined, *rank.lengths}
         solvable |= {u for s in self.solvings for u in s.unknowns}
         joints = [s for s in solvable if s in held and s not in solving.unknowns]
+        later = self.found_later(joints, solving)
+        joints = [s for s in joints if s not in later]
         order = [u for s in self.solvings for u in s.unknowns] + list(self.inverse.unknowns)
         before = [f"${page.math(j)}$" for j in sorted(joints, key=order.index)]
         where = self.parts(parts)
@@ -273,11 +275,24 @@ class Told:
         if page.derivation.assembly_modes:
             source = "From the equations of the loop"
         verb = "follow equations" if several else "follows an equation"
-        unknowns = enumeration(self.sought(solving))
+        unknowns = enumeration(self.sought(solving) + [f"${page.math(u)}$" for u in later])
+        found = [f"step {k} finds ${page.math(u)}$" for u, k in later.items()]
         if before:
             known = "is" if len(before) == 1 else "are"
-            return f"{source} {verb} in {unknowns}, where {enumeration(before)} {known} known:"
+            found.insert(0, f"{enumeration(before)} {known} known")
+        if found:
+            return f"{source} {verb} in {unknowns}, where {enumeration(found)}:"
         return f"{source} {verb} in {unknowns} alone:"
+
+    def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
+        """The joints that a later step finds, and its number: the lemma takes a sum with them."""
+        after = [s is solving for s in self.solvings].index(True) + 1
+        return {
+            u: number
+            for number, s in enumerate(self.solvings[after:], after + 1)
+            for u in s.unknowns
+            if u in joints
+        }
 
     def explicit(self, value: sp.Expr) -> sp.Expr:
         """An expression in the target and the joints."""

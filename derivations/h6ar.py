@@ -398,7 +398,7 @@ J = p.matrix("outer", named(outer, here, q).xreplace({wrist: here.wrist})) * p.m
 )
 d.function(
     "jacobian",
-    "Derivative of the task by the joints.",
+    "Derivative of the task with respect to the joints.",
     {"q": q},
     {"J": J},
     program=p,

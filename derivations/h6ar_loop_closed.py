@@ -402,7 +402,7 @@ outer_rates = named(outer, here, q).xreplace({length: here.wrist})
 J = p.matrix("outer", outer_rates) * p.matrix("inner", inner)
 d.function(
     "jacobian",
-    "Derivative of the task by the joints.",
+    "Derivative of the task with respect to the joints.",
     {"q": q},
     {"J": J},
     program=p,

@@ -151,6 +151,7 @@ ik.finish(
         "motors_from_joints takes them to the motors.",
         "facing: X >= 0; backward: X <= 0.  up: the elbow is above the line from the shoulder to "
         "the wrist; down: below; the other way round where X is between 0 and a1.",
+        "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
     ),
     singular=(

@@ -171,6 +171,7 @@ ik.finish(
     notes=(
         "right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above the line "
         "from the shoulder to the wrist; down: below.",
+        "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
         "Ill-conditioned near the shoulder and elbow singularities, where the angles lose half "
         "the digits, the pose does not.",

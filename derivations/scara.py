@@ -24,7 +24,7 @@ d3, theta4 = d.joint("d3", "prismatic"), d.joint("theta4")
 
 arm = from_dh(d, [(l1, 0, h, theta1), (l2, pi, 0, theta2), (0, 0, d3, 0), (0, 0, 0, theta4)])
 ik = Chain(d, arm.export(d), angles=["yaw"])
-d.explain({"J": "velocity of the tool over its angular velocity, per joint rate"})
+d.explain({"J": "velocity and angular velocity of the tool, per joint rate"})
 x, y, z, yaw = ik.x
 ik.solve(two_links, (theta1, theta2), (x, y), (l1, l2), {+1: "left", -1: "right"}, scale=l1 + l2)
 ik.solve(slide, d3, h - z)

@@ -168,7 +168,7 @@ d.function(
 )
 d.function(
     "singularities",
-    "The factors of the determinant that hold a joint, and r.",
+    "The factors of the determinant that depend on a joint, and r.",
     {"q": q},
     {"factors": [s2, s4, s6, aside]},
 )

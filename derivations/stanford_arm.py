@@ -104,6 +104,7 @@ ik.finish(
     "All 8 configurations of a pose.",
     notes=(
         "right: X >= 0, the arm faces the wrist; left: X <= 0.  out: d3 >= 0; back: d3 <= 0.",
+        "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
         "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),

@@ -182,7 +182,7 @@ WRONG = {
         ValueError,
         (np.zeros((3, 2)), (np.ones(2), 1)),
     ),
-    "arrays of several libraries: array_api_strict._array_object.Array, numpy.ndarray": (
+    "the arrays belong to several libraries: array_api_strict._array_object.Array, numpy.ndarray": (
         TypeError,
         (np.zeros(2), (strict.asarray(1.0), 1)),
     ),

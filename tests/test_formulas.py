@@ -307,7 +307,7 @@ def test_expressions_are_not_read_from_text(
     d, L, t = toy()
     with pytest.raises(TypeError, match=r"must be an exact rational: write sympy\.Rational"):
         d.parameter("K", value=OPEN, unit="m", meaning="k")
-    with pytest.raises(TypeError, match="is a text; write the expression without quotes"):
+    with pytest.raises(TypeError, match="is a string; write the expression without quotes"):
         from_dh(d, [(OPEN, 0, 0, t)])
     for use in (
         lambda: Program().let("x", OPEN),

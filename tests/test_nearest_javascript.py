@@ -132,7 +132,7 @@ def test_what_is_not_a_target() -> None:
     assert (found["branch"], found["status"]) == (-1, 1) and found["q"] == [None, None]
     with pytest.raises(AssertionError, match="nearest: seed has length 3, expected 2"):
         answers([{**far, "seed": [0, 0, 0]}])
-    with pytest.raises(AssertionError, match="nearest: the inverse needs the target alone"):
+    with pytest.raises(AssertionError, match="nearest: the inverse takes the target only"):
         answers([{**far, "given": 0.1}])
 
 

@@ -121,9 +121,9 @@ def test_targets_that_are_not_poses_take_what_they_can() -> None:
         np.abs(p - BASE[:3, :3] @ closedform.hybrid_five_bar.fk(q).p[0] - BASE[:3, 3]).max() < 1e-12
     )
     assert np.abs(five.nearest(p, q).q - q).max() < 1e-9
-    with pytest.raises(ValueError, match="which no tool can be added to"):
+    with pytest.raises(ValueError, match="to which no tool can be added"):
         Robot(closedform.planar_2r, tool=[0, 0, 1])
-    with pytest.raises(ValueError, match="without base and tool"):
+    with pytest.raises(ValueError, match="has neither base nor tool"):
         Robot(closedform.h6ar, base=BASE)
 
 

@@ -120,9 +120,9 @@ def test_what_must_be_given_is_said(arm: Robot) -> None:
         arm.ik(np.eye(4))
     for compiled in (False, True):
         six = robots.load("ur5e", compiled=compiled)
-        with pytest.raises(ValueError, match="needs the target alone"):
+        with pytest.raises(ValueError, match="takes the target only"):
             six.ik(np.eye(4), 0.1)
-        with pytest.raises(ValueError, match="needs the target alone"):
+        with pytest.raises(ValueError, match="takes the target only"):
             six.nearest(np.eye(4), [0] * 6, given=0)
 
 

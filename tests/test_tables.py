@@ -115,7 +115,7 @@ def axis(**given: str) -> str:
         ("[parameters]\nL = [1]\n" + axis(), "the value of L is a list; it must be a number"),
         ("[parameters]\nL = 1e-400\n" + axis(), "the value of L is '1e-400'"),
         ("[parameters]\nL = { units = 1 }\n" + axis(), "the keys are value, unit, meaning"),
-        ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L must be a text, not 1"),
+        ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L must be a string, not 1"),
         (
             '[parameters]\nL = { meaning = "a\\nb" }\n' + axis(),
             "must be one line of printable text",
@@ -164,7 +164,7 @@ def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
     table = tmp_path / "table.csv"
     table.write_bytes(b"\xff\xfe\x00a")
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
-    assert "is not a text in UTF-8" in capsys.readouterr().err
+    assert "is not UTF-8 text" in capsys.readouterr().err
     table.write_bytes(b"\xef\xbb\xbf" + (HEADER + "L, 0, 0, t\n").encode())
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
 

@@ -18,8 +18,8 @@ from closedform.model.pair import Pair
 UPRIGHT = "the wrist is above or below the shoulder"
 FOLDED = "the wrist is on the shoulder"
 KEPT = (
-    "OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the wrist "
-    "from the line through the shoulder along z."
+    "OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the "
+    "distance of the wrist from the vertical line through the shoulder."
 )
 UNDEFINED = f"{UPRIGHT}; the arm angle is counted from the plane of x and z."
 

@@ -105,7 +105,7 @@ def law_of_cosines(
         letters=triangle.letters,
     )
     loci = [{gone: sp.S.Zero, r: other} for gone, other in ((l1, l2), (l2, l1)) if gone.is_Symbol]
-    cases = degenerate(flag, loci, x, f"a link without length: {x} is free; 0.")
+    cases = degenerate(flag, loci, x, f"a link without length: {x} is free, 0 is returned.")
     return Applied(lemma, pair, means, {}, cases)
 
 

@@ -286,7 +286,7 @@ def two_links(
     )
     meaning = f"equal links folded onto the axis of {first}, which is free; 0 is returned."
     cases = degenerate(folded, [_folded(x, y, l1, l2)], first, meaning)
-    meaning = f"a link without length: {second} is free; 0."
+    meaning = f"a link without length: {second} is free, 0 is returned."
     cases += degenerate(no_link, _stretched(x, y, l1, l2), second, meaning)
     return Applied(lemma, (lift, bend), means | more, {}, cases)
 

@@ -156,11 +156,11 @@ class Serial:
     ) -> Any:
         """Record pose, Jacobians and determinant as proved steps, and export them as functions.
 
-        ``singular`` names the factors of the determinant that hold a joint, in the form in which
-        they shall be printed; by default it is factored.  Of seven joints one may be ``given``: the
-        determinant is that of the columns of the others.  Returns the forward map that an inverse
-        must solve: the task coordinates in the joints where the arm has as many (see
-        :meth:`coordinates`), else the pose.
+        ``singular`` names the factors of the determinant that depend on a joint, in the form in
+        which they shall be printed; by default it is factored.  Of seven joints one may be
+        ``given``: the determinant is that of the columns of the others.  Returns the forward map
+        that an inverse must solve: the task coordinates in the joints where the arm has as many
+        (see :meth:`coordinates`), else the pose.
         """
         q, task, links = self.joints, self.coordinates(), self.links
         self.require_regular(d.name)
@@ -235,7 +235,7 @@ class Serial:
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
         _export(d, ("fk", POSE), q, {"T": pose}, equation="T")
-        summary = "Velocity of the tool over its angular velocity, in base axes, per joint rate."
+        summary = "Velocity and angular velocity of the tool, in base axes, per joint rate."
         _export(d, ("jacobian", summary), q, {"J": geometric}, GEOMETRIC, equation="J")
 
     def _export_pose_determinant(
@@ -287,7 +287,7 @@ class Serial:
         )
         J = geometric.part(task.rows, range(len(q)))
         name = r"J_{\mathrm{task}}"
-        summary = f"Derivative of ({shown}) by the joints."
+        summary = f"Derivative of ({shown}) with respect to the joints."
         _export(d, ("jacobian", summary), q, {"J": J}, equation=name)
         det = factored_determinant(task.J)
         check = [
@@ -331,7 +331,7 @@ class Serial:
             {"det": det},
             equation=name,
         )
-        summary = "The factors of the determinant that hold a joint."
+        summary = "The factors of the determinant that depend on a joint."
         d.function("singularities", summary, {"q": q}, {"factors": factors})
         if len(d.singularities) != len(factors):
             written = (f.primitive()[1] for f in factors)
@@ -372,7 +372,7 @@ class Coordinates:
 
 
 def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
-    """The factors of a determinant that hold a joint, each once."""
+    """The factors of a determinant that depend on a joint, each once."""
     return [f.as_base_exp()[0] for f in sp.Mul.make_args(det) if f.has(*joints)] or [det]
 
 

@@ -45,7 +45,7 @@ def real(name: str, **assumptions: bool) -> sp.Symbol:
 def reject_text(value: Any, where: str) -> None:
     """Raise ``TypeError`` if a text is given as an expression: SymPy would run it as Python."""
     if isinstance(value, str):
-        raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
+        raise TypeError(f"{where}: {value!r} is a string; write the expression without quotes")
     if isinstance(value, list | tuple):
         for part in value:
             reject_text(part, where)

@@ -182,7 +182,7 @@ def check_label(label: str, where: str) -> None:
 def check_labels(labels: Collection[str], where: str) -> None:
     """Raise ``ValueError`` unless these are distinct names."""
     if isinstance(labels, str):
-        raise TypeError(f"{where}: give a sequence of names, not the text {labels!r}")
+        raise TypeError(f"{where}: give a sequence of names, not the string {labels!r}")
     for label in labels:
         check_label(label, where)
     if repeated := sorted({x for x in labels if list(labels).count(x) > 1}):
@@ -202,7 +202,7 @@ def check_text(where: str, *texts: str, lines: bool = False) -> None:
     """
     for text in texts:
         if not isinstance(text, str):
-            raise TypeError(f"{where}: {text!r} must be a text")
+            raise TypeError(f"{where}: {text!r} must be a string")
         for character in text:
             if not character.isprintable() and not (lines and character == "\n"):
                 raise ValueError(

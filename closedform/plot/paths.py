@@ -50,7 +50,9 @@ def path(
     targets = np.asarray(xs, dtype=float)
     q, status = r.branches(targets)
     if q.ndim != 3:
-        raise ValueError(f"xs must be a sequence of targets of {r.name}, not {targets.shape}")
+        raise ValueError(
+            f"xs must be a sequence of targets of {r.name}; its shape is {targets.shape}"
+        )
     k = _chosen(r, q[0], status[0], branch, start)
     curves = np.where((status[:, k] == OK)[:, None], q[:, k], np.nan)
     angles = [j for j in range(len(robot.JOINTS)) if j not in r.slides]

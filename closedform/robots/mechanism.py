@@ -200,7 +200,7 @@ class Mechanism:
         """What ``ik`` needs beside the target, at joints: the arm angle, or the joint itself."""
         values = self.as_joints(q)
         if self.given is None:
-            raise ValueError(f"{self.name}: the inverse needs the target alone")
+            raise ValueError(f"{self.name}: the inverse takes the target only")
         if self.given in self.joints:
             return np.asarray(values[..., self.joints.index(self.given)])
         return np.asarray(self.call(self.given, self.to_model(values)))
@@ -209,7 +209,7 @@ class Mechanism:
         """The inputs of the module's inverse beside the target."""
         if self.given is None:
             if given is not None:
-                raise ValueError(f"{self.name}: the inverse needs the target alone, nothing given")
+                raise ValueError(f"{self.name}: the inverse takes the target only; leave out given")
             return ()
         if given is None:
             raise ValueError(f"{self.name}: the inverse also needs given={self.given}")

@@ -92,9 +92,9 @@ class Mounting:
             name = module.__name__.rpartition(".")[2]
             form = "upright" if task == UPRIGHT else "position"
             if not set(task) <= {"x", "y", "z"} and form == "position":
-                raise ValueError(f"{name} has a target ({', '.join(task)}) without base and tool")
+                raise ValueError(f"{name}: a target ({', '.join(task)}) has neither base nor tool")
             if form == "position" and tool is not None:
-                raise ValueError(f"{name}: the target is a position, which no tool can be added to")
+                raise ValueError(f"{name}: the target is a position, to which no tool can be added")
             flat = form == "upright" or "z" not in task
             if base is not None and flat and abs(base[2, 2] - 1) > RIGID:
                 raise ValueError(f"{name}: a base must not tilt the z axis")

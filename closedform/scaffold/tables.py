@@ -168,7 +168,9 @@ def text_of(path: Path) -> str:
     try:
         text = content_of(path, LARGEST, "a table of joints").decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise TableError(f"{path.name} is not a text in UTF-8; save it as plain text") from error
+        raise TableError(
+            f"{path.name} is not UTF-8 text; save it as plain text in UTF-8"
+        ) from error
     for i, line in enumerate(text.splitlines(), 1):
         if len(line) > LONGEST:
             raise TableError(
@@ -502,7 +504,8 @@ def parameter(name: str, entry: Any, where: str) -> dict[str, str]:
     for key in ("unit", "meaning"):
         if not isinstance(given.get(key, ""), str):
             raise TableError(
-                f"{where}: the {key} of {shown_name(name)} must be a text, not {_plain(given[key])}"
+                f"{where}: the {key} of {shown_name(name)} must be a string, not "
+                f"{_plain(given[key])}"
             )
     text = {key: given[key] for key in ("unit", "meaning") if key in given}
     if "value" in given:

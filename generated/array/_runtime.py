@@ -377,7 +377,9 @@ def _library(kernel: Kernel, arrays: Sequence[Array]) -> Any:
         return compat.array_namespace(*arrays or (np.empty(0),))
     except TypeError:
         kinds = sorted({f"{type(a).__module__}.{type(a).__qualname__}" for a in arrays})
-        raise TypeError(f"{kernel.name}: arrays of several libraries: {', '.join(kinds)}") from None
+        raise TypeError(
+            f"{kernel.name}: the arrays belong to several libraries: {', '.join(kinds)}"
+        ) from None
 
 
 def _converted(

@@ -1375,7 +1375,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Derivative of the task by the joints.
+    """Derivative of the task with respect to the joints.
 
     Source: derivative of the forward map.
 

@@ -471,7 +471,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -573,7 +573,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -1469,6 +1469,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - motors_from_joints takes them to the motors.
     - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
       wrist; down: below; the other way round where X is between 0 and a1.
+    - X is how far the centre of the wrist is ahead of the base axis.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links
       folded with the wrist on the shoulder, or a link without length.

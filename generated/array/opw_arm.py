@@ -481,7 +481,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -583,7 +583,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -1508,6 +1508,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       backward_down_noflip, backward_down_flip.
     - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
       wrist; down: below; the other way round where X is between 0 and a1.
+    - X is how far the centre of the wrist is ahead of the base axis.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
       digits, the pose does not.

@@ -328,7 +328,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Derivative of (x, y, z, yaw) by the joints.
+    """Derivative of (x, y, z, yaw) with respect to the joints.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -705,7 +705,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     -----
     - The branches, in the order of `BRANCHES`: left, right.
     - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
-    - SINGULAR: a link without length: theta2 is free; 0.
+    - SINGULAR: a link without length: theta2 is free, 0 is returned.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

@@ -451,7 +451,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -559,7 +559,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -8410,7 +8410,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       returned.
     - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
     - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
-    - SINGULAR: a link without length: theta3 is free; 0.
+    - SINGULAR: a link without length: theta3 is free, 0 is returned.
     """
     result = _runtime.evaluate(_IK, (T,), params)
     return Solutions(*result)

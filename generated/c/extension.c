@@ -7091,7 +7091,7 @@ const cf_function cf_functions[] = {
       1, franka_arm_fk_in, 1, franka_arm_fk_out,
       franka_arm_fk_one, franka_arm_fk_many },
     { "franka_arm.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7148,7 +7148,7 @@ const cf_function cf_functions[] = {
       1, franka_arm_determinant_in, 1, franka_arm_determinant_out,
       franka_arm_determinant_one, franka_arm_determinant_many },
     { "franka_arm.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7268,7 +7268,7 @@ const cf_function cf_functions[] = {
       "  allow; over: it is bent to the other side.\n"
       "- ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.\n"
       "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
-      "- SINGULAR: a link without length: elbow is free; 0.\n"
+      "- SINGULAR: a link without length: elbow is free, 0 is returned.\n"
       "- SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is\n"
       "  returned.\n"
       "- SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.\n"
@@ -7440,7 +7440,7 @@ const cf_function cf_functions[] = {
       1, h6ar_invariant_point_in, 1, h6ar_invariant_point_out,
       h6ar_invariant_point_one, h6ar_invariant_point_many },
     { "h6ar.jacobian",
-      "Derivative of the task by the joints.\n"
+      "Derivative of the task with respect to the joints.\n"
       "\n"
       "Source: derivative of eqs. (1) to (9).\n"
       "\n"
@@ -7876,7 +7876,7 @@ const cf_function cf_functions[] = {
       1, h6ar_loop_closed_invariant_point_in, 1, h6ar_loop_closed_invariant_point_out,
       h6ar_loop_closed_invariant_point_one, h6ar_loop_closed_invariant_point_many },
     { "h6ar_loop_closed.jacobian",
-      "Derivative of the task by the joints.\n"
+      "Derivative of the task with respect to the joints.\n"
       "\n"
       "Source: derivative of the forward map.\n"
       "\n"
@@ -8660,7 +8660,7 @@ const cf_function cf_functions[] = {
       1, irb2400_fk_in, 1, irb2400_fk_out,
       irb2400_fk_one, irb2400_fk_many },
     { "irb2400.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -8717,7 +8717,7 @@ const cf_function cf_functions[] = {
       1, irb2400_determinant_in, 1, irb2400_determinant_out,
       irb2400_determinant_one, irb2400_determinant_many },
     { "irb2400.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -8896,6 +8896,7 @@ const cf_function cf_functions[] = {
       "- motors_from_joints takes them to the motors.\n"
       "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
       "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links\n"
       "  folded with the wrist on the shoulder, or a link without length.\n"
@@ -9883,7 +9884,7 @@ const cf_function cf_functions[] = {
       1, opw_arm_fk_in, 1, opw_arm_fk_out,
       opw_arm_fk_one, opw_arm_fk_many },
     { "opw_arm.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9940,7 +9941,7 @@ const cf_function cf_functions[] = {
       1, opw_arm_determinant_in, 1, opw_arm_determinant_out,
       opw_arm_determinant_one, opw_arm_determinant_many },
     { "opw_arm.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10056,6 +10057,7 @@ const cf_function cf_functions[] = {
       "  backward_down_noflip, backward_down_flip.\n"
       "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
       "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
       "  digits, the pose does not.\n"
@@ -10861,7 +10863,7 @@ const cf_function cf_functions[] = {
       1, puma560_fk_in, 1, puma560_fk_out,
       puma560_fk_one, puma560_fk_many },
     { "puma560.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10918,7 +10920,7 @@ const cf_function cf_functions[] = {
       1, puma560_determinant_in, 1, puma560_determinant_out,
       puma560_determinant_one, puma560_determinant_many },
     { "puma560.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11034,6 +11036,7 @@ const cf_function cf_functions[] = {
       "  left_down_flip.\n"
       "- right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from\n"
       "  the shoulder to the wrist; down: below.\n"
+      "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
       "  digits, the pose does not.\n"
@@ -11474,7 +11477,7 @@ const cf_function cf_functions[] = {
       1, scara_fk_in, 1, scara_fk_out,
       scara_fk_one, scara_fk_many },
     { "scara.jacobian",
-      "Derivative of (x, y, z, yaw) by the joints.\n"
+      "Derivative of (x, y, z, yaw) with respect to the joints.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11527,7 +11530,7 @@ const cf_function cf_functions[] = {
       1, scara_determinant_in, 1, scara_determinant_out,
       scara_determinant_one, scara_determinant_many },
     { "scara.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11641,7 +11644,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The branches, in the order of `BRANCHES`: left, right.\n"
       "- SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.\n"
-      "- SINGULAR: a link without length: theta2 is free; 0.\n"
+      "- SINGULAR: a link without length: theta2 is free, 0 is returned.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_ik_in, 2, scara_ik_out,
@@ -12581,7 +12584,7 @@ const cf_function cf_functions[] = {
       1, srs_arm_fk_in, 1, srs_arm_fk_out,
       srs_arm_fk_one, srs_arm_fk_many },
     { "srs_arm.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12718,7 +12721,7 @@ const cf_function cf_functions[] = {
       1, srs_arm_determinant_in, 1, srs_arm_determinant_out,
       srs_arm_determinant_one, srs_arm_determinant_many },
     { "srs_arm.singularities",
-      "The factors of the determinant that hold a joint, and r.\n"
+      "The factors of the determinant that depend on a joint, and r.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12814,9 +12817,9 @@ const cf_function cf_functions[] = {
       "  elbow of the branches up is above the line from the shoulder to the wrist.\n"
       "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
       "- noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.\n"
-      "- OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the\n"
-      "  wrist from the line through the shoulder along z.\n"
-      "- SINGULAR: a link without length: theta4 is free; 0.\n"
+      "- OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the\n"
+      "  distance of the wrist from the vertical line through the shoulder.\n"
+      "- SINGULAR: a link without length: theta4 is free, 0 is returned.\n"
       "- SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the\n"
       "  plane of x and z.\n"
       "- SINGULAR: the wrist is on the shoulder.\n"
@@ -12913,7 +12916,7 @@ const cf_function cf_functions[] = {
       1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
       stanford_arm_fk_one, stanford_arm_fk_many },
     { "stanford_arm.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12970,7 +12973,7 @@ const cf_function cf_functions[] = {
       1, stanford_arm_determinant_in, 1, stanford_arm_determinant_out,
       stanford_arm_determinant_one, stanford_arm_determinant_many },
     { "stanford_arm.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -13086,6 +13089,7 @@ const cf_function cf_functions[] = {
       "  right_back_noflip, right_back_flip, left_out_noflip, left_out_flip, left_back_noflip,\n"
       "  left_back_flip.\n"
       "- right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.\n"
+      "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- INVALID: the matrix is not a homogeneous transform with a proper rotation.\n"
       "- SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the\n"
@@ -13518,7 +13522,7 @@ const cf_function cf_functions[] = {
       1, ur_arm_fk_in, 1, ur_arm_fk_out,
       ur_arm_fk_one, ur_arm_fk_many },
     { "ur_arm.jacobian",
-      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity and angular velocity of the tool, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -13575,7 +13579,7 @@ const cf_function cf_functions[] = {
       1, ur_arm_determinant_in, 1, ur_arm_determinant_out,
       ur_arm_determinant_one, ur_arm_determinant_many },
     { "ur_arm.singularities",
-      "The factors of the determinant that hold a joint.\n"
+      "The factors of the determinant that depend on a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -13692,7 +13696,7 @@ const cf_function cf_functions[] = {
       "  returned.\n"
       "- SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.\n"
       "- SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.\n"
-      "- SINGULAR: a link without length: theta3 is free; 0.\n"
+      "- SINGULAR: a link without length: theta3 is free, 0 is returned.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_ik_in, 2, ur_arm_ik_out,

@@ -104,7 +104,7 @@ void franka_arm_fk_batch(size_t n, const franka_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -145,7 +145,7 @@ void franka_arm_determinant_batch(size_t n, const franka_arm_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -229,7 +229,7 @@ void franka_arm_jacobian_body_batch(size_t n, const franka_arm_params *params,
  *   allow; over: it is bent to the other side.
  * - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
- * - SINGULAR: a link without length: elbow is free; 0.
+ * - SINGULAR: a link without length: elbow is free, 0 is returned.
  * - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
  *   returned.
  * - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

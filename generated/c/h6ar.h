@@ -172,7 +172,7 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
     real_t *p, size_t p_stride);
 
 /*
- * Derivative of the task by the joints.
+ * Derivative of the task with respect to the joints.
  *
  * Source: derivative of eqs. (1) to (9).
  *

@@ -178,7 +178,7 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
     real_t *p, size_t p_stride);
 
 /*
- * Derivative of the task by the joints.
+ * Derivative of the task with respect to the joints.
  *
  * Source: derivative of the forward map.
  *

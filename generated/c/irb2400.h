@@ -101,7 +101,7 @@ void irb2400_fk_batch(size_t n, const irb2400_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -142,7 +142,7 @@ void irb2400_determinant_batch(size_t n, const irb2400_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -270,6 +270,7 @@ void irb2400_motors_from_joints_batch(size_t n, const irb2400_params *params,
  * - motors_from_joints takes them to the motors.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
  *   wrist; down: below; the other way round where X is between 0 and a1.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links
  *   folded with the wrist on the shoulder, or a link without length.

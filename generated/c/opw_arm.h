@@ -105,7 +105,7 @@ void opw_arm_fk_batch(size_t n, const opw_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -146,7 +146,7 @@ void opw_arm_determinant_batch(size_t n, const opw_arm_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -227,6 +227,7 @@ void opw_arm_jacobian_body_batch(size_t n, const opw_arm_params *params,
  *   backward_down_flip.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
  *   wrist; down: below; the other way round where X is between 0 and a1.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.

@@ -98,7 +98,7 @@ void puma560_fk_batch(size_t n, const puma560_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -139,7 +139,7 @@ void puma560_determinant_batch(size_t n, const puma560_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -219,6 +219,7 @@ void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
  *   left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.

@@ -100,7 +100,7 @@ void scara_fk_batch(size_t n, const scara_params *params,
     real_t *x, size_t x_stride);
 
 /*
- * Derivative of (x, y, z, yaw) by the joints.
+ * Derivative of (x, y, z, yaw) with respect to the joints.
  *
  * Inputs
  * ------
@@ -137,7 +137,7 @@ void scara_determinant_batch(size_t n, const scara_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -216,7 +216,7 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params,
  * -----
  * - The branches, in order: left, right.
  * - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
- * - SINGULAR: a link without length: theta2 is free; 0.
+ * - SINGULAR: a link without length: theta2 is free, 0 is returned.
  */
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2]);

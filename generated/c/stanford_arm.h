@@ -97,7 +97,7 @@ void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -138,7 +138,7 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -218,6 +218,7 @@ void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *param
  * - The branches, in order: right_out_noflip, right_out_flip, right_back_noflip,
  *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the

@@ -101,7 +101,7 @@ void ur_arm_fk_batch(size_t n, const ur_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -142,7 +142,7 @@ void ur_arm_determinant_batch(size_t n, const ur_arm_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * Inputs
  * ------
@@ -224,7 +224,7 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
  *   returned.
  * - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
  * - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
- * - SINGULAR: a link without length: theta3 is free; 0.
+ * - SINGULAR: a link without length: theta3 is free, 0 is returned.
  */
 void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);

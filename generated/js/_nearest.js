@@ -90,7 +90,7 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
  */
 function givenBeside(robot, given, seed, parameters) {
     if (robot.GIVEN !== undefined) return given ?? givenAt(robot, seed, parameters);
-    if (given !== undefined) throw new TypeError("nearest: the inverse needs the target alone, nothing given");
+    if (given !== undefined) throw new TypeError("nearest: the inverse takes the target only; leave out given");
     return undefined;
 }
 

@@ -633,7 +633,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
@@ -770,7 +770,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * @param {ArrayLike<number>} q 7 numbers. theta1 to theta7 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -2053,7 +2053,7 @@ const _IK = _runtime.kernel({
  *   allow; over: it is bent to the other side.
  * - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
- * - SINGULAR: a link without length: elbow is free; 0.
+ * - SINGULAR: a link without length: elbow is free, 0 is returned.
  * - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
  *   returned.
  * - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

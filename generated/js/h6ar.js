@@ -1134,7 +1134,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Derivative of the task by the joints.
+ * Derivative of the task with respect to the joints.
  *
  * Source: derivative of eqs. (1) to (9).
  *

@@ -1380,7 +1380,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Derivative of the task by the joints.
+ * Derivative of the task with respect to the joints.
  *
  * Source: derivative of the forward map.
  *

@@ -526,7 +526,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
@@ -659,7 +659,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1460,6 +1460,7 @@ const _IK = _runtime.kernel({
  * - motors_from_joints takes them to the motors.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
  *   wrist; down: below; the other way round where X is between 0 and a1.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links
  *   folded with the wrist on the shoulder, or a link without length.

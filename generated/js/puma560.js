@@ -472,7 +472,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
@@ -603,7 +603,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1220,6 +1220,7 @@ const _IK = _runtime.kernel({
  *   left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
+ * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.

@@ -351,7 +351,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Derivative of (x, y, z, yaw) by the joints.
+ * Derivative of (x, y, z, yaw) with respect to the joints.
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4 in rad.
@@ -459,7 +459,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4 in rad.
@@ -758,7 +758,7 @@ const _IK = _runtime.kernel({
  *
  * - The branches, in the order of `BRANCHES`: left, right.
  * - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
- * - SINGULAR: a link without length: theta2 is free; 0.
+ * - SINGULAR: a link without length: theta2 is free, 0 is returned.
  *
  * @param {ArrayLike<number>} x 4 numbers. x, y, z in the unit of the parameters; yaw in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -586,7 +586,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
@@ -1121,7 +1121,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint, and r.
+ * The factors of the determinant that depend on a joint, and r.
  *
  * @param {ArrayLike<number>} q 7 numbers. theta1 to theta7 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1552,9 +1552,9 @@ const _IK = _runtime.kernel({
  *   elbow of the branches up is above the line from the shoulder to the wrist.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
  * - noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.
- * - OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the
- *   wrist from the line through the shoulder along z.
- * - SINGULAR: a link without length: theta4 is free; 0.
+ * - OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the
+ *   distance of the wrist from the vertical line through the shoulder.
+ * - SINGULAR: a link without length: theta4 is free, 0 is returned.
  * - SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the plane
  *   of x and z.
  * - SINGULAR: the wrist is on the shoulder.

@@ -510,7 +510,7 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the tool over its angular velocity, in base axes, per joint rate.
+ * Velocity and angular velocity of the tool, in base axes, per joint rate.
  *
  * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
@@ -651,7 +651,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factors of the determinant that hold a joint.
+ * The factors of the determinant that depend on a joint.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -5462,7 +5462,7 @@ const _IK = _runtime.kernel({
  *   returned.
  * - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
  * - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
- * - SINGULAR: a link without length: theta3 is free; 0.
+ * - SINGULAR: a link without length: theta3 is free, 0 is returned.
  *
  * @param {ArrayLike<number>} T 16 numbers (4 x 4 in row order). A homogeneous transform with a
  *     proper rotation.

@@ -588,7 +588,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -692,7 +692,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -2177,7 +2177,7 @@ def ik(T: "ArrayLike", theta7: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
       allow; over: it is bent to the other side.
     - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
     - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
-    - SINGULAR: a link without length: elbow is free; 0.
+    - SINGULAR: a link without length: elbow is free, 0 is returned.
     - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
       returned.
     - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

@@ -1534,7 +1534,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Derivative of the task by the joints.
+    """Derivative of the task with respect to the joints.
 
     Source: derivative of the forward map.
 

@@ -431,7 +431,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -535,7 +535,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -1209,6 +1209,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       left_down_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
       the shoulder to the wrist; down: below.
+    - X is how far the centre of the wrist is ahead of the base axis.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
       digits, the pose does not.

@@ -552,7 +552,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -1023,7 +1023,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint, and r.
+    """The factors of the determinant that depend on a joint, and r.
 
     Parameters
     ----------
@@ -1520,9 +1520,9 @@ def ik(T: "ArrayLike", arm_angle: "ArrayLike", params: "Parameters" = _DEFAULT, 
       elbow of the branches up is above the line from the shoulder to the wrist.
     - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
     - noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.
-    - OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the
-      wrist from the line through the shoulder along z.
-    - SINGULAR: a link without length: theta4 is free; 0.
+    - OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the
+      distance of the wrist from the vertical line through the shoulder.
+    - SINGULAR: a link without length: theta4 is free, 0 is returned.
     - SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the
       plane of x and z.
     - SINGULAR: the wrist is on the shoulder.

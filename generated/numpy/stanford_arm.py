@@ -386,7 +386,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -484,7 +484,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -1230,6 +1230,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       right_back_noflip, right_back_flip, left_out_noflip, left_out_flip, left_back_noflip,
       left_back_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+    - X is how far the centre of the wrist is ahead of the base axis.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - INVALID: the matrix is not a homogeneous transform with a proper rotation.
     - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the

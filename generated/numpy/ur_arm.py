@@ -450,7 +450,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
+    """Velocity and angular velocity of the tool, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -560,7 +560,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
+    """The factors of the determinant that depend on a joint.
 
     Parameters
     ----------
@@ -7389,7 +7389,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       returned.
     - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
     - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
-    - SINGULAR: a link without length: theta3 is free; 0.
+    - SINGULAR: a link without length: theta3 is free, 0 is returned.
     """
     result = _runtime.evaluate(_IK, (T,), params, out)
     return Solutions(*result)

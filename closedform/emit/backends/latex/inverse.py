@@ -277,12 +277,13 @@ class Told:
         verb = "follow equations" if several else "follows an equation"
         unknowns = enumeration(self.sought(solving) + [f"${page.math(u)}$" for u in later])
         found = [f"step {k} finds ${page.math(u)}$" for u, k in later.items()]
+        told = f"{source} {verb} in {unknowns}"
+        if later:
+            told += f", of which {enumeration(found)}"
         if before:
             known = "is" if len(before) == 1 else "are"
-            found.insert(0, f"{enumeration(before)} {known} known")
-        if found:
-            return f"{source} {verb} in {unknowns}, where {enumeration(found)}:"
-        return f"{source} {verb} in {unknowns} alone:"
+            return f"{told}, where {enumeration(before)} {known} known:"
+        return f"{told}:" if later else f"{told} alone:"
 
     def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
         """The joints that a later step finds, and its number: the lemma takes a sum with them."""

@@ -167,7 +167,7 @@ def test_what_is_said_of_a_matrix_holds(robot: str) -> None:
             assert name.startswith("jacobian")
             assert columns[1] in (", ".join(names), f"{names[0]} to {names[-1]}")
         if name == "skeleton":
-            assert said.endswith("Coordinates x, y, z of each point.")
+            assert said.endswith(f"`SKELETON.points`: {', '.join(m.SKELETON.points)}.")
 
 
 def test_a_docstring_as_it_is_read() -> None:

@@ -23,6 +23,12 @@ CALLS = 20_000
 ROOT = Path(__file__).parents[2]
 GENERATED, RUNTIME = ROOT / "generated" / "c", ROOT / "closedform" / "runtime" / "extension"
 SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+LONG = 400_000
+"""Bytes of a source from which gcc takes less time if it optimises.
+
+Without optimisation it compares each variable of a function with every other, to find those that
+are used after their scope. With it, most of them are gone by then.
+"""
 
 
 def available() -> bool:
@@ -59,6 +65,10 @@ def _run(seed: int, calls: int, only: int | None = None) -> tuple[str, int]:
     return f"{last[2]}: exit code {done.returncode}: {reason}", int(last[1])
 
 
+def _size(source: Path) -> int:
+    return source.stat().st_size
+
+
 @cache
 def driver() -> Path:
     """The driver with all generated C; only what changed is compiled again."""
@@ -67,16 +77,16 @@ def driver() -> Path:
     sources = [ROOT / "tests" / "c" / "random_driver.c", *sorted(GENERATED.glob("*.c"))]
     # A call checks an access, which takes less to compile than checks in place.
     calls = ("--param", "asan-instrumentation-with-call-threshold=0")
-    command = ["gcc", "-std=c99", "-O0", *SANITIZE, *calls]
-    command += [f"-I{GENERATED}", f"-I{RUNTIME}"]
+    command = ["gcc", "-std=c99", *SANITIZE, *calls, f"-I{GENERATED}", f"-I{RUNTIME}"]
 
     def one(source: Path) -> Path:
         target = folder / f"{source.stem}.o"
-        compiled([*command, "-c", source], target)
+        level = "-O0" if _size(source) < LONG else "-O1"
+        compiled([*command, level, "-c", source], target)
         return target
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(one, sources))
+        objects = list(pool.map(one, sorted(sources, key=_size, reverse=True)))
     program = folder / "driver"
     subprocess.run(["gcc", *SANITIZE, *objects, "-o", program, "-lm"], check=True)
     return program

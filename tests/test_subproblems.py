@@ -229,3 +229,11 @@ def test_a_given_joint_is_an_input(franka: tuple[Derivation, Serial]) -> None:
     solved(d, serial, propose(serial).source)
     assert [a.name for a in d["ik"].inputs] == ["T", "t7"]
     assert d.inverses[0].targets[-1].name == "x_t7"
+
+
+def test_three_parallel_axes_that_carry_a_point_are_named() -> None:
+    """An arm for a drone: its wrist has two axes that meet."""
+    rows = [(2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (0, pi / 2, 1), (0, 0, 1)]
+    with pytest.raises(NoChainError) as e:
+        propose(arm(rows)[1])
+    assert "axes 1, 2 and 3 are parallel" in [t.error.found for t in e.value.tried]

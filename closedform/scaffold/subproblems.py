@@ -401,6 +401,11 @@ class SubproblemMaker(WristMaker):
         Seen across the first axis, the third joint moves the point along an ellipse, see
         :mod:`closedform.scaffold.ellipse`; the target is on a circle around this axis.
         """
+        self.require(
+            not parallel(one) and not parallel(two),
+            f"axes {one.number}, {two.number} and {three.number} are parallel",
+            "Of three joints that carry a point, at most two may be parallel.",
+        )
         if self.degree < 4:
             raise NoChainError(
                 f"no two neighbours among axes {one.number}, {two.number} and {three.number} are "

@@ -232,6 +232,23 @@ def test_a_file_that_is_taken_literally_moves_nothing() -> None:
     assert not any("other numbers" in note for note in read_urdf(ARMS / "a1xy.urdf").notes)
 
 
+def test_notes_are_those_of_the_chain(ur5: Path) -> None:
+    """A camera beside it has a rounded angle too."""
+    camera = """<joint name="camera" type="fixed"><parent link="base"/><child link="eye"/>
+                <origin xyz="0 0 1e-12" rpy="0 1.57079 0"/></joint>"""
+    plain = read_urdf(ur5, Choice("base", "w1")).notes
+    ur5.write_text(UR5.replace("</robot>", f"{camera}</robot>"), "utf-8")
+    assert read_urdf(ur5, Choice("base", "w1")).notes == plain
+
+
+def test_a_prefix_that_is_not_declared_is_read(ur5: Path) -> None:
+    """Parts for Gazebo of older files have some."""
+    plain = read_urdf(ur5).axes
+    part = '<gazebo><sensor:camera name="eye"><rate>20</rate></sensor:camera></gazebo></robot>'
+    ur5.write_text(UR5.replace("</robot>", part), "utf-8")
+    assert read_urdf(ur5).axes == plain
+
+
 def test_base_and_tool_choose_the_chain(ur5: Path) -> None:
     table = read_urdf(ur5, Choice("shoulder", "w1"))
     assert list(table.joints) == ["lift", "elbow", "wrist_1"]

@@ -43,11 +43,10 @@ def read_mjcf(path: Path, choice: Choice = DEFAULT) -> Table:
     if b"<mujoco" not in content_of(path, LARGEST, "an MJCF file"):
         raise TableError(f"{path.name}: the file is not MJCF, which begins with <mujoco>")
     model = _model(path)
-    notes: list[str] = []
-    joints = [j for k in range(1, model.nbody) for j in _body(model, k, path.name, notes)]
+    joints = [j for k in range(1, model.nbody) for j in _body(model, k, path.name)]
     if choice.tool and choice.tool not in {j.child for j in joints}:
-        joints += [j for k in range(model.nsite) if (j := _site(model, k, path.name, notes))]
-    return table_of(joints, path.name, notes, choice)
+        joints += [j for k in range(model.nsite) if (j := _site(model, k, path.name))]
+    return table_of(joints, path.name, choice)
 
 
 def _model(path: Path) -> Any:
@@ -69,8 +68,9 @@ def _model(path: Path) -> Any:
         raise TableError(f"{path.name} is not a model that MuJoCo reads: {reason}") from error
 
 
-def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
+def _body(model: Any, k: int, file: str) -> Iterator[Joint]:
     """The joints between a body and its parent, one after the other."""
+    notes: list[str] = []
     body = model.body(k)
     where = f"{file}, body {shown_name(body.name or str(k))}"
     place, written = _pose(body.pos, body.quat, where, notes)
@@ -104,7 +104,9 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
             axis=axis,
             limits=limits,
             written=literal,
+            notes=tuple(notes),
         )
+        notes.clear()
         at, place, written = link, sp.eye(4), sp.eye(4)
         back = placed([-e for e in through], level)
         back_written = placed([-e for e in _exact(joint.pos)], level)
@@ -117,10 +119,12 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
         origin=last,
         axis=literal[1],
         written=literal,
+        notes=tuple(notes),
     )
 
 
-def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
+def _site(model: Any, k: int, file: str) -> Joint | None:
+    notes: list[str] = []
     site = model.site(k)
     where = f"{file}, site {shown_name(site.name)}"
     place, written = _pose(site.pos, site.quat, where, notes)
@@ -133,6 +137,7 @@ def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
         origin=place,
         axis=z,
         written=(written, z),
+        notes=tuple(notes),
     )
     return fixed if site.name else None
 

@@ -60,6 +60,8 @@ class Joint:
     """Of a joint that mimics another: its value is the factor times that one, plus the offset."""
     written: tuple[sp.Matrix, sp.Matrix] | None = None
     """Place and axis without what was taken for other numbers; None if nothing was."""
+    notes: tuple[str, ...] = ()
+    """What was not taken as it is written."""
 
 
 @dataclass(frozen=True)
@@ -77,12 +79,12 @@ class Choice:
 DEFAULT = Choice()
 
 
-def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: Choice) -> Table:
+def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     """The chain of a file, as axes at home."""
     if not joints:
         raise TableError(f"{file}: there are no joints")
     chain = _chain(joints, choice.base, choice.tool, file)
-    table = Table(notes=[*notes])
+    table = Table(notes=[note for joint in chain for note in joint.notes])
     moved = Displacement.of(chain)
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.doubt = _doubt(chain)

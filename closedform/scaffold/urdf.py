@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError, ParserCreate
 
 import sympy as sp
 
@@ -34,9 +35,8 @@ COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 
 def read_urdf(path: Path, choice: Choice = DEFAULT) -> Table:
     """The chain of the ``choice``; by default from root to end."""
-    notes: list[str] = []
-    joints = [_joint(element, path.name, notes) for element in _root(path).findall("joint")]
-    return table_of(joints, path.name, notes, choice)
+    joints = [_joint(element, path.name) for element in _root(path).findall("joint")]
+    return table_of(joints, path.name, choice)
 
 
 def _root(path: Path) -> ElementTree.Element:
@@ -44,8 +44,8 @@ def _root(path: Path) -> ElementTree.Element:
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
         raise TableError(f"{path.name}: declarations such as <!ENTITY> are not read")
     try:
-        root = ElementTree.fromstring(content)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        root = _parsed(content)
+    except (ExpatError, ValueError, LookupError) as error:
         raise TableError(f"{path.name} is not valid XML: {error}") from error
     if root.tag != "robot":
         raise TableError(f"{path.name}: the file is not URDF, which begins with <robot>")
@@ -54,7 +54,16 @@ def _root(path: Path) -> ElementTree.Element:
     return root
 
 
-def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
+def _parsed(content: bytes) -> ElementTree.Element:
+    """The root element; prefixes that are not declared, as in parts for Gazebo, are left alone."""
+    tree, parser = ElementTree.TreeBuilder(), ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = tree.start, tree.end
+    parser.Parse(content, True)
+    return tree.close()
+
+
+def _joint(element: ElementTree.Element, file: str) -> Joint:
+    notes: list[str] = []
     name, kind = element.get("name", ""), element.get("type", "")
     where = f"{file}, joint {shown_name(name)}"
     if not name:
@@ -87,6 +96,7 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         direction = meant_axis(direction, where, notes)
     mimic = element.find("mimic")
     meant = placed(xyz, rpy)
+    limits = None if kind == "continuous" else _limits(element.find("limit"), where, notes)
     return Joint(
         name=name,
         kind=kind,
@@ -94,11 +104,12 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         child=links[1],
         origin=meant,
         axis=direction,
-        limits=None if kind == "continuous" else _limits(element.find("limit"), where, notes),
+        limits=limits,
         mimics="" if mimic is None else mimic.get("joint", "another joint"),
         factor=_number(mimic, "multiplier", 1, where),
         offset=_number(mimic, "offset", 0, where),
         written=None if written == (meant, direction) else written,
+        notes=tuple(notes),
     )
 
 

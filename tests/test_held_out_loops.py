@@ -38,9 +38,27 @@ def three_slides(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [norm(*row) - v.l for row in starts - ends]
 
 
+def coaxial_five_bar(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    """The leg of a Minitaur."""
+    return [norm(p[0] - v.l1 * np.cos(a), p[1] - v.l1 * np.sin(a)) - v.l2 for a in q]
+
+
+def oblique_rails(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    s = q / np.sqrt(2)
+    left = norm(p[0] + v.a - s[0], p[1] - s[0]) - v.l
+    return [left, norm(p[0] - v.a + s[1], p[1] - s[1]) - v.l]
+
+
+def scott_russell(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    return [norm(q[0], p[0]) - 2 * v.l]
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
+    "coaxial_five_bar": (coaxial_five_bar, 4),
+    "oblique_rails": (oblique_rails, 4),
     "prrrp": (prrrp, 4),
     "rssr": (rssr, 2),
+    "scott_russell": (scott_russell, 2),
     "three_slides": (three_slides, 8),
 }
 

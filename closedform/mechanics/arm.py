@@ -7,6 +7,7 @@ at home.  What every serial arm has, one call derives, proves and exports.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -30,10 +31,14 @@ from closedform.mechanics.frames import (
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
+from closedform.mechanics.places import at_tool, seen_from, to_base, to_frame
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geometric
 from closedform.model.derivation import Derivation
 
+FORWARD_ALONE: ContextVar[bool] = ContextVar("FORWARD_ALONE", default=False)
+"""Whether ``export`` only returns the forward map: all that the proof of an inverse needs."""
+TASK = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
 POSE = "Pose of the tool in the base frame."
 GEOMETRIC = "The geometric Jacobian: rows (v; omega), v of the origin of the tool."
 
@@ -64,23 +69,20 @@ class Serial:
     @cached_property
     def space(self) -> sp.Matrix:
         return sp.Matrix.hstack(
-            *(
-                _to_base(*self.groups[k].twist(j), self.groups[:k], self.lead)
-                for k, j in self.places
-            )
+            *(to_base(*self.groups[k].twist(j), self.groups[:k], self.lead) for k, j in self.places)
         )
 
     @cached_property
     def body(self) -> sp.Matrix:
         end = len(self.groups)
         return sp.Matrix.hstack(
-            *(_to_frame(k, j, self.groups, end, self.last) for k, j in self.places)
+            *(to_frame(k, j, self.groups, end, self.last) for k, j in self.places)
         )
 
     @cached_property
     def geometric(self) -> sp.Matrix:
         return sp.Matrix.hstack(
-            *(_at_tool(k, j, self.groups, self.lead, self.last) for k, j in self.places)
+            *(at_tool(k, j, self.groups, self.lead, self.last) for k, j in self.places)
         )
 
     @cached_property
@@ -88,7 +90,7 @@ class Serial:
         """The twists in the frame, somewhere along the chain, where they are shortest."""
         return min(
             (
-                sp.Matrix.hstack(*(_seen_from(k, j, self.groups, cut) for k, j in self.places))
+                sp.Matrix.hstack(*(seen_from(k, j, self.groups, cut) for k, j in self.places))
                 for cut in range(1, len(self.groups) + 1)
             ),
             key=sp.count_ops,
@@ -163,6 +165,10 @@ class Serial:
         (see :meth:`coordinates`), else the pose.
         """
         q, task, links = self.joints, self.coordinates(), self.links
+        if not d.task:
+            d.task = list(task.names if task else TASK)
+        if FORWARD_ALONE.get():
+            return self.pose if task is None else task.values
         self.require_regular(d.name)
         pose = linkwise.pose(d.program(), links)
         long = by_axes(d, self.pose, self.geometric, self.moves)
@@ -232,8 +238,6 @@ class Serial:
 
     def _export_pose_task(self, d: Derivation, pose: Named, geometric: Named) -> None:
         q = self.joints
-        if not d.task:
-            d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
         _export(d, ("fk", POSE), q, {"T": pose}, equation="T")
         summary = "Velocity and angular velocity of the tool, in base axes, per joint rate."
         _export(d, ("jacobian", summary), q, {"J": geometric}, GEOMETRIC, equation="J")
@@ -261,8 +265,6 @@ class Serial:
         singular: Mapping[str, sp.Expr] | None,
     ) -> None:
         q = self.joints
-        if not d.task:
-            d.task = list(task.names)
         place = pose.part([i for i in task.rows if i < 3], [3])
         values, notes = list(place.matrix), []
         if "yaw" in task.names:
@@ -540,49 +542,6 @@ def _seen(frame: sp.Matrix, value: sp.Matrix) -> sp.Matrix:
     """Vectors in the axes of a frame, the squares of sines and cosines of parameters reduced."""
     seen = frame.T * value
     return reduce_circle(seen.applyfunc(sp.expand)) if seen.free_symbols else seen
-
-
-def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
-    """A twist in the frame where the ``groups`` end, in the base frame."""
-    for T in [*(group.transform() for group in reversed(groups)), lead]:
-        w, v = T[:3, :3] * w, T[:3, :3] * v
-        v = (v + T[:3, 3].cross(w)).applyfunc(sp.expand)
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
-
-
-def _to_frame(k: int, j: int, groups: Sequence[Group], cut: int, last: sp.Matrix) -> sp.Matrix:
-    """The axis ``j`` of group ``k`` where group ``cut`` starts, seen from the frame ``last``."""
-    w, v = groups[k].twist_at_end(j)
-    for group in groups[k + 1 : cut]:
-        back = group.rotation.T
-        w, v = back * w, back * (v + w.cross(group.span(0))).applyfunc(sp.expand)
-        w, v = w.applyfunc(sp.expand), v.applyfunc(sp.expand)
-    w, v = last[:3, :3].T * w, last[:3, :3].T * (v + w.cross(last[:3, 3]))
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
-
-
-def _at_tool(
-    k: int, j: int, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix
-) -> sp.Matrix:
-    """The velocity that an axis gives to the tool, and the axis, in base axes."""
-    tool = last[:3, 3]
-    for group in reversed(groups[k + 1 :]):
-        tool = (group.rotation * tool + group.span(0)).applyfunc(sp.expand)
-    group = groups[k]
-    axis = sp.Matrix([0, 0, group.rows[j].sign])
-    w, v = axis, axis.cross(group.rotation * tool + group.span(0) - group.span(0, j))
-    if group.rows[j].slides:
-        w, v = sp.zeros(3, 1), axis
-    for R in [*(g.rotation for g in reversed(groups[:k])), lead[:3, :3]]:
-        w, v = (R * w).applyfunc(sp.expand), (R * v).applyfunc(sp.expand)
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
-
-
-def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
-    """The axis ``j`` of group ``k`` where group ``cut`` starts, before or after it."""
-    if k < cut:
-        return _to_frame(k, j, groups, cut, sp.eye(4))
-    return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
 
 
 __all__ = [

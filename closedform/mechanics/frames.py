@@ -229,7 +229,7 @@ def _merged(value: sp.Expr) -> sp.Expr:
 
 def _angles_together(expr: sp.Expr) -> list[set[sp.Expr]]:
     """The angles of each term; only angles that meet in a product can be merged."""
-    return [{f.args[0] for f in t.atoms(sp.sin, sp.cos)} for t in sp.Add.make_args(expr)]
+    return [{f.args[0] for f in _functions(t)} for t in sp.Add.make_args(expr)]
 
 
 def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
@@ -255,9 +255,15 @@ def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     return sp.Add(*rest, *changed) if changed else expr
 
 
+@cache
+def _functions(term: sp.Expr) -> frozenset[sp.Expr]:
+    """The sines and cosines in a term."""
+    return frozenset(term.atoms(sp.sin, sp.cos))
+
+
 def _replaced_in(term: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     """The same for a term; the term itself, if the product is not in it."""
-    if not product.atoms(sp.sin, sp.cos) <= term.atoms(sp.sin, sp.cos):
+    if not _functions(product) <= _functions(term):
         return term
     powers = dict.fromkeys(product.args, 0)
     others = []
@@ -279,6 +285,16 @@ def _replaced_in(term: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     return sp.expand(left * sum_**times)
 
 
-@cache
 def _terms(expr: sp.Expr) -> int:
-    return int(sp.count_ops(expr, visual=False)) + 3 * len(sp.Add.make_args(expr))
+    """The operations of an expression, and three more for each of its terms."""
+    terms = sp.Add.make_args(expr)
+    counted = [_operations(term) for term in terms]
+    return sum(n for n, _ in counted) + 4 * len(terms) - 1 + all(minus for _, minus in counted)
+
+
+@cache
+def _operations(term: sp.Expr) -> tuple[int, bool]:
+    """Those of a term without its minus sign, which makes a sum a difference; and if it has one."""
+    coefficient, _ = term.as_coeff_Mul()
+    minus = bool(coefficient.is_negative)
+    return int(sp.count_ops(-term if minus else term, visual=False)), minus

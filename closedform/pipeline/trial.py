@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 
 from closedform.algebra.solutions import NotRationalError
+from closedform.mechanics.arm import FORWARD_ALONE
 from closedform.pipeline.run import NOT_PROVED, DerivationError, Source, load
 from closedform.proof.inverse import prove_inverse
 
@@ -19,6 +20,7 @@ def fault(name: str, script: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.py"
         path.write_text(script, "utf-8")
+        held = FORWARD_ALONE.set(True)
         try:
             d = load(Source(name, path))
             prove_inverse(d, d.inverses[-1])
@@ -27,6 +29,8 @@ def fault(name: str, script: str) -> str:
             if isinstance(cause, NotRationalError):
                 return ""
             return str(cause or error).removeprefix(f"{name}.ik: ").partition(". ")[0]
+        finally:
+            FORWARD_ALONE.reset(held)
     return ""
 
 

@@ -216,9 +216,10 @@ class Serial:
                 *(
                     pair
                     for i, joint in enumerate(q)
+                    for moved in (self.pose.diff(joint),)
                     for pair in (
-                        (self.pose.diff(joint), twist_matrix(self.space[:, i]) * self.pose),
-                        (self.pose.diff(joint), self.pose * twist_matrix(self.body[:, i])),
+                        (moved, twist_matrix(self.space[:, i]) * self.pose),
+                        (moved, self.pose * twist_matrix(self.body[:, i])),
                     )
                 ),
             ],

@@ -54,6 +54,7 @@ from closedform.lemmas.tangent import Links as Links
 from closedform.lemmas.tangent import LinksAndWrist as LinksAndWrist
 from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.tangent import Preferred as Preferred
+from closedform.lemmas.tangent import TwoTurns as TwoTurns
 from closedform.lemmas.tangent import coordinate_within as coordinate_within
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.triangle import Triangle as Triangle

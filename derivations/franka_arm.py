@@ -9,7 +9,7 @@ from closedform import (
     Derivation,
     LinkAtHeight,
     Pair,
-    coordinate_within,
+    TwoTurns,
     from_dh,
     law_of_cosines,
     real,
@@ -126,7 +126,7 @@ bent = ik.solve(
     (upper, fore),
     far,
     {-1: "bent", +1: "over"},
-    toward=coordinate_within(lambda pair: seen(pair)[2], reach),
+    toward=TwoTurns(seen, along=u[2], across=reach),
 )
 d.step(
     "Inverse: the elbow",
@@ -150,7 +150,9 @@ tilt = ik.solve(
     toward=LinkAtHeight(sp.Abs(v[0]), u[2]),
 )
 w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * u))
-roll = ik.solve(rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]})
+roll = ik.solve(
+    rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]}, compared=True
+)
 d.step(
     "Inverse: the wrist",
     "theta6 turns the shoulder to the height of v along the forearm, and theta5 then turns it to "

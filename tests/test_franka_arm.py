@@ -117,3 +117,27 @@ def test_no_posture_is_lost_where_factors_vanish(arm: franka_arm.Parameters, nea
     found = franka_arm.ik(T, q[:, 6], arm)
     assert np.isin(found.status, (OK, SINGULAR)).any(-1).all()
     assert max(misses(drawn(found.q, arm), T, found.status)) < 1e-12 * np.abs(arm).sum()
+
+
+def test_an_elbow_at_the_wrist_is_singular_and_not_lost() -> None:
+    """Then the elbow may turn anywhere, but not every turn leaves the wrist within reach."""
+    arm = franka_arm.Parameters(d1=0.3, d3=0.4, a4=0.1, a5=0.0, d5=0.0, a7=0.1, d7=0.1)
+    q = RANDOM.uniform(-np.pi, np.pi, (2000, 7))
+    T = drawn(q, arm)
+    found = franka_arm.ik(T, q[:, 6], arm)
+    assert (found.status == SINGULAR).all()
+    assert np.abs(drawn(found.q, arm) - T[:, None]).max() < 1e-12
+
+
+@pytest.mark.parametrize("short", [("d3", "a4", "a5"), ("a4", "a5", "d5"), ("a5", "d5")])
+def test_links_much_shorter_than_others_miss_nothing(short: tuple[str, ...]) -> None:
+    """The tolerance of what the long links reach may be as large as the short ones."""
+    scales = 10.0 ** RANDOM.uniform(-4, 0, len(short))
+    arm = franka_arm.Parameters(*[1.0] * 7)._replace(**dict(zip(short, 1e-3 * scales, strict=True)))
+    q = RANDOM.uniform(-np.pi, np.pi, (4000, 7))
+    corners = RANDOM.choice([-np.pi / 2, 0, np.pi / 2, np.pi], q.shape)
+    q = np.where(RANDOM.random(q.shape) < 0.5, corners, q)
+    T = drawn(q, arm)
+    found = franka_arm.ik(T, q[:, 6], arm)
+    assert np.isin(found.status, (OK, SINGULAR)).any(-1).all()
+    assert max(misses(drawn(found.q, arm), T, found.status)) < 1e-12 * sum(arm)

@@ -52,7 +52,7 @@ def law_of_cosines(
 ) -> Applied:
     """The elbow of two links whose ends are r apart: two solutions.
 
-    It is free if a link has no length; 0 is returned then.
+    It is free if a link has no length; then 0 is returned, or what ``toward`` needs.
 
     Parameters
     ----------
@@ -91,7 +91,8 @@ def law_of_cosines(
     if toward is not ANYWHERE:
         turn = _tangency(chain, x, triangle, (twice, whole, r), name)
         bent = toward.reached(turn).pair
-    pair, means = named(chain, x, Pair(choose(flag, 0, bent.s), choose(flag, 1, bent.c)))
+    free = Pair(sp.S.Zero, sp.S.One) if flag is sp.false else toward.anywhere(p, f"_{name}")
+    pair, means = named(chain, x, Pair(choose(flag, free.s, bent.s), choose(flag, free.c, bent.c)))
     lemma = Lemma(
         "law of cosines",
         r"l_1^2 + l_2^2 + 2 l_1 l_2 \cos\theta = r^2 \;\Rightarrow\; (\cos\theta, \sin\theta) = "
@@ -105,7 +106,10 @@ def law_of_cosines(
         letters=triangle.letters,
     )
     loci = [{gone: sp.S.Zero, r: other} for gone, other in ((l1, l2), (l2, l1)) if gone.is_Symbol]
-    cases = degenerate(flag, loci, x, f"a link without length: {x} is free, 0 is returned.")
+    returned = "0" if toward is ANYWHERE else "one within reach"
+    cases = degenerate(
+        flag, loci, x, f"a link without length: {x} is free, {returned} is returned."
+    )
     return Applied(lemma, pair, means, {}, cases)
 
 

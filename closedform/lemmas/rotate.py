@@ -42,6 +42,7 @@ def rotate(
     *,
     because: Because | None = None,
     scale: sp.Expr | None = None,
+    compared: bool = False,
     reaching: Reaching | None = None,
     name: str = "",
 ) -> Applied:
@@ -62,6 +63,9 @@ def rotate(
         these unknowns, each times the factor given
     scale
         that of the vectors, by default the size of the arm
+    compared
+        whether the lengths are compared: an earlier lemma may have made them only nearly equal,
+        where the tolerance of a reach is a large part of them
     reaching
         what the rest of the arm has to reach, if the turn decides on it
     name
@@ -77,7 +81,11 @@ def rotate(
     cosine = p.let(f"dot_{tag}", w1 * v1 + w2 * v2)
     length = p.let(f"square_{tag}", sp.sqrt(sine**2 + cosine**2), nonnegative=True)
     flag: Any = sp.false
-    shorter = sp.Min(sp.sqrt(w1**2 + w2**2), sp.sqrt(v1**2 + v2**2))
+    of_w, of_v = sp.sqrt(w1**2 + w2**2), sp.sqrt(v1**2 + v2**2)
+    if compared:
+        # half: what is allowed here stays well within the round trip that is promised
+        p.match(of_w - of_v, size / 2, f"{x.name} turns a vector to one of its length")
+    shorter = sp.Min(of_w, of_v)
     if not any(differs_from_zero(chain, e, size) for e in (w1, w2)):
         flag = p.vanishes(
             f"on_axis_{tag}", shorter, size, f"the axis of {x.name} is met", free=(x,)

@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -182,21 +182,19 @@ class Reached:
     root: sp.Expr | None
 
 
-class Goal(Protocol):
-    """A point that later joints must reach; it chooses among turns that differ by rounding."""
+class Goal:
+    """What later joints must reach; it chooses among turns that differ by rounding."""
 
     def reached(self, turn: Tangency) -> Reached:
-        """The turn within reach that is nearest to the computed one."""
-
-
-class Anywhere:
-    """No goal: the turn stays as it was computed."""
-
-    def reached(self, turn: Tangency) -> Reached:
+        """The turn within reach that is nearest to the computed one; without a goal, that one."""
         return Reached(turn.pair(turn.root, turn.width), turn.root)
 
+    def anywhere(self, program: Program, suffix: str) -> Pair:
+        """The pair of a turn that is free."""
+        return Pair(sp.S.Zero, sp.S.One)
 
-ANYWHERE = Anywhere()
+
+ANYWHERE = Goal()
 
 
 class Preferred(NamedTuple):
@@ -207,7 +205,7 @@ class Preferred(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LinksAtHeight:
+class LinksAtHeight(Goal):
     """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
 
     That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
@@ -253,7 +251,7 @@ class LinksAtHeight:
 
 
 @dataclass(frozen=True)
-class LinkAtHeight:
+class LinkAtHeight(Goal):
     """One link that ends at a ``height``; its other coordinate is the root of a turn.
 
     So the square of the root is known twice.  Near a tangent that one is taken which rounding
@@ -276,7 +274,67 @@ class LinkAtHeight:
 
 
 @dataclass(frozen=True)
-class Links:
+class Between(Goal):
+    """A point of a plane, linear in the pair of a turn, between two distances from the origin."""
+
+    q: Callable[[Pair], sp.Matrix]
+    low: sp.Expr
+    high: sp.Expr
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, changed by no more than rounding where it is tangent."""
+        return _changed_where_tangent(self, turn)
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with q between the distances."""
+        x, y = turn.linear("q", self.q)
+        return turn.least(Within(x, y, y[0] ** 2 + y[1] ** 2, self.low, self.high))
+
+
+def coordinate_within(value: Callable[[Pair], sp.Expr], most: sp.Expr) -> Between:
+    """The goal that a coordinate, linear in the pair of a turn, is at most ``most`` in size."""
+    return Between(lambda pair: sp.Matrix([value(pair), 0]), sp.S.Zero, most)
+
+
+@dataclass(frozen=True)
+class TwoTurns(Goal):
+    """Two turns, about axes at a right angle that meet, that bring a vector to this one.
+
+    The ``vector`` is linear in the pair of an earlier turn: x across the second axis, z along it.
+    The other vector, equally long, is ``along`` and ``across`` the first axis.  So there are such
+    turns if ``|z| <= across``, or if ``|x| >= |along|``, which says the same.  What is asked for is
+    that about the shorter one, which says more.
+    """
+
+    vector: Callable[[Pair], sp.Matrix]
+    along: sp.Expr
+    across: sp.Expr
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, changed by no more than rounding where it is tangent."""
+        along, size = sp.Abs(self.along), turn.chain.size
+
+        def shorter(x: sp.Expr, z: sp.Expr) -> sp.Expr:
+            return sp.Piecewise((x, along < self.across), (z, True))
+
+        def q(pair: Pair) -> sp.Matrix:
+            v = self.vector(pair)
+            return sp.Matrix([shorter(v[0], v[2]), 0])
+
+        goal = Between(q, shorter(along, sp.S.Zero), shorter(size, self.across))
+        return goal.reached(turn)
+
+    def anywhere(self, program: Program, suffix: str) -> Pair:
+        """The pair of a turn that is free: z does not depend on it more than it must."""
+        s, c = sp.Dummy("s"), sp.Dummy("c")
+        z = self.vector(Pair(s, c))[2]
+        y, x = (program.let(f"level_{n}{suffix}", z.diff(e)) for n, e in (("s", s), ("c", c)))
+        length = program.let(f"level{suffix}", sp.sqrt(x**2 + y**2), nonnegative=True)
+        return direction(-x, y, length, sp.Eq(length, 0))
+
+
+@dataclass(frozen=True)
+class Links(Goal):
     """Two links that have to reach the point q of their plane, linear in the pair of a turn."""
 
     q: Callable[[Pair], sp.Matrix]
@@ -285,32 +343,29 @@ class Links:
 
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn, changed by no more than rounding where it is tangent."""
-        chain, at, suffix = turn.chain, turn.at, turn.suffix
-        found = turn.pair(turn.root, turn.width)
-        tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
-        near = self.nearest(
-            Turn(
-                chain=chain,
-                pair=found,
-                lever=turn.root,
-                beside=at.c,
-                allowance=turn.allowance,
-                name=suffix,
-            ).renamed(found, f"{suffix}_1")
-        )
-        s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
-        return Reached(Pair(s, c), None)
+        return _changed_where_tangent(self, turn)
 
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q within reach."""
-        x, y = turn.linear("q", self.q)
-        bend = y[0] ** 2 + y[1] ** 2
-        return turn.least(Within(x, y, bend, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
+        return Between(self.q, sp.Abs(self.l1 - self.l2), self.l1 + self.l2).nearest(turn)
 
 
-def coordinate_within(value: Callable[[Pair], sp.Expr], most: sp.Expr) -> Links:
-    """The goal that a coordinate, linear in the pair of a turn, is at most ``most`` in size."""
-    return Links(lambda pair: sp.Matrix([value(pair), 0]), most / 2, most / 2)
+def _changed_where_tangent(goal: Between | Links, turn: Tangency) -> Reached:
+    chain, at, suffix = turn.chain, turn.at, turn.suffix
+    found = turn.pair(turn.root, turn.width)
+    tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
+    near = goal.nearest(
+        Turn(
+            chain=chain,
+            pair=found,
+            lever=turn.root,
+            beside=at.c,
+            allowance=turn.allowance,
+            name=suffix,
+        ).renamed(found, f"{suffix}_1")
+    )
+    s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
+    return Reached(Pair(s, c), None)
 
 
 @dataclass(frozen=True)

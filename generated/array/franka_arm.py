@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 475 compare and select, 338 add, 23 atan2, 41 divide, 577 multiply, 1 sincos, 52 sqrt
+#   ik: 532 compare and select, 353 add, 23 atan2, 43 divide, 593 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the
@@ -1021,7 +1021,7 @@ def _ik(
     invalid = ops.opposite(t11)
     t12 = d3 + a4 + a5 + d5 + ops.abs(a7) + ops.abs(d1)
     size = t12 + ops.abs(d7)
-    t13 = -(ops.feasibility * (size * 0.5))
+    t13 = ops.feasibility * (size * 0.5)
     t14 = a4 * a4 + d3 * d3
     upper = ops.sqrt(t14)
     t15 = a5 * a5 + d5 * d5
@@ -1041,7 +1041,7 @@ def _ik(
     t24 = upper - fore
     t25 = t24 + far
     t26 = far - t24
-    t27 = (t13 <= t23) & (t13 <= t25) & (t13 <= t26)
+    t27 = (-t13 <= t23) & (-t13 <= t25) & (-t13 <= t26)
     reach = ops.sqrt(t21)
     t28 = a4 * a5 - d3 * d5
     t29 = a4 * d5 + d3 * a5
@@ -1051,664 +1051,704 @@ def _ik(
     t31 = 1.0 / size_straight
     c_straight = ops.select(no_straight, 1.0, -(t28 * t31))
     no_link_elbow = upper * fore <= ops.vanishing * (t16 * t16)
-    t32 = (t16 + far) * ops.max(t23, 0.0)
-    t33 = ops.max(t25, 0.0) * ops.max(t26, 0.0)
-    t34 = size * 4.0
-    lever_elbow = 2.0 * ops.sqrt(t32 * t33) / t34
-    t35 = ops.vanishing * size
-    tangent_elbow = lever_elbow - size * 0.00390625 <= t35
-    t36 = size * 2.0
-    t37 = 1.0 / t36
-    t38 = t37 * t32
-    span_elbow = t37 * (t32 + t33)
-    t39 = 1.0 / span_elbow
-    t40 = (t38 - t37 * t33) * t39
     s_straight = ops.select(no_straight, 0.0, t29 * t31)
-    t41 = s_straight * t40
-    s__elbow_1_over_ahead_front = t39 * (2.0 * lever_elbow)
-    t42 = c_straight * s__elbow_1_over_ahead_front
-    t43 = c_straight * t40
-    t44 = s_straight * s__elbow_1_over_ahead_front
-    t45 = d5 - a4 * (t41 - t42) - d3 * (t43 + t44)
-    t46 = (a4 * c_straight - d3 * s_straight) * t40
-    t47 = (a4 * s_straight + d3 * c_straight) * s__elbow_1_over_ahead_front
-    t48 = t46 + t47
-    slope__elbow_1 = t45 * t48
-    square__elbow_1 = t45 * t45
-    t49 = size * 5.684341886080802e-14
-    t50 = ops.max(0.0, -t49)
-    low__elbow_1 = t50 * t50
-    t51 = reach + t49
-    high__elbow_1 = t51 * t51
-    t52 = ops.max(low__elbow_1, ops.min(high__elbow_1, square__elbow_1))
-    miss__elbow_1 = square__elbow_1 - t52
-    bend__elbow_1 = t48 * t48
-    inner__elbow_1 = slope__elbow_1 * slope__elbow_1 - miss__elbow_1 * bend__elbow_1
-    t53 = inner__elbow_1 < 0.0
-    t54 = ops.sign(slope__elbow_1)
-    outer__elbow_1 = slope__elbow_1 + t54 * ops.sqrt(ops.max(0.0, inner__elbow_1))
-    below__elbow_1 = ops.select(t53, 2.0 * bend__elbow_1, 2.0 * outer__elbow_1)
-    above__elbow_1 = ops.select(t53, slope__elbow_1, miss__elbow_1)
-    t55 = ops.abs(below__elbow_1) <= ops.abs(above__elbow_1)
-    t56 = ops.select(t55, 0.0, above__elbow_1 / below__elbow_1)
-    t57 = t56 * t56
-    t58 = 1.0 / (1.0 + t57)
-    t59 = 2.0 * t56 * t58
-    t60 = ops.abs(span_elbow * 0.5 - t38)
-    by_c__elbow_1 = t58 * (1.0 - t57)
-    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t59 * t59 / (1.0 + ops.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * ops.abs(t59) + t60 * versine__elbow_1
+    t32 = a4 * s_straight + d3 * c_straight
+    level_s_elbow = a4 * c_straight - d3 * s_straight
+    level_elbow = ops.sqrt(t32 * t32 + level_s_elbow * level_s_elbow)
+    t33 = (level_elbow == 0.0)
+    t34 = 1.0 / level_elbow
+    t35 = ops.select(t33, 0.0, t32 * t34)
+    t36 = (t16 + far) * ops.max(t23, 0.0)
+    t37 = ops.max(t25, 0.0) * ops.max(t26, 0.0)
+    t38 = size * 4.0
+    lever_elbow = 2.0 * ops.sqrt(t36 * t37) / t38
+    t39 = ops.vanishing * size
+    tangent_elbow = lever_elbow - size * 0.00390625 <= t39
+    t40 = size * 2.0
+    t41 = 1.0 / t40
+    t42 = t41 * t36
+    span_elbow = t41 * (t36 + t37)
+    t43 = 1.0 / span_elbow
+    t44 = (t42 - t41 * t37) * t43
+    t45 = ops.abs(w_y)
+    t46 = t45 < reach
+    t47 = c_straight * t44
+    s__elbow_1_over_ahead_front = t43 * (2.0 * lever_elbow)
+    t48 = s_straight * s__elbow_1_over_ahead_front
+    t49 = t47 + t48
+    t50 = s_straight * t44
+    t51 = c_straight * s__elbow_1_over_ahead_front
+    t52 = t50 - t51
+    qx__elbow_1 = ops.select(t46, a5 + a4 * t49 - d3 * t52, d3 * t49 - (d5 - a4 * t52))
+    t53 = ops.select(t46, -t32, level_s_elbow) * t44
+    t54 = ops.select(t46, level_s_elbow, t32) * s__elbow_1_over_ahead_front
+    t55 = t53 + t54
+    t56 = qx__elbow_1 * t55
+    square__elbow_1 = qx__elbow_1 * qx__elbow_1
+    t57 = size * 5.684341886080802e-14
+    t58 = ops.max(0.0, ops.select(t46, t45, 0.0) - t57)
+    low__elbow_1 = t58 * t58
+    t59 = t57 + ops.select(t46, size, reach)
+    high__elbow_1 = t59 * t59
+    t60 = ops.max(low__elbow_1, ops.min(high__elbow_1, square__elbow_1))
+    miss__elbow_1 = square__elbow_1 - t60
+    bend__elbow_1 = t55 * t55
+    inner__elbow_1 = t56 * t56 - miss__elbow_1 * bend__elbow_1
+    t61 = inner__elbow_1 < 0.0
+    t62 = ops.sign(-t56)
+    t63 = t56 - t62 * ops.sqrt(ops.max(0.0, inner__elbow_1))
+    below__elbow_1 = ops.select(t61, 2.0 * bend__elbow_1, -(2.0 * t63))
+    above__elbow_1 = ops.select(t61, -t56, miss__elbow_1)
+    t64 = ops.abs(below__elbow_1) <= ops.abs(above__elbow_1)
+    t65 = ops.select(t64, 0.0, above__elbow_1 / below__elbow_1)
+    t66 = t65 * t65
+    t67 = 1.0 / (1.0 + t66)
+    t68 = 2.0 * t65 * t67
+    t69 = ops.abs(span_elbow * 0.5 - t42)
+    by_c__elbow_1 = t67 * (1.0 - t66)
+    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t68 * t68 / (1.0 + ops.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
+    cost__elbow_1 = lever_elbow * ops.abs(t68) + t69 * versine__elbow_1
     whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
-    t61 = cost__elbow_1 <= whole__elbow_1
-    sine__elbow_1 = ops.select(t61, -t59, 0.0)
-    cosine__elbow_1 = ops.select(t61, by_c__elbow_1, 1.0)
-    t62 = s__elbow_1_over_ahead_front * cosine__elbow_1
-    t63 = ops.select(tangent_elbow, t40 * sine__elbow_1 + t62, s__elbow_1_over_ahead_front)
-    t64 = ops.select(no_link_elbow, 0.0, t63)
-    t65 = t40 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t65, t40))
-    t66 = c_straight * t64 + s_straight * celbow
-    t67 = c_straight * celbow - s_straight * t64
-    t68 = d5 + a4 * t66 + d3 * t67
-    t69 = reach + t68
-    t70 = reach - t68
-    unreachable = ops.opposite(t27 & (t13 <= t69) & (t13 <= t70))
+    t70 = cost__elbow_1 <= whole__elbow_1
+    sine__elbow_1 = ops.select(t70, -t68, 0.0)
+    cosine__elbow_1 = ops.select(t70, by_c__elbow_1, 1.0)
+    t71 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t72 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t71, s__elbow_1_over_ahead_front)
+    selbow = ops.select(no_link_elbow, t35, -t72)
+    t73 = ops.select(t33, 1.0, level_s_elbow * t34)
+    t74 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t74, t44))
+    t75 = c_straight * selbow - s_straight * celbow
+    t76 = c_straight * celbow + s_straight * selbow
+    t77 = d5 - a4 * t75 + d3 * t76
+    t78 = reach + t77
+    t79 = reach - t77
+    t80 = t27 & (-t13 <= t78) & (-t13 <= t79)
+    v_x = a5 - a4 * t76 - d3 * t75
+    t81 = ops.sqrt(v_x * v_x)
+    free6 = reach <= t39
+    t82 = reach * 0.00390625
+    t83 = reach * ops.vanishing
+    tangent6 = ops.sqrt(ops.abs(t78 * t79)) - t82 <= t83
+    t84 = ops.abs(v_x)
+    t85 = t84 < reach
+    below6 = ops.max(t78, 0.0)
+    above6 = ops.max(t79, 0.0)
+    t86 = below6 * above6
+    held6 = ops.select(t85, ops.max(0.0, -((t45 - t84) * (t45 + t84))), t86)
+    t87 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t87 * t87), below6 + above6)
+    t88 = 1.0 / (reach * span6)
+    t89 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t86))
+    t90 = t88 * (t89 * kept6)
+    t91 = t88 * (s_z * t87)
+    c6 = ops.select(free6, 1.0, t90 + t91)
+    t92 = s_z * 2.0
+    t93 = t92 * kept6 * t88
+    t94 = t88 * (u_x * t87)
+    s6 = ops.select(free6, 0.0, t93 - t94)
+    w_x = u_x * c6 + s_z * s6
+    t95 = ops.sqrt(t20 + w_x * w_x)
+    unreachable = ops.opposite(t80 & (ops.abs(t81 - t95) <= t13))
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    free6 = reach <= t35
-    t71 = s_z * 2.0
-    t72 = reach * 0.00390625
-    t73 = reach * ops.vanishing
-    tangent6 = ops.sqrt(ops.abs(t69 * t70)) - t72 <= t73
-    v_x = a5 - a4 * t67 + d3 * t66
-    t74 = ops.abs(v_x)
-    t75 = t74 < reach
-    t76 = ops.abs(w_y)
-    below6 = ops.max(t69, 0.0)
-    above6 = ops.max(t70, 0.0)
-    t77 = below6 * above6
-    held6 = ops.select(t75, ops.max(0.0, -((t76 - t74) * (t76 + t74))), t77)
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t77))
-    t78 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t78 * t78), below6 + above6)
-    t79 = 1.0 / (reach * span6)
-    t80 = t71 * kept6 * t79
-    t81 = t79 * (u_x * t78)
-    s6 = ops.select(free6, 0.0, t80 - t81)
-    t82 = u_x * 2.0
-    t83 = t79 * (t82 * kept6)
-    t84 = t79 * (s_z * t78)
-    c6 = ops.select(free6, 1.0, t83 + t84)
-    t85 = ops.sqrt(v_x * v_x)
-    w_x = u_x * c6 + s_z * s6
-    on_axis_5 = ops.min(t85, ops.sqrt(t20 + w_x * w_x)) <= t35
+    on_axis_5 = ops.min(t81, t95) <= t39
     dot_5 = v_x * w_x
-    t86 = w_y * v_x
-    t87 = t86 * t86
-    t88 = 1.0 / ops.sqrt(t87 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t88)
+    t96 = w_y * v_x
+    t97 = t96 * t96
+    t98 = 1.0 / ops.sqrt(t97 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t98)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t89 = ops.select(on_axis_5, 0.0, t86 * t88)
-    t90 = t66 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t89)
-    R4_13 = t67 * (R1_11 * s6 - T13 * c6) - t90
+    t99 = ops.select(on_axis_5, 0.0, t96 * t98)
+    t100 = t75 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t99)
+    R4_13 = t76 * (R1_11 * s6 - T13 * c6) + t100
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t91 = t66 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t89)
-    R4_23 = t67 * (R1_21 * s6 - T23 * c6) - t91
-    t92 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t92
-    t93 = ops.opposite(failed)
-    t94 = d5 - a4 * (t41 + t42) - d3 * (t43 - t44)
-    t95 = t46 - t47
-    slope__elbow_1_over_ahead_front = t94 * t95
-    t96 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
-    square__elbow_1_over_ahead_front = t94 * t94
-    t97 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t97)
-    bend__elbow_1_over_ahead_front = t95 * t95
-    t98 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t96 - t98
-    t99 = inner__elbow_1_over_ahead_front < 0.0
-    t100 = ops.sign(slope__elbow_1_over_ahead_front)
-    t101 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t100 * ops.sqrt(t101)
-    below__elbow_1_over_ahead_front = ops.select(t99, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
-    above__elbow_1_over_ahead_front = ops.select(t99, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
-    t102 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
-    t103 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    t104 = ops.select(t102, 0.0, t103)
-    t105 = t104 * t104
-    t106 = 1.0 / (1.0 + t105)
-    t107 = 2.0 * t104 * t106
-    by_c__elbow_1_over_ahead_front = t106 * (1.0 - t105)
-    t108 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t107 * t107 / t108, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t107) + t60 * versine__elbow_1_over_ahead_front
-    t109 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t109, by_c__elbow_1_over_ahead_front, 1.0)
-    t110 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t109, -t107, 0.0)
-    t111 = ops.select(tangent_elbow, t110 - t40 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, 0.0, t111)
-    t112 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t113 = t40 * cosine__elbow_1_over_ahead_front + t112
-    celbow_over_ahead_front = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t113, t40))
-    t114 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t115 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t116 = d5 - a4 * t114 + d3 * t115
-    t117 = reach + t116
-    t118 = reach - t116
-    unreachable_2 = ops.opposite(t27 & (t13 <= t117) & (t13 <= t118))
+    t101 = t75 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t99)
+    R4_23 = t76 * (R1_21 * s6 - T23 * c6) + t101
+    t102 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t102
+    t103 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t91 - t90)
+    t104 = ops.select(free6, 0.0, t93 + t94)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t104
+    t105 = w_x_bent_behind_front * w_x_bent_behind_front
+    t106 = ops.sqrt(t20 + t105)
+    unreachable_2 = ops.opposite(t80 & (ops.abs(t81 - t106) <= t13))
     failed_2 = invalid | unreachable_2
-    t119 = ops.opposite(failed_2)
-    t120 = t93 | t119
-    t121 = ops.opposite(no_link_elbow)
-    t122 = t119 & t121
-    t123 = t122 & tangent_elbow & t109
-    t124 = t123 & ops.opposite(t102)
-    t125 = t93 & t121
-    t126 = t125 & tangent_elbow & t61
-    t127 = t126 & ops.opposite(t55)
-    t128 = (t120 | t124 | t127) & ops.opposite(no_straight)
-    t129 = ops.select(t128, ops.sqrt(ops.select(t128, t30, 1.0)), 1.0)
-    t130 = 1.0 / t129
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t130))
-    t131 = t122 | t124 | t125 | t127
-    t132 = 1.0 / ops.select(t131, t36, 1.0)
-    upper_2 = ops.sqrt(ops.select(t131, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t131, t15, 1.0))
-    t133 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t131, t22, 1.0))
-    t134 = (t133 + far_2) * ops.max(t133 - far_2, 0.0)
-    t135 = upper_2 - fore_2
-    t136 = ops.max(t135 + far_2, 0.0) * ops.max(far_2 - t135, 0.0)
-    t137 = 1.0 / ops.select(t131, t132 * (t134 + t136), 1.0)
-    t138 = (t132 * t134 - t132 * t136) * t137
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t130)
-    t139 = s_straight_2 * t138
-    area_elbow = 2.0 * ops.sqrt(ops.select(t131, t134 * t136, 1.0))
-    t140 = 2.0 * (area_elbow / ops.select(t131, t34, 1.0))
-    s__elbow_1_over_ahead_front_2 = t137 * t140
-    t141 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t142 = c_straight_2 * t138
-    t143 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t144 = d5 - a4 * (t139 - t141) - d3 * (t142 + t143)
-    t145 = (a4 * c_straight_2 - d3 * s_straight_2) * t138
-    t146 = (a4 * s_straight_2 + d3 * c_straight_2) * s__elbow_1_over_ahead_front_2
-    t147 = t145 + t146
-    slope__elbow_1_2 = t144 * t147
-    square__elbow_1_2 = t144 * t144
-    t148 = ops.opposite(free6)
-    t149 = t119 & t148
-    tangent6_over_ahead_front = ops.sqrt(ops.abs(t117 * t118)) - t72 <= t73
-    t150 = t149 & tangent6_over_ahead_front
-    v_x_over_ahead_front = a5 - a4 * t115 - d3 * t114
-    t151 = ops.abs(v_x_over_ahead_front)
-    t152 = t151 < reach
-    t153 = t124 & ops.opposite(t99)
-    t154 = t93 & t148
-    t155 = t149 | (t150 & ops.opposite(t152)) | t153 | t154
-    t156 = t154 & tangent6
-    t157 = t127 & ops.opposite(t53)
-    t158 = ops.select(t155 | (t156 & ops.opposite(t75)) | t157, t21, 1.0)
-    reach_2 = ops.sqrt(t158)
-    t159 = reach_2 + t49
-    high__elbow_1_2 = t159 * t159
-    t160 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    miss__elbow_1_2 = square__elbow_1_2 - t160
-    above__elbow_1_2 = ops.select(t53, slope__elbow_1_2, miss__elbow_1_2)
-    bend__elbow_1_2 = t147 * t147
-    inner__elbow_1_2 = slope__elbow_1_2 * slope__elbow_1_2 - miss__elbow_1_2 * bend__elbow_1_2
-    t161 = ops.select(t157, ops.max(0.0, inner__elbow_1_2), 1.0)
-    t162 = 2.0 * (slope__elbow_1_2 + t54 * ops.sqrt(t161))
-    t163 = ops.select(t127, ops.select(t53, 2.0 * bend__elbow_1_2, t162), 1.0)
-    t164 = ops.select(t55, 0.0, above__elbow_1_2 / t163)
-    t165 = t164 * t164
-    t166 = 1.0 / ops.select(t126, 1.0 + t165, 1.0)
-    cosine__elbow_1_2 = ops.select(t61, t166 * (1.0 - t165), 1.0)
-    sine__elbow_1_2 = ops.select(t61, -(2.0 * t164 * t166), 0.0)
-    t167 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t168 = ops.select(tangent_elbow, t138 * cosine__elbow_1_2 - t167, t138)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -t168)
-    t169 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t170 = ops.select(tangent_elbow, t138 * sine__elbow_1_2 + t169, s__elbow_1_over_ahead_front_2)
-    t171 = ops.select(no_link_elbow, 0.0, t170)
-    t172 = c_straight_2 * celbow_2 - s_straight_2 * t171
-    t173 = c_straight_2 * t171 + s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t172 + d3 * t173
-    t174 = ops.abs(v_x_2)
-    t175 = d5 + a4 * t173 + d3 * t172
-    below6_2 = ops.max(reach_2 + t175, 0.0)
-    above6_2 = ops.max(reach_2 - t175, 0.0)
-    t176 = below6_2 * above6_2
-    held6_2 = ops.select(t75, ops.max(0.0, -((t76 - t174) * (t76 + t174))), t176)
-    t177 = ops.select(t154 & ops.opposite(tangent6), t176, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t156, held6_2, 1.0)), ops.sqrt(t177))
-    t178 = below6_2 - above6_2
-    t179 = ops.select(t156, 4.0 * held6_2 + t178 * t178, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t179), below6_2 + above6_2)
-    t180 = 1.0 / ops.select(t154, reach_2 * span6_2, 1.0)
-    t181 = t71 * kept6_2 * t180
-    t182 = t180 * (u_x * t178)
-    s6_2 = ops.select(free6, 0.0, t181 - t182)
-    t183 = t180 * (t82 * kept6_2)
-    t184 = t180 * (s_z * t178)
-    c6_2 = ops.select(free6, 1.0, t183 + t184)
+    t107 = ops.opposite(failed_2)
+    t108 = t103 | t107
+    t109 = t47 - t48
+    t110 = t50 + t51
+    qx__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t109 - d3 * t110, d3 * t109 - (d5 - a4 * t110))
+    t111 = t53 - t54
+    t112 = qx__elbow_1_over_ahead_front * t111
+    square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
+    t113 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t113)
+    bend__elbow_1_over_ahead_front = t111 * t111
+    t114 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t112 * t112 - t114
+    t115 = inner__elbow_1_over_ahead_front < 0.0
+    t116 = ops.sign(-t112)
+    t117 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    below__elbow_1_over_ahead_front = ops.select(t115, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t112 - t116 * ops.sqrt(t117))))
+    above__elbow_1_over_ahead_front = ops.select(t115, -t112, miss__elbow_1_over_ahead_front)
+    t118 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
+    t119 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    t120 = ops.select(t118, 0.0, t119)
+    t121 = t120 * t120
+    t122 = 1.0 / (1.0 + t121)
+    t123 = 2.0 * t120 * t122
+    by_c__elbow_1_over_ahead_front = t122 * (1.0 - t121)
+    t124 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t123 * t123 / t124, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t123) + t69 * versine__elbow_1_over_ahead_front
+    t125 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t125, by_c__elbow_1_over_ahead_front, 1.0)
+    t126 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t125, -t123, 0.0)
+    t127 = ops.select(tangent_elbow, t126 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t127)
+    t128 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t129 = t44 * cosine__elbow_1_over_ahead_front + t128
+    celbow_over_ahead_front = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t129, t44))
+    t130 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t131 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t132 = d5 - a4 * t130 + d3 * t131
+    t133 = reach + t132
+    t134 = reach - t132
+    t135 = t27 & (-t13 <= t133) & (-t13 <= t134)
+    v_x_over_ahead_front = a5 - a4 * t131 - d3 * t130
+    t136 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    tangent6_over_ahead_front = ops.sqrt(ops.abs(t133 * t134)) - t82 <= t83
+    t137 = ops.abs(v_x_over_ahead_front)
+    t138 = t137 < reach
+    below6_over_ahead_front = ops.max(t133, 0.0)
+    above6_over_ahead_front = ops.max(t134, 0.0)
+    t139 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t138, ops.max(0.0, -((t45 - t137) * (t45 + t137))), t139)
+    t140 = below6_over_ahead_front - above6_over_ahead_front
+    t141 = ops.sqrt(4.0 * held6_over_ahead_front + t140 * t140)
+    width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t141, width6_over_ahead_front)
+    t142 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t139))
+    t143 = t142 * (t89 * kept6_over_ahead_front)
+    t144 = t142 * (s_z * t140)
+    c6_over_ahead_front = ops.select(free6, 1.0, t143 + t144)
+    t145 = t92 * kept6_over_ahead_front * t142
+    t146 = t142 * (u_x * t140)
+    s6_over_ahead_front = ops.select(free6, 0.0, t145 - t146)
+    w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
+    t147 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t148 = ops.sqrt(t147)
+    unreachable_3 = ops.opposite(t135 & (ops.abs(t136 - t148) <= t13))
+    failed_3 = invalid | unreachable_3
+    t149 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t144 - t143)
+    t150 = ops.select(free6, 0.0, t145 + t146)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t150
+    t151 = w_x_over_behind_front * w_x_over_behind_front
+    t152 = ops.sqrt(t20 + t151)
+    unreachable_4 = ops.opposite(t135 & (ops.abs(t136 - t152) <= t13))
+    failed_4 = invalid | unreachable_4
+    t153 = ops.opposite(failed_4)
+    t154 = t108 | t149 | t153
+    t155 = t149 | t153
+    t156 = ops.opposite(no_link_elbow)
+    t157 = t155 & t156
+    t158 = t157 & tangent_elbow & t125
+    t159 = t158 & ops.opposite(t118)
+    t160 = (t155 & no_link_elbow) | (t108 & no_link_elbow)
+    t161 = t160 & ops.opposite(t33)
+    t162 = t108 & t156
+    t163 = t162 & tangent_elbow & t70
+    t164 = t163 & ops.opposite(t64)
+    t165 = (t154 | t159 | t161 | t164) & ops.opposite(no_straight)
+    t166 = ops.select(t165, ops.sqrt(ops.select(t165, t30, 1.0)), 1.0)
+    t167 = 1.0 / t166
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t167))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t167)
+    level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
+    t168 = a4 * s_straight_2 + d3 * c_straight_2
+    t169 = t168 * t168 + level_s_elbow_2 * level_s_elbow_2
+    t170 = ops.select(t161, ops.sqrt(ops.select(t161, t169, 1.0)), 1.0)
+    t171 = 1.0 / t170
+    t172 = ops.select(t33, 1.0, level_s_elbow_2 * t171)
+    t173 = t157 | t159 | t162 | t164
+    t174 = 1.0 / ops.select(t173, t40, 1.0)
+    upper_2 = ops.sqrt(ops.select(t173, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t173, t15, 1.0))
+    t175 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t173, t22, 1.0))
+    t176 = (t175 + far_2) * ops.max(t175 - far_2, 0.0)
+    t177 = upper_2 - fore_2
+    t178 = ops.max(t177 + far_2, 0.0) * ops.max(far_2 - t177, 0.0)
+    t179 = 1.0 / ops.select(t173, t174 * (t176 + t178), 1.0)
+    t180 = (t174 * t176 - t174 * t178) * t179
+    t181 = c_straight_2 * t180
+    area_elbow = 2.0 * ops.sqrt(ops.select(t173, t176 * t178, 1.0))
+    t182 = 2.0 * (area_elbow / ops.select(t173, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t179 * t182
+    t183 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t184 = t181 + t183
+    t185 = s_straight_2 * t180
+    t186 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t187 = t185 - t186
+    qx__elbow_1_2 = ops.select(t46, a5 + a4 * t184 - d3 * t187, d3 * t184 - (d5 - a4 * t187))
+    t188 = ops.select(t46, -t168, level_s_elbow_2) * t180
+    t189 = ops.select(t46, level_s_elbow_2, t168) * s__elbow_1_over_ahead_front_2
+    t190 = t188 + t189
+    t191 = qx__elbow_1_2 * t190
+    square__elbow_1_2 = qx__elbow_1_2 * qx__elbow_1_2
+    t192 = ops.opposite(free6)
+    t193 = (t153 & t192) | (t149 & t192)
+    t194 = t193 & tangent6_over_ahead_front
+    t195 = t107 & t192
+    t196 = t103 & t192
+    t197 = t193 | (t194 & ops.opposite(t138)) | t195 | t196
+    t198 = t195 | t196
+    t199 = t198 & tangent6
+    t200 = t159 & ops.opposite(t115)
+    t201 = t164 & ops.opposite(t61)
+    t202 = t197 | (t199 & ops.opposite(t85)) | ((t200 | t201) & ops.opposite(t46))
+    reach_2 = ops.sqrt(ops.select(t202, t21, 1.0))
+    t203 = t57 + ops.select(t46, size, reach_2)
+    high__elbow_1_2 = t203 * t203
+    t204 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
+    miss__elbow_1_2 = square__elbow_1_2 - t204
+    bend__elbow_1_2 = t190 * t190
+    inner__elbow_1_2 = t191 * t191 - miss__elbow_1_2 * bend__elbow_1_2
+    t205 = ops.select(t201, ops.max(0.0, inner__elbow_1_2), 1.0)
+    below__elbow_1_2 = ops.select(t61, 2.0 * bend__elbow_1_2, -(2.0 * (t191 - t62 * ops.sqrt(t205))))
+    t206 = ops.select(t61, -t191, miss__elbow_1_2) / ops.select(t164, below__elbow_1_2, 1.0)
+    t207 = ops.select(t64, 0.0, t206)
+    t208 = t207 * t207
+    t209 = 1.0 / ops.select(t163, 1.0 + t208, 1.0)
+    cosine__elbow_1_2 = ops.select(t70, t209 * (1.0 - t208), 1.0)
+    sine__elbow_1_2 = ops.select(t70, -(2.0 * t207 * t209), 0.0)
+    t210 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t211 = ops.select(tangent_elbow, t180 * cosine__elbow_1_2 - t210, t180)
+    celbow_2 = ops.select(no_link_elbow, t172, -t211)
+    t212 = ops.select(t33, 0.0, t168 * t171)
+    t213 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t214 = ops.select(tangent_elbow, t180 * sine__elbow_1_2 + t213, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t212, -t214)
+    t215 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t216 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t215 - d3 * t216
+    t217 = ops.abs(v_x_2)
+    t218 = d5 - a4 * t216 + d3 * t215
+    below6_2 = ops.max(reach_2 + t218, 0.0)
+    above6_2 = ops.max(reach_2 - t218, 0.0)
+    t219 = below6_2 * above6_2
+    held6_2 = ops.select(t85, ops.max(0.0, -((t45 - t217) * (t45 + t217))), t219)
+    t220 = ops.select(t198 & ops.opposite(tangent6), t219, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t199, held6_2, 1.0)), ops.sqrt(t220))
+    t221 = below6_2 - above6_2
+    t222 = ops.select(t199, 4.0 * held6_2 + t221 * t221, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t222), below6_2 + above6_2)
+    t223 = 1.0 / ops.select(t198, reach_2 * span6_2, 1.0)
+    t224 = t92 * kept6_2 * t223
+    t225 = t223 * (u_x * t221)
+    s6_2 = ops.select(free6, 0.0, t224 - t225)
+    t226 = t223 * (t89 * kept6_2)
+    t227 = t223 * (s_z * t221)
+    c6_2 = ops.select(free6, 1.0, t226 + t227)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t185 = t93 & ops.opposite(on_axis_5)
-    t186 = w_y * v_x_2
-    t187 = t186 * t186
-    t188 = t187 + ops.select(t185, dot_5_2 * dot_5_2, 1.0)
-    t189 = ops.select(t185, ops.sqrt(ops.select(t185, t188, 1.0)), 1.0)
-    t190 = 1.0 / t189
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t190)
+    t228 = t103 & ops.opposite(on_axis_5)
+    t229 = w_y * v_x_2
+    t230 = t229 * t229
+    t231 = t230 + ops.select(t228, dot_5_2 * dot_5_2, 1.0)
+    t232 = ops.select(t228, ops.sqrt(ops.select(t228, t231, 1.0)), 1.0)
+    t233 = 1.0 / t232
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t233)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t191 = ops.select(on_axis_5, 0.0, t186 * t190)
-    R3_21 = c5_2 * R2_21 - R1_23 * t191
-    R4_23_2 = t172 * R2_23 - ops.select(t93, t173 * R3_21, 1.0)
-    t192 = t93 & ops.opposite(aligned_wrist)
+    t234 = ops.select(on_axis_5, 0.0, t229 * t233)
+    R3_21 = c5_2 * R2_21 - R1_23 * t234
+    R4_23_2 = t215 * R2_23 + ops.select(t103, t216 * R3_21, 1.0)
+    t235 = t103 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t191
-    R4_13_2 = t172 * R2_13 - ops.select(t93, t173 * R3_11, 1.0)
-    t193 = ops.select(t192, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
-    t194 = 1.0 / ops.select(t192, ops.sqrt(t193), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t194)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t194)
-    t195 = ops.atan2(s_wrist, ops.select(t93, c_wrist, 1.0))
-    t196 = ops.select(failed, ops.nan, ops.wrap_cut(t195))
+    R3_11 = c5_2 * R2_11 - R1_13 * t234
+    R4_13_2 = t215 * R2_13 + ops.select(t103, t216 * R3_11, 1.0)
+    t236 = ops.select(t235, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
+    t237 = 1.0 / ops.select(t235, ops.sqrt(t236), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t237)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t237)
+    t238 = ops.atan2(s_wrist, ops.select(t103, c_wrist, 1.0))
+    t239 = ops.select(failed, ops.nan, ops.wrap_cut(t238))
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t191
-    R4_33 = t172 * (R1_31 * s6_2 - T33 * c6_2) - ops.select(t93, t173 * R3_31, 1.0)
-    t197 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t93, R4_33, 1.0))
-    t198 = ops.select(failed, ops.nan, ops.wrap_cut(t197))
-    R4_11 = t173 * R2_13 + ops.select(t93, t172 * R3_11, 1.0)
-    R4_21 = t173 * R2_23 + ops.select(t93, t172 * R3_21, 1.0)
-    t199 = ops.select(t93, s_wrist * (R2_11 * t191 + R1_13 * c5_2), 1.0)
-    t200 = ops.select(t93, c_wrist * (t191 * R2_21 + R1_23 * c5_2), 1.0)
-    t201 = ops.atan2(s_wrist * R4_11 - c_wrist * R4_21, ops.select(t93, t199 - t200, 1.0))
-    t202 = ops.select(failed, ops.nan, ops.wrap_cut(-t201))
-    t203 = ops.wrap_cut(-ops.atan2(t173, ops.select(t93, t172, 1.0)))
-    t204 = ops.select(failed, ops.nan, t203)
-    t205 = ops.wrap_cut(-ops.atan2(t191, ops.select(t93, c5_2, 1.0)))
-    t206 = ops.select(failed, ops.nan, t205)
-    t207 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t93, c6_2, 1.0)))
-    t208 = ops.select(failed, ops.nan, t207)
-    t209 = ops.atan2(s_x_theta7, ops.select(t120, c_x_theta7, 1.0))
-    t210 = ops.wrap_cut(t209)
-    t211 = ops.select(failed, ops.nan, t210)
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t234
+    R4_33 = t215 * (R1_31 * s6_2 - T33 * c6_2) + ops.select(t103, t216 * R3_31, 1.0)
+    t240 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t103, R4_33, 1.0))
+    t241 = ops.select(failed, ops.nan, ops.wrap_cut(t240))
+    t242 = t216 * R2_13 - ops.select(t103, t215 * R3_11, 1.0)
+    t243 = t216 * R2_23 - ops.select(t103, t215 * R3_21, 1.0)
+    t244 = ops.select(t103, s_wrist * (R2_11 * t234 + R1_13 * c5_2), 1.0)
+    t245 = ops.select(t103, c_wrist * (t234 * R2_21 + R1_23 * c5_2), 1.0)
+    t246 = ops.atan2(s_wrist * t242 - c_wrist * t243, ops.select(t103, t244 - t245, 1.0))
+    t247 = ops.select(failed, ops.nan, ops.wrap_cut(t246))
+    t248 = ops.wrap_cut(ops.atan2(t216, ops.select(t108, t215, 1.0)))
+    t249 = ops.select(failed, ops.nan, t248)
+    t250 = ops.wrap_cut(-ops.atan2(t234, ops.select(t103, c5_2, 1.0)))
+    t251 = ops.select(failed, ops.nan, t250)
+    t252 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t103, c6_2, 1.0)))
+    t253 = ops.select(failed, ops.nan, t252)
+    t254 = ops.atan2(s_x_theta7, ops.select(t154, c_x_theta7, 1.0))
+    t255 = ops.wrap_cut(t254)
+    t256 = ops.select(failed, ops.nan, t255)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t212 = ops.select(failed, ops.nan, ops.wrap(t195 + flip_wrist))
-    t213 = ops.select(failed, ops.nan, ops.wrap_cut(-t197))
-    t214 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t201))
-    t215 = ops.select(free6, 0.0, t80 + t81)
-    c6_bent_behind_front = ops.select(free6, 1.0, t84 - t83)
-    t216 = t67 * (R1_11 * t215 + T13 * c6_bent_behind_front)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t215
-    t217 = w_x_bent_behind_front * w_x_bent_behind_front
-    on_axis_5_bent_behind_front = ops.min(t85, ops.sqrt(t20 + t217)) <= t35
+    t257 = ops.select(failed, ops.nan, ops.wrap(t238 + flip_wrist))
+    t258 = ops.select(failed, ops.nan, ops.wrap_cut(-t240))
+    t259 = ops.select(failed, ops.nan, ops.wrap(t246 + flip_wrist))
+    t260 = t76 * (R1_11 * t104 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t81, t106) <= t39
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t218 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t219 = 1.0 / ops.sqrt(t87 + t218)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t219)
-    t220 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t215)
-    t221 = ops.select(on_axis_5_bent_behind_front, 0.0, t86 * t219)
-    t222 = t216 + t66 * (t220 - R1_13 * t221)
-    t223 = t67 * (R1_21 * t215 + T23 * c6_bent_behind_front)
-    t224 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t215)
-    t225 = t223 + t66 * (t224 - R1_23 * t221)
-    aligned_wrist_bent_behind_front = ops.sqrt(t222 * t222 + t225 * t225) <= t92
-    t226 = ops.select(free6, 0.0, t181 + t182)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t184 - t183)
-    t227 = R1_21 * t226 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t226)
-    t228 = t93 & ops.opposite(on_axis_5_bent_behind_front)
-    t229 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t230 = ops.select(t228, t187 + ops.select(t228, t229, 1.0), 1.0)
-    t231 = 1.0 / ops.select(t228, ops.sqrt(t230), 1.0)
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t231)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t226
-    t232 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t233 = ops.select(on_axis_5_bent_behind_front, 0.0, t186 * t231)
-    R3_21_bent_behind_front = t232 - R1_23 * t233
-    t234 = ops.select(t93, t173 * R3_21_bent_behind_front, 1.0)
-    t235 = t172 * t227 + t234
-    t236 = ops.opposite(aligned_wrist_bent_behind_front)
-    t237 = t93 & t236
-    t238 = R1_11 * t226 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t226
-    t239 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t239 - R1_13 * t233
-    t240 = ops.select(t93, t173 * R3_11_bent_behind_front, 1.0)
-    t241 = t172 * t238 + t240
-    t242 = ops.select(t237, t241 * t241 + t235 * t235, 1.0)
-    t243 = 1.0 / ops.select(t237, ops.sqrt(t242), 1.0)
-    t244 = ops.select(aligned_wrist_bent_behind_front, 0.0, t235 * t243)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t241 * t243))
-    t245 = ops.select(t93, c_wrist_bent_behind_front, 1.0)
-    t246 = ops.atan2(t244, t245)
-    t247 = ops.select(failed, ops.nan, ops.wrap_cut(-t246))
-    t248 = t241 * c_wrist_bent_behind_front - t235 * t244
-    t249 = t172 * (R1_31 * t226 + T33 * c6_bent_behind_front_2)
-    t250 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t226)
-    t251 = ops.select(t93, t173 * (t250 - R1_33 * t233), 1.0)
-    t252 = ops.atan2(t248, ops.select(t93, -(t249 + t251), 1.0))
-    t253 = ops.select(failed, ops.nan, ops.wrap_cut(-t252))
-    t254 = ops.select(t93, t172 * R3_11_bent_behind_front, 1.0)
-    t255 = ops.select(t93, t172 * R3_21_bent_behind_front, 1.0)
-    t256 = c_wrist_bent_behind_front * (t173 * t227 - t255)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t233 + R1_13 * c5_bent_behind_front_2
-    t257 = ops.select(t93, t244 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t233 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t258 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t259 = ops.select(t93, -(t257 + ops.select(t93, t258, 1.0)), 1.0)
-    t260 = ops.atan2(t244 * (t173 * t238 - t254) + t256, t259)
-    t261 = ops.select(failed, ops.nan, ops.wrap_cut(-t260))
-    t262 = ops.atan2(t233, ops.select(t93, c5_bent_behind_front_2, 1.0))
-    t263 = ops.select(failed, ops.nan, ops.wrap_cut(-t262))
-    t264 = ops.atan2(t226, ops.select(t93, c6_bent_behind_front_2, 1.0))
-    t265 = ops.select(failed, ops.nan, ops.wrap_cut(-t264))
+    t261 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t262 = 1.0 / ops.sqrt(t97 + t261)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t262)
+    t263 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t104)
+    t264 = ops.select(on_axis_5_bent_behind_front, 0.0, t96 * t262)
+    t265 = t260 - t75 * (t263 - R1_13 * t264)
+    t266 = t76 * (R1_21 * t104 + T23 * c6_bent_behind_front)
+    t267 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t104)
+    t268 = t266 - t75 * (t267 - R1_23 * t264)
+    aligned_wrist_bent_behind_front = ops.sqrt(t265 * t265 + t268 * t268) <= t102
+    t269 = ops.select(free6, 0.0, t224 + t225)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t227 - t226)
+    t270 = R1_21 * t269 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t269)
+    t271 = t107 & ops.opposite(on_axis_5_bent_behind_front)
+    t272 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t273 = ops.select(t271, t230 + ops.select(t271, t272, 1.0), 1.0)
+    t274 = 1.0 / ops.select(t271, ops.sqrt(t273), 1.0)
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t274)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t269
+    t275 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t276 = ops.select(on_axis_5_bent_behind_front, 0.0, t229 * t274)
+    R3_21_bent_behind_front = t275 - R1_23 * t276
+    t277 = ops.select(t107, t216 * R3_21_bent_behind_front, 1.0)
+    t278 = t215 * t270 - t277
+    t279 = ops.opposite(aligned_wrist_bent_behind_front)
+    t280 = t107 & t279
+    t281 = R1_11 * t269 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t269
+    t282 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t282 - R1_13 * t276
+    t283 = ops.select(t107, t216 * R3_11_bent_behind_front, 1.0)
+    t284 = t215 * t281 - t283
+    t285 = ops.select(t280, t284 * t284 + t278 * t278, 1.0)
+    t286 = 1.0 / ops.select(t280, ops.sqrt(t285), 1.0)
+    t287 = ops.select(aligned_wrist_bent_behind_front, 0.0, t278 * t286)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t284 * t286))
+    t288 = ops.select(t107, c_wrist_bent_behind_front, 1.0)
+    t289 = ops.atan2(t287, t288)
+    t290 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t289))
+    t291 = t284 * c_wrist_bent_behind_front - t278 * t287
+    t292 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t269)
+    t293 = ops.select(t107, t216 * (t292 - R1_33 * t276), 1.0)
+    t294 = t215 * (R1_31 * t269 + T33 * c6_bent_behind_front_2)
+    t295 = ops.atan2(t291, ops.select(t107, t293 - t294, 1.0))
+    t296 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t295))
+    t297 = ops.select(t107, t215 * R3_11_bent_behind_front, 1.0)
+    t298 = ops.select(t107, t215 * R3_21_bent_behind_front, 1.0)
+    t299 = c_wrist_bent_behind_front * (t216 * t270 + t298)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t276 + R1_13 * c5_bent_behind_front_2
+    t300 = ops.select(t107, t287 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t276 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t301 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t302 = ops.select(t107, -(t300 + ops.select(t107, t301, 1.0)), 1.0)
+    t303 = ops.atan2(t287 * (t216 * t281 + t297) + t299, t302)
+    t304 = ops.select(failed_2, ops.nan, ops.wrap_cut(t303))
+    t305 = ops.select(failed_2, ops.nan, t248)
+    t306 = ops.select(t107, c5_bent_behind_front_2, 1.0)
+    t307 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t276, t306)))
+    t308 = ops.select(t107, c6_bent_behind_front_2, 1.0)
+    t309 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t269, t308)))
+    t310 = ops.select(failed_2, ops.nan, t255)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t266 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t246))
-    t267 = ops.select(failed, ops.nan, ops.wrap_cut(t252))
-    t268 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t260))
-    below6_over_ahead_front = ops.max(t117, 0.0)
-    above6_over_ahead_front = ops.max(t118, 0.0)
-    t269 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t152, ops.max(0.0, -((t76 - t151) * (t76 + t151))), t269)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t269))
-    t270 = below6_over_ahead_front - above6_over_ahead_front
-    t271 = ops.sqrt(4.0 * held6_over_ahead_front + t270 * t270)
-    width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t271, width6_over_ahead_front)
-    t272 = 1.0 / (reach * span6_over_ahead_front)
-    t273 = t71 * kept6_over_ahead_front * t272
-    t274 = t272 * (u_x * t270)
-    s6_over_ahead_front = ops.select(free6, 0.0, t273 - t274)
-    t275 = t272 * (t82 * kept6_over_ahead_front)
-    t276 = t272 * (s_z * t270)
-    c6_over_ahead_front = ops.select(free6, 1.0, t275 + t276)
+    t311 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t289))
+    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(t295))
+    t313 = ops.select(failed_2, ops.nan, ops.wrap(t303 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t277 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t278 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t277, ops.sqrt(t278)) <= t35
+    on_axis_5_over_ahead_front = ops.min(t136, t148) <= t39
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t279 = w_y * v_x_over_ahead_front
-    t280 = t279 * t279
-    t281 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t282 = 1.0 / ops.sqrt(t280 + t281)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t282)
+    t314 = w_y * v_x_over_ahead_front
+    t315 = t314 * t314
+    t316 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t317 = 1.0 / ops.sqrt(t315 + t316)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t317)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t283 = ops.select(on_axis_5_over_ahead_front, 0.0, t279 * t282)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t283
-    R4_13_over_ahead_front = t115 * R2_13_over_ahead_front + t114 * R3_11_over_ahead_front
-    t284 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t318 = ops.select(on_axis_5_over_ahead_front, 0.0, t314 * t317)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t318
+    R4_13_over_ahead_front = t131 * R2_13_over_ahead_front + t130 * R3_11_over_ahead_front
+    t319 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t283
-    R4_23_over_ahead_front = t115 * R2_23_over_ahead_front + t114 * R3_21_over_ahead_front
-    t285 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t284 + t285) <= t92
-    t286 = d5 - a4 * (t139 + t141) - d3 * (t142 - t143)
-    t287 = t145 - t146
-    slope__elbow_1_over_ahead_front_2 = t286 * t287
-    square__elbow_1_over_ahead_front_2 = t286 * t286
-    t288 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
-    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t288)
-    above__elbow_1_over_ahead_front_2 = ops.select(t99, slope__elbow_1_over_ahead_front_2, miss__elbow_1_over_ahead_front_2)
-    bend__elbow_1_over_ahead_front_2 = t287 * t287
-    t289 = slope__elbow_1_over_ahead_front_2 * slope__elbow_1_over_ahead_front_2
-    t290 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
-    t291 = ops.select(t153, ops.max(0.0, t289 - t290), 1.0)
-    outer__elbow_1_over_ahead_front_2 = slope__elbow_1_over_ahead_front_2 + t100 * ops.sqrt(t291)
-    below__elbow_1_over_ahead_front_2 = ops.select(t99, 2.0 * bend__elbow_1_over_ahead_front_2, 2.0 * outer__elbow_1_over_ahead_front_2)
-    t292 = ops.select(t124, below__elbow_1_over_ahead_front_2, 1.0)
-    t293 = ops.select(t102, 0.0, above__elbow_1_over_ahead_front_2 / t292)
-    t294 = t293 * t293
-    t295 = 1.0 / ops.select(t123, 1.0 + t294, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t109, t295 * (1.0 - t294), 1.0)
-    sine__elbow_1_over_ahead_front_2 = ops.select(t109, -(2.0 * t293 * t295), 0.0)
-    t296 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t297 = t138 * cosine__elbow_1_over_ahead_front_2 + t296
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, 1.0, -ops.select(tangent_elbow, t297, t138))
-    t298 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t299 = t298 - t138 * sine__elbow_1_over_ahead_front_2
-    t300 = ops.select(tangent_elbow, t299, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, 0.0, t300)
-    t301 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t302 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t301 - d3 * t302
-    t303 = ops.abs(v_x_over_ahead_front_2)
-    t304 = d5 - a4 * t302 + d3 * t301
-    below6_over_ahead_front_2 = ops.max(reach_2 + t304, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t304, 0.0)
-    t305 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t152, ops.max(0.0, -((t76 - t303) * (t76 + t303))), t305)
-    t306 = ops.select(t150, held6_over_ahead_front_2, 1.0)
-    t307 = t149 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t306), ops.sqrt(ops.select(t307, t305, 1.0)))
-    t308 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t309 = ops.select(t150, 4.0 * held6_over_ahead_front_2 + t308 * t308, 1.0)
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t318
+    R4_23_over_ahead_front = t131 * R2_23_over_ahead_front + t130 * R3_21_over_ahead_front
+    t320 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t319 + t320) <= t102
+    t321 = t181 - t183
+    t322 = t185 + t186
+    qx__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t321 - d3 * t322, d3 * t321 - (d5 - a4 * t322))
+    t323 = t188 - t189
+    t324 = qx__elbow_1_over_ahead_front_2 * t323
+    square__elbow_1_over_ahead_front_2 = qx__elbow_1_over_ahead_front_2 * qx__elbow_1_over_ahead_front_2
+    t325 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
+    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t325)
+    above__elbow_1_over_ahead_front_2 = ops.select(t115, -t324, miss__elbow_1_over_ahead_front_2)
+    bend__elbow_1_over_ahead_front_2 = t323 * t323
+    t326 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
+    t327 = ops.select(t200, ops.max(0.0, t324 * t324 - t326), 1.0)
+    below__elbow_1_over_ahead_front_2 = ops.select(t115, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * (t324 - t116 * ops.sqrt(t327))))
+    t328 = ops.select(t159, below__elbow_1_over_ahead_front_2, 1.0)
+    t329 = ops.select(t118, 0.0, above__elbow_1_over_ahead_front_2 / t328)
+    t330 = t329 * t329
+    t331 = 1.0 / ops.select(t158, 1.0 + t330, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t125, t331 * (1.0 - t330), 1.0)
+    sine__elbow_1_over_ahead_front_2 = ops.select(t125, -(2.0 * t329 * t331), 0.0)
+    t332 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t333 = t180 * cosine__elbow_1_over_ahead_front_2 + t332
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t172, -ops.select(tangent_elbow, t333, t180))
+    t334 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t335 = t334 - t180 * sine__elbow_1_over_ahead_front_2
+    t336 = ops.select(tangent_elbow, t335, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t212, t336)
+    t337 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t338 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t337 - d3 * t338
+    t339 = ops.abs(v_x_over_ahead_front_2)
+    t340 = d5 - a4 * t338 + d3 * t337
+    below6_over_ahead_front_2 = ops.max(reach_2 + t340, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t340, 0.0)
+    t341 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t138, ops.max(0.0, -((t45 - t339) * (t45 + t339))), t341)
+    t342 = ops.select(t194, held6_over_ahead_front_2, 1.0)
+    t343 = t193 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t342), ops.sqrt(ops.select(t343, t341, 1.0)))
+    t344 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t345 = ops.select(t194, 4.0 * held6_over_ahead_front_2 + t344 * t344, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t309), width6_over_ahead_front_2)
-    t310 = ops.select(t149, reach_2 * span6_over_ahead_front_2, 1.0)
-    t311 = 1.0 / t310
-    t312 = t71 * kept6_over_ahead_front_2 * t311
-    t313 = t311 * (u_x * t308)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t312 - t313)
-    t314 = t311 * (t82 * kept6_over_ahead_front_2)
-    t315 = t311 * (s_z * t308)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t314 + t315)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t345), width6_over_ahead_front_2)
+    t346 = ops.select(t193, reach_2 * span6_over_ahead_front_2, 1.0)
+    t347 = 1.0 / t346
+    t348 = t92 * kept6_over_ahead_front_2 * t347
+    t349 = t347 * (u_x * t344)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t348 - t349)
+    t350 = t347 * (t89 * kept6_over_ahead_front_2)
+    t351 = t347 * (s_z * t344)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t350 + t351)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t316 = t119 & ops.opposite(on_axis_5_over_ahead_front)
-    t317 = w_y * v_x_over_ahead_front_2
-    t318 = t317 * t317
-    t319 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t320 = ops.select(t316, t318 + ops.select(t316, t319, 1.0), 1.0)
-    t321 = 1.0 / ops.select(t316, ops.sqrt(t320), 1.0)
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t321)
+    t352 = t149 & ops.opposite(on_axis_5_over_ahead_front)
+    t353 = w_y * v_x_over_ahead_front_2
+    t354 = t353 * t353
+    t355 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t356 = ops.select(t352, t354 + ops.select(t352, t355, 1.0), 1.0)
+    t357 = 1.0 / ops.select(t352, ops.sqrt(t356), 1.0)
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t357)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t322 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t323 = ops.select(on_axis_5_over_ahead_front, 0.0, t317 * t321)
-    R3_21_over_ahead_front_2 = t322 - R1_23 * t323
-    t324 = ops.select(t119, t302 * R3_21_over_ahead_front_2, 1.0)
-    R4_23_over_ahead_front_2 = t301 * R2_23_over_ahead_front_2 + t324
-    t325 = t119 & ops.opposite(aligned_wrist_over_ahead_front)
+    t358 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t359 = ops.select(on_axis_5_over_ahead_front, 0.0, t353 * t357)
+    R3_21_over_ahead_front_2 = t358 - R1_23 * t359
+    t360 = ops.select(t149, t338 * R3_21_over_ahead_front_2, 1.0)
+    R4_23_over_ahead_front_2 = t337 * R2_23_over_ahead_front_2 + t360
+    t361 = t149 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t326 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t326 - R1_13 * t323
-    t327 = ops.select(t119, t302 * R3_11_over_ahead_front_2, 1.0)
-    R4_13_over_ahead_front_2 = t301 * R2_13_over_ahead_front_2 + t327
-    t328 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t329 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t330 = ops.select(t325, ops.sqrt(ops.select(t325, t328 + t329, 1.0)), 1.0)
-    t331 = 1.0 / t330
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t331)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t331)
-    t332 = ops.select(t119, c_wrist_over_ahead_front, 1.0)
-    t333 = ops.atan2(s_wrist_over_ahead_front, t332)
-    t334 = ops.select(failed_2, ops.nan, ops.wrap_cut(t333))
-    t335 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t336 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t362 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t362 - R1_13 * t359
+    t363 = ops.select(t149, t338 * R3_11_over_ahead_front_2, 1.0)
+    R4_13_over_ahead_front_2 = t337 * R2_13_over_ahead_front_2 + t363
+    t364 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t365 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t366 = ops.select(t361, ops.sqrt(ops.select(t361, t364 + t365, 1.0)), 1.0)
+    t367 = 1.0 / t366
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t367)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t367)
+    t368 = ops.select(t149, c_wrist_over_ahead_front, 1.0)
+    t369 = ops.atan2(s_wrist_over_ahead_front, t368)
+    t370 = ops.select(failed_3, ops.nan, ops.wrap_cut(t369))
+    t371 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t372 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t337 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    t338 = ops.select(t119, t302 * (t337 - R1_33 * t323), 1.0)
-    t339 = ops.select(t119, t301 * R2_33_over_ahead_front + t338, 1.0)
-    t340 = ops.atan2(t335 + t336, t339)
-    t341 = ops.select(failed_2, ops.nan, ops.wrap_cut(t340))
-    t342 = ops.select(t119, t301 * R3_11_over_ahead_front_2, 1.0)
-    t343 = s_wrist_over_ahead_front * (t302 * R2_13_over_ahead_front_2 - t342)
-    t344 = ops.select(t119, t301 * R3_21_over_ahead_front_2, 1.0)
-    t345 = c_wrist_over_ahead_front * (t302 * R2_23_over_ahead_front_2 - t344)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t323 + R1_13 * c5_over_ahead_front_2
-    t346 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t323 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t347 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t348 = ops.select(t119, t346, 1.0) - ops.select(t119, t347, 1.0)
-    t349 = ops.atan2(t343 - t345, ops.select(t119, t348, 1.0))
-    t350 = ops.select(failed_2, ops.nan, ops.wrap_cut(t349))
-    t351 = ops.wrap_cut(ops.atan2(t302, ops.select(t119, t301, 1.0)))
-    t352 = ops.select(failed_2, ops.nan, t351)
-    t353 = ops.atan2(t323, ops.select(t119, c5_over_ahead_front_2, 1.0))
-    t354 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t353))
-    t355 = ops.atan2(s6_over_ahead_front_2, ops.select(t119, c6_over_ahead_front_2, 1.0))
-    t356 = ops.select(failed_2, ops.nan, ops.wrap_cut(t355))
-    t357 = ops.select(failed_2, ops.nan, t210)
+    t373 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    t374 = ops.select(t149, t338 * (t373 - R1_33 * t359), 1.0)
+    t375 = ops.select(t149, t337 * R2_33_over_ahead_front + t374, 1.0)
+    t376 = ops.atan2(t371 + t372, t375)
+    t377 = ops.select(failed_3, ops.nan, ops.wrap_cut(t376))
+    t378 = ops.select(t149, t337 * R3_11_over_ahead_front_2, 1.0)
+    t379 = s_wrist_over_ahead_front * (t338 * R2_13_over_ahead_front_2 - t378)
+    t380 = ops.select(t149, t337 * R3_21_over_ahead_front_2, 1.0)
+    t381 = c_wrist_over_ahead_front * (t338 * R2_23_over_ahead_front_2 - t380)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t359 + R1_13 * c5_over_ahead_front_2
+    t382 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t359 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t383 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t384 = ops.select(t149, t382, 1.0) - ops.select(t149, t383, 1.0)
+    t385 = ops.atan2(t379 - t381, ops.select(t149, t384, 1.0))
+    t386 = ops.select(failed_3, ops.nan, ops.wrap_cut(t385))
+    t387 = ops.wrap_cut(ops.atan2(t338, ops.select(t155, t337, 1.0)))
+    t388 = ops.select(failed_3, ops.nan, t387)
+    t389 = ops.atan2(t359, ops.select(t149, c5_over_ahead_front_2, 1.0))
+    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t389))
+    t391 = ops.atan2(s6_over_ahead_front_2, ops.select(t149, c6_over_ahead_front_2, 1.0))
+    t392 = ops.select(failed_3, ops.nan, ops.wrap_cut(t391))
+    t393 = ops.select(failed_3, ops.nan, t255)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t358 = ops.select(failed_2, ops.nan, ops.wrap(t333 + flip_wrist_over_ahead_back))
-    t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t340))
-    t360 = ops.select(failed_2, ops.nan, ops.wrap(t349 + flip_wrist_over_ahead_back))
-    t361 = ops.select(free6, 0.0, t273 + t274)
-    c6_over_behind_front = ops.select(free6, 1.0, t276 - t275)
-    t362 = t115 * (R1_11 * t361 + T13 * c6_over_behind_front)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t361
-    t363 = w_x_over_behind_front * w_x_over_behind_front
-    on_axis_5_over_behind_front = ops.min(t277, ops.sqrt(t20 + t363)) <= t35
+    t394 = ops.select(failed_3, ops.nan, ops.wrap(t369 + flip_wrist_over_ahead_back))
+    t395 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t376))
+    t396 = ops.select(failed_3, ops.nan, ops.wrap(t385 + flip_wrist_over_ahead_back))
+    t397 = t131 * (R1_11 * t150 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t136, t152) <= t39
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t364 = dot_5_over_behind_front * dot_5_over_behind_front
-    t365 = 1.0 / ops.sqrt(t280 + t364)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t365)
-    t366 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t361)
-    t367 = ops.select(on_axis_5_over_behind_front, 0.0, t279 * t365)
-    t368 = t362 - t114 * (t366 - R1_13 * t367)
-    t369 = t115 * (R1_21 * t361 + T23 * c6_over_behind_front)
-    t370 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t361)
-    t371 = t369 - t114 * (t370 - R1_23 * t367)
-    aligned_wrist_over_behind_front = ops.sqrt(t368 * t368 + t371 * t371) <= t92
-    t372 = ops.select(free6, 0.0, t312 + t313)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t315 - t314)
-    t373 = R1_21 * t372 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t372)
-    t374 = t119 & ops.opposite(on_axis_5_over_behind_front)
-    t375 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t376 = ops.select(t374, t318 + ops.select(t374, t375, 1.0), 1.0)
-    t377 = 1.0 / ops.select(t374, ops.sqrt(t376), 1.0)
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t377)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t372
-    t378 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t379 = ops.select(on_axis_5_over_behind_front, 0.0, t317 * t377)
-    R3_21_over_behind_front = t378 - R1_23 * t379
-    t380 = ops.select(t119, t302 * R3_21_over_behind_front, 1.0)
-    t381 = t301 * t373 - t380
-    t382 = ops.opposite(aligned_wrist_over_behind_front)
-    t383 = t119 & t382
-    t384 = R1_11 * t372 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t372
-    t385 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t385 - R1_13 * t379
-    t386 = ops.select(t119, t302 * R3_11_over_behind_front, 1.0)
-    t387 = t301 * t384 - t386
-    t388 = ops.select(t383, t387 * t387 + t381 * t381, 1.0)
-    t389 = 1.0 / ops.select(t383, ops.sqrt(t388), 1.0)
-    t390 = ops.select(aligned_wrist_over_behind_front, 0.0, t381 * t389)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t387 * t389))
-    t391 = ops.select(t119, c_wrist_over_behind_front, 1.0)
-    t392 = ops.atan2(t390, t391)
-    t393 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t392))
-    t394 = t387 * c_wrist_over_behind_front - t381 * t390
-    t395 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t372)
-    t396 = ops.select(t119, t302 * (t395 - R1_33 * t379), 1.0)
-    t397 = t301 * (R1_31 * t372 + T33 * c6_over_behind_front_2)
-    t398 = ops.atan2(t394, ops.select(t119, t396 - t397, 1.0))
-    t399 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t398))
-    t400 = ops.select(t119, t301 * R3_11_over_behind_front, 1.0)
-    t401 = ops.select(t119, t301 * R3_21_over_behind_front, 1.0)
-    t402 = c_wrist_over_behind_front * (t302 * t373 + t401)
-    R3_13_over_behind_front = R2_11_over_behind_front * t379 + R1_13 * c5_over_behind_front_2
-    t403 = ops.select(t119, t390 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t379 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t404 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t405 = ops.select(t119, -(t403 + ops.select(t119, t404, 1.0)), 1.0)
-    t406 = ops.atan2(t390 * (t302 * t384 + t400) + t402, t405)
-    t407 = ops.select(failed_2, ops.nan, ops.wrap_cut(t406))
-    t408 = ops.select(t119, c5_over_behind_front_2, 1.0)
-    t409 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t379, t408)))
-    t410 = ops.select(t119, c6_over_behind_front_2, 1.0)
-    t411 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t372, t410)))
+    t398 = dot_5_over_behind_front * dot_5_over_behind_front
+    t399 = 1.0 / ops.sqrt(t315 + t398)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t399)
+    t400 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t150)
+    t401 = ops.select(on_axis_5_over_behind_front, 0.0, t314 * t399)
+    t402 = t397 - t130 * (t400 - R1_13 * t401)
+    t403 = t131 * (R1_21 * t150 + T23 * c6_over_behind_front)
+    t404 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t150)
+    t405 = t403 - t130 * (t404 - R1_23 * t401)
+    aligned_wrist_over_behind_front = ops.sqrt(t402 * t402 + t405 * t405) <= t102
+    t406 = ops.select(free6, 0.0, t348 + t349)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t351 - t350)
+    t407 = R1_21 * t406 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t406)
+    t408 = t153 & ops.opposite(on_axis_5_over_behind_front)
+    t409 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t410 = ops.select(t408, t354 + ops.select(t408, t409, 1.0), 1.0)
+    t411 = 1.0 / ops.select(t408, ops.sqrt(t410), 1.0)
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t411)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t406
+    t412 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t413 = ops.select(on_axis_5_over_behind_front, 0.0, t353 * t411)
+    R3_21_over_behind_front = t412 - R1_23 * t413
+    t414 = ops.select(t153, t338 * R3_21_over_behind_front, 1.0)
+    t415 = t337 * t407 - t414
+    t416 = ops.opposite(aligned_wrist_over_behind_front)
+    t417 = t153 & t416
+    t418 = R1_11 * t406 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t406
+    t419 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t419 - R1_13 * t413
+    t420 = ops.select(t153, t338 * R3_11_over_behind_front, 1.0)
+    t421 = t337 * t418 - t420
+    t422 = ops.select(t417, t421 * t421 + t415 * t415, 1.0)
+    t423 = 1.0 / ops.select(t417, ops.sqrt(t422), 1.0)
+    t424 = ops.select(aligned_wrist_over_behind_front, 0.0, t415 * t423)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t421 * t423))
+    t425 = ops.select(t153, c_wrist_over_behind_front, 1.0)
+    t426 = ops.atan2(t424, t425)
+    t427 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t426))
+    t428 = t421 * c_wrist_over_behind_front - t415 * t424
+    t429 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t406)
+    t430 = ops.select(t153, t338 * (t429 - R1_33 * t413), 1.0)
+    t431 = t337 * (R1_31 * t406 + T33 * c6_over_behind_front_2)
+    t432 = ops.atan2(t428, ops.select(t153, t430 - t431, 1.0))
+    t433 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t432))
+    t434 = ops.select(t153, t337 * R3_11_over_behind_front, 1.0)
+    t435 = ops.select(t153, t337 * R3_21_over_behind_front, 1.0)
+    t436 = c_wrist_over_behind_front * (t338 * t407 + t435)
+    R3_13_over_behind_front = R2_11_over_behind_front * t413 + R1_13 * c5_over_behind_front_2
+    t437 = ops.select(t153, t424 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t413 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t438 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t439 = ops.select(t153, -(t437 + ops.select(t153, t438, 1.0)), 1.0)
+    t440 = ops.atan2(t424 * (t338 * t418 + t434) + t436, t439)
+    t441 = ops.select(failed_4, ops.nan, ops.wrap_cut(t440))
+    t442 = ops.select(failed_4, ops.nan, t387)
+    t443 = ops.select(t153, c5_over_behind_front_2, 1.0)
+    t444 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t413, t443)))
+    t445 = ops.select(t153, c6_over_behind_front_2, 1.0)
+    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t406, t445)))
+    t447 = ops.select(failed_4, ops.nan, t255)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t412 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_over_behind_back - t392))
-    t413 = ops.select(failed_2, ops.nan, ops.wrap_cut(t398))
-    t414 = ops.select(failed_2, ops.nan, ops.wrap(t406 + flip_wrist_over_behind_back))
-    t415 = no_link_elbow | free6
-    t416 = ops.status(invalid, unreachable, t415 | on_axis_5 | aligned_wrist)
-    t417 = t415 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t418 = ops.status(invalid, unreachable, t417)
-    t419 = t415 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t420 = ops.status(invalid, unreachable_2, t419)
-    t421 = t415 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t422 = ops.status(invalid, unreachable_2, t421)
+    t448 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t426))
+    t449 = ops.select(failed_4, ops.nan, ops.wrap_cut(t432))
+    t450 = ops.select(failed_4, ops.nan, ops.wrap(t440 + flip_wrist_over_behind_back))
+    t451 = no_link_elbow | free6
+    t452 = ops.status(invalid, unreachable, t451 | on_axis_5 | aligned_wrist)
+    t453 = t451 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t454 = ops.status(invalid, unreachable_2, t453)
+    t455 = t451 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t456 = ops.status(invalid, unreachable_3, t455)
+    t457 = t451 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t458 = ops.status(invalid, unreachable_4, t457)
     return (
-        t196,
-        t198,
-        t202,
-        t204,
-        t206,
-        t208,
-        t211,
-        t212,
-        t213,
-        t214,
-        t204,
-        t206,
-        t208,
-        t211,
+        t239,
+        t241,
         t247,
+        t249,
+        t251,
         t253,
-        t261,
-        t204,
-        t263,
-        t265,
-        t211,
-        t266,
-        t267,
-        t268,
-        t204,
-        t263,
-        t265,
-        t211,
-        t334,
-        t341,
-        t350,
-        t352,
-        t354,
-        t356,
-        t357,
-        t358,
-        t359,
-        t360,
-        t352,
-        t354,
-        t356,
-        t357,
+        t256,
+        t257,
+        t258,
+        t259,
+        t249,
+        t251,
+        t253,
+        t256,
+        t290,
+        t296,
+        t304,
+        t305,
+        t307,
+        t309,
+        t310,
+        t311,
+        t312,
+        t313,
+        t305,
+        t307,
+        t309,
+        t310,
+        t370,
+        t377,
+        t386,
+        t388,
+        t390,
+        t392,
         t393,
-        t399,
-        t407,
-        t352,
-        t409,
-        t411,
-        t357,
-        t412,
-        t413,
-        t414,
-        t352,
-        t409,
-        t411,
-        t357,
-        t416,
-        t416,
-        t418,
-        t418,
-        t420,
-        t420,
-        t422,
-        t422,
+        t394,
+        t395,
+        t396,
+        t388,
+        t390,
+        t392,
+        t393,
+        t427,
+        t433,
+        t441,
+        t442,
+        t444,
+        t446,
+        t447,
+        t448,
+        t449,
+        t450,
+        t442,
+        t444,
+        t446,
+        t447,
+        t452,
+        t452,
+        t454,
+        t454,
+        t456,
+        t456,
+        t458,
+        t458,
     )
 
 
@@ -1760,7 +1800,7 @@ def ik(T: "ArrayLike", theta7: "ArrayLike", params: "Parameters" = _DEFAULT) -> 
       allow; over: it is bent to the other side.
     - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
     - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
-    - SINGULAR: a link without length: elbow is free, 0 is returned.
+    - SINGULAR: a link without length: elbow is free, one within reach is returned.
     - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
       returned.
     - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

@@ -7268,7 +7268,7 @@ const cf_function cf_functions[] = {
       "  allow; over: it is bent to the other side.\n"
       "- ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.\n"
       "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
-      "- SINGULAR: a link without length: elbow is free, 0 is returned.\n"
+      "- SINGULAR: a link without length: elbow is free, one within reach is returned.\n"
       "- SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is\n"
       "  returned.\n"
       "- SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.\n"

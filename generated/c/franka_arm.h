@@ -12,8 +12,8 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 228 compare and select, 261 add, 23 atan2, 27 divide, 376 multiply, 1 sincos, 30 sqrt
- *   ik where nothing vanishes: 142 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
+ *   ik: 256 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
+ *   ik where nothing vanishes: 162 compare and select, 228 add, 23 atan2, 17 divide, 312 multiply,
  *     1 sincos, 24 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -229,7 +229,7 @@ void franka_arm_jacobian_body_batch(size_t n, const franka_arm_params *params,
  *   allow; over: it is bent to the other side.
  * - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
- * - SINGULAR: a link without length: elbow is free, 0 is returned.
+ * - SINGULAR: a link without length: elbow is free, one within reach is returned.
  * - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
  *   returned.
  * - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

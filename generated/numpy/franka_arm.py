@@ -11,8 +11,8 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 228 compare and select, 261 add, 23 atan2, 27 divide, 376 multiply, 1 sincos, 30 sqrt
-#   ik where nothing vanishes: 142 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
+#   ik: 256 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
+#   ik where nothing vanishes: 162 compare and select, 228 add, 23 atan2, 17 divide, 312 multiply,
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
@@ -1070,623 +1070,662 @@ def _ik(
     fore = np.sqrt(a5 * a5 + d5 * d5)
     t4 = upper + fore
     no_link_elbow = upper * fore <= _runtime.VANISHING * (t4 * t4)
-    t5 = T34 - d1
-    t6 = T12 * T14 + T22 * T24 + T32 * t5
-    t7 = T11 * T14 + T21 * T24 + T31 * t5
-    w_y = c_x_theta7 * t6 + s_x_theta7 * t7
-    t8 = w_y * w_y
-    u_x = a7 - c_x_theta7 * t7 + s_x_theta7 * t6
-    del t6, t7
-    s_z = d7 - T13 * T14 - T23 * T24 - T33 * t5
-    del t5
-    t9 = u_x * u_x + s_z * s_z
-    far = np.sqrt(t8 + t9)
-    t10 = t4 - far
-    t11 = (t4 + far) * np.maximum(t10, 0.0)
-    del t4
-    t12 = upper - fore
-    del fore, upper
-    t13 = t12 + far
-    t14 = far - t12
-    del t12
-    t15 = np.maximum(t13, 0.0) * np.maximum(t14, 0.0)
-    size = d3 + a4 + a5 + d5 + np.abs(a7) + np.abs(d1) + np.abs(d7)
-    lever_elbow = 2.0 * np.sqrt(t11 * t15) / (size * 4.0)
-    t16 = _runtime.VANISHING * size
-    tangent_elbow = lever_elbow - size * 0.00390625 <= t16
-    t17 = 1.0 / (size * 2.0)
-    t18 = t17 * t11
-    span_elbow = t17 * (t11 + t15)
-    del t11
-    t19 = 1.0 / span_elbow
-    t20 = (t18 - t17 * t15) * t19
-    del t15, t17
     s_straight = _runtime.select(no_straight, 0.0, t2 * t3)
     del no_straight, t2, t3
-    t21 = s_straight * t20
-    s__elbow_1_over_ahead_front = t19 * (2.0 * lever_elbow)
-    del t19
-    t22 = c_straight * s__elbow_1_over_ahead_front
-    t23 = c_straight * t20
-    t24 = s_straight * s__elbow_1_over_ahead_front
-    t25 = d5 - a4 * (t21 - t22) - d3 * (t23 + t24)
-    t26 = (a4 * c_straight - d3 * s_straight) * t20
-    t27 = (a4 * s_straight + d3 * c_straight) * s__elbow_1_over_ahead_front
-    t28 = t26 + t27
-    slope__elbow_1 = t25 * t28
-    square__elbow_1 = t25 * t25
-    del t25
-    t29 = size * 5.684341886080802e-14
-    t30 = np.maximum(0.0, -t29)
-    low__elbow_1 = t30 * t30
-    del t30
-    reach = np.sqrt(t9)
+    t5 = a4 * s_straight + d3 * c_straight
+    level_s_elbow = a4 * c_straight - d3 * s_straight
+    level_elbow = np.sqrt(t5 * t5 + level_s_elbow * level_s_elbow)
+    t6 = level_elbow == 0.0
+    t7 = 1.0 / level_elbow
+    del level_elbow
+    t8 = _runtime.select(t6, 1.0, level_s_elbow * t7)
+    t9 = T34 - d1
+    t10 = T12 * T14 + T22 * T24 + T32 * t9
+    t11 = T11 * T14 + T21 * T24 + T31 * t9
+    w_y = c_x_theta7 * t10 + s_x_theta7 * t11
+    t12 = w_y * w_y
+    u_x = a7 - c_x_theta7 * t11 + s_x_theta7 * t10
+    del t10, t11
+    s_z = d7 - T13 * T14 - T23 * T24 - T33 * t9
     del t9
-    t31 = reach + t29
-    del t29
-    high__elbow_1 = t31 * t31
-    del t31
-    t32 = np.maximum(low__elbow_1, np.minimum(high__elbow_1, square__elbow_1))
-    miss__elbow_1 = square__elbow_1 - t32
-    del square__elbow_1, t32
-    bend__elbow_1 = t28 * t28
-    del t28
-    inner__elbow_1 = slope__elbow_1 * slope__elbow_1 - miss__elbow_1 * bend__elbow_1
-    t33 = inner__elbow_1 < 0.0
-    t34 = _runtime.sign(slope__elbow_1) * np.sqrt(np.maximum(0.0, inner__elbow_1))
+    t13 = u_x * u_x + s_z * s_z
+    far = np.sqrt(t12 + t13)
+    t14 = t4 - far
+    t15 = (t4 + far) * np.maximum(t14, 0.0)
+    del t4
+    t16 = upper - fore
+    del fore, upper
+    t17 = t16 + far
+    t18 = far - t16
+    del t16
+    t19 = np.maximum(t17, 0.0) * np.maximum(t18, 0.0)
+    size = d3 + a4 + a5 + d5 + np.abs(a7) + np.abs(d1) + np.abs(d7)
+    lever_elbow = 2.0 * np.sqrt(t15 * t19) / (size * 4.0)
+    t20 = _runtime.VANISHING * size
+    tangent_elbow = lever_elbow - size * 0.00390625 <= t20
+    t21 = 1.0 / (size * 2.0)
+    t22 = t21 * t15
+    span_elbow = t21 * (t15 + t19)
+    del t15
+    t23 = 1.0 / span_elbow
+    t24 = (t22 - t21 * t19) * t23
+    del t19, t21
+    t25 = np.abs(w_y)
+    reach = np.sqrt(t13)
+    del t13
+    t26 = t25 < reach
+    t27 = c_straight * t24
+    s__elbow_1_over_ahead_front = t23 * (2.0 * lever_elbow)
+    del t23
+    t28 = s_straight * s__elbow_1_over_ahead_front
+    t29 = t27 + t28
+    t30 = s_straight * t24
+    t31 = c_straight * s__elbow_1_over_ahead_front
+    t32 = t30 - t31
+    qx__elbow_1 = _runtime.select(t26, a5 + a4 * t29 - d3 * t32, d3 * t29 - (d5 - a4 * t32))
+    del t29, t32
+    t33 = _runtime.select(t26, -t5, level_s_elbow) * t24
+    t34 = _runtime.select(t26, level_s_elbow, t5) * s__elbow_1_over_ahead_front
+    del level_s_elbow
+    t35 = t33 + t34
+    t36 = qx__elbow_1 * t35
+    square__elbow_1 = qx__elbow_1 * qx__elbow_1
+    del qx__elbow_1
+    t37 = size * 5.684341886080802e-14
+    t38 = np.maximum(0.0, _runtime.select(t26, t25, 0.0) - t37)
+    low__elbow_1 = t38 * t38
+    del t38
+    t39 = t37 + _runtime.select(t26, size, reach)
+    del t37
+    high__elbow_1 = t39 * t39
+    del t39
+    t40 = np.maximum(low__elbow_1, np.minimum(high__elbow_1, square__elbow_1))
+    miss__elbow_1 = square__elbow_1 - t40
+    del square__elbow_1, t40
+    bend__elbow_1 = t35 * t35
+    del t35
+    inner__elbow_1 = t36 * t36 - miss__elbow_1 * bend__elbow_1
+    t41 = inner__elbow_1 < 0.0
+    t42 = _runtime.sign(-t36) * np.sqrt(np.maximum(0.0, inner__elbow_1))
     del inner__elbow_1
-    below__elbow_1 = _runtime.select(t33, 2.0 * bend__elbow_1, 2.0 * (slope__elbow_1 + t34))
-    del bend__elbow_1, t34
-    above__elbow_1 = _runtime.select(t33, slope__elbow_1, miss__elbow_1)
-    del miss__elbow_1, slope__elbow_1, t33
-    t35 = np.abs(below__elbow_1) <= np.abs(above__elbow_1)
-    t36 = _runtime.select(t35, 0.0, above__elbow_1 / below__elbow_1)
-    del above__elbow_1, below__elbow_1, t35
-    t37 = t36 * t36
-    t38 = 1.0 / (1.0 + t37)
-    t39 = 2.0 * t36 * t38
-    del t36
-    t40 = np.abs(span_elbow * 0.5 - t18)
-    del span_elbow, t18
-    by_c__elbow_1 = t38 * (1.0 - t37)
-    del t37, t38
-    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t39 * t39 / (1.0 + np.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * np.abs(t39) + t40 * versine__elbow_1
+    below__elbow_1 = _runtime.select(t41, 2.0 * bend__elbow_1, -(2.0 * (t36 - t42)))
+    del bend__elbow_1, t42
+    above__elbow_1 = _runtime.select(t41, -t36, miss__elbow_1)
+    del miss__elbow_1, t36, t41
+    t43 = np.abs(below__elbow_1) <= np.abs(above__elbow_1)
+    t44 = _runtime.select(t43, 0.0, above__elbow_1 / below__elbow_1)
+    del above__elbow_1, below__elbow_1, t43
+    t45 = t44 * t44
+    t46 = 1.0 / (1.0 + t45)
+    t47 = 2.0 * t44 * t46
+    del t44
+    t48 = np.abs(span_elbow * 0.5 - t22)
+    del span_elbow, t22
+    by_c__elbow_1 = t46 * (1.0 - t45)
+    del t45, t46
+    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t47 * t47 / (1.0 + np.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
+    cost__elbow_1 = lever_elbow * np.abs(t47) + t48 * versine__elbow_1
     del versine__elbow_1
     whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
     del far
-    t41 = cost__elbow_1 <= whole__elbow_1
+    t49 = cost__elbow_1 <= whole__elbow_1
     del cost__elbow_1
-    cosine__elbow_1 = _runtime.select(t41, by_c__elbow_1, 1.0)
+    cosine__elbow_1 = _runtime.select(t49, by_c__elbow_1, 1.0)
     del by_c__elbow_1
-    sine__elbow_1 = _runtime.select(t41, -t39, 0.0)
-    del t39, t41
-    t42 = t20 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = _runtime.select(no_link_elbow, 1.0, -_runtime.select(tangent_elbow, t42, t20))
-    del t42
-    t43 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    sine__elbow_1 = _runtime.select(t49, -t47, 0.0)
+    del t47, t49
+    t50 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t50, t24))
+    del t50
+    t51 = _runtime.select(t6, 0.0, t5 * t7)
+    del t5, t6, t7
+    t52 = s__elbow_1_over_ahead_front * cosine__elbow_1
     del cosine__elbow_1
-    t44 = _runtime.select(tangent_elbow, t20 * sine__elbow_1 + t43, s__elbow_1_over_ahead_front)
-    del sine__elbow_1, t43
-    t45 = _runtime.select(no_link_elbow, 0.0, t44)
-    del t44
-    t46 = c_straight * celbow - s_straight * t45
+    t53 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t52, s__elbow_1_over_ahead_front)
+    del sine__elbow_1, t52
+    selbow = _runtime.select(no_link_elbow, t51, -t53)
+    del t53
+    t54 = c_straight * celbow + s_straight * selbow
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    free6 = reach <= t16
-    t47 = s_z * 2.0
-    t48 = c_straight * t45 + s_straight * celbow
-    del celbow, t45
-    t49 = d5 + a4 * t48 + d3 * t46
-    t50 = reach + t49
-    t51 = reach - t49
-    del t49
-    t52 = reach * 0.00390625
-    t53 = reach * _runtime.VANISHING
-    tangent6 = np.sqrt(np.abs(t50 * t51)) - t52 <= t53
-    v_x = a5 - a4 * t46 + d3 * t48
-    t54 = np.abs(v_x)
-    t55 = np.abs(w_y)
-    t56 = np.maximum(0.0, -((t55 - t54) * (t55 + t54)))
-    below6 = np.maximum(t50, 0.0)
-    above6 = np.maximum(t51, 0.0)
-    t57 = below6 * above6
-    held6 = _runtime.select(t54 < reach, t56, t57)
-    del t54, t56
-    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t57))
+    free6 = reach <= t20
+    t55 = s_z * 2.0
+    t56 = c_straight * selbow - s_straight * celbow
+    del celbow, selbow
+    t57 = d5 - a4 * t56 + d3 * t54
+    t58 = reach + t57
+    t59 = reach - t57
     del t57
-    t58 = below6 - above6
-    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t58 * t58), below6 + above6)
+    t60 = reach * 0.00390625
+    t61 = reach * _runtime.VANISHING
+    tangent6 = np.sqrt(np.abs(t58 * t59)) - t60 <= t61
+    v_x = a5 - a4 * t54 - d3 * t56
+    t62 = np.abs(v_x)
+    t63 = np.maximum(0.0, -((t25 - t62) * (t25 + t62)))
+    below6 = np.maximum(t58, 0.0)
+    above6 = np.maximum(t59, 0.0)
+    t64 = below6 * above6
+    held6 = _runtime.select(t62 < reach, t63, t64)
+    del t62, t63
+    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t64))
+    del t64
+    t65 = below6 - above6
+    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t65 * t65), below6 + above6)
     del above6, below6, held6, tangent6
-    t59 = 1.0 / (reach * span6)
+    t66 = 1.0 / (reach * span6)
     del span6
-    t60 = t47 * kept6 * t59
-    t61 = t59 * (u_x * t58)
-    s6 = _runtime.select(free6, 0.0, t60 - t61)
-    t62 = u_x * 2.0
-    t63 = t59 * (t62 * kept6)
+    t67 = t55 * kept6 * t66
+    t68 = t66 * (u_x * t65)
+    s6 = _runtime.select(free6, 0.0, t67 - t68)
+    t69 = u_x * 2.0
+    t70 = t66 * (t69 * kept6)
     del kept6
-    t64 = t59 * (s_z * t58)
-    del t58, t59
-    c6 = _runtime.select(free6, 1.0, t63 + t64)
+    t71 = t66 * (s_z * t65)
+    del t65, t66
+    c6 = _runtime.select(free6, 1.0, t70 + t71)
     R2_13 = R1_11 * s6 - T13 * c6
-    t65 = np.sqrt(v_x * v_x)
+    t72 = np.sqrt(v_x * v_x)
     w_x = u_x * c6 + s_z * s6
-    on_axis_5 = np.minimum(t65, np.sqrt(t8 + w_x * w_x)) <= t16
+    t73 = np.sqrt(t12 + w_x * w_x)
+    on_axis_5 = np.minimum(t72, t73) <= t20
     dot_5 = v_x * w_x
     del w_x
-    t66 = w_y * v_x
-    t67 = t66 * t66
-    t68 = 1.0 / np.sqrt(t67 + dot_5 * dot_5)
-    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t68)
+    t74 = w_y * v_x
+    t75 = t74 * t74
+    t76 = 1.0 / np.sqrt(t75 + dot_5 * dot_5)
+    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t76)
     del dot_5
     R2_11 = R1_11 * c6 + T13 * s6
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t69 = _runtime.select(on_axis_5, 0.0, t66 * t68)
-    del t68
-    R3_11 = c5 * R2_11 - R1_13 * t69
-    R4_13 = t46 * R2_13 - t48 * R3_11
+    t77 = _runtime.select(on_axis_5, 0.0, t74 * t76)
+    del t76
+    R3_11 = c5 * R2_11 - R1_13 * t77
+    R4_13 = t54 * R2_13 + t56 * R3_11
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R2_23 = R1_21 * s6 - T23 * c6
     R2_21 = R1_21 * c6 + T23 * s6
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    R3_21 = c5 * R2_21 - R1_23 * t69
-    R4_23 = t46 * R2_23 - t48 * R3_21
+    R3_21 = c5 * R2_21 - R1_23 * t77
+    R4_23 = t54 * R2_23 + t56 * R3_21
     h_wrist = np.sqrt(R4_13 * R4_13 + R4_23 * R4_23)
-    t70 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t70
-    t71 = 1.0 / h_wrist
+    t78 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t78
+    t79 = 1.0 / h_wrist
     del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t71)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t71)
-    del t71
-    t72 = np.arctan2(s_wrist, c_wrist)
-    t73 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
-    t74 = t73 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
-    del t73
-    t75 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
-    t76 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t77 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t78 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t79 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t80 = t74 & (0.0 <= d5) & t75 & t76 & t77 & t78 & (t79 <= _runtime.ROTATION)
-    del t74, t75, t76, t77, t78, t79
-    t81 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t82 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t83 = t80 & (t81 <= _runtime.ROTATION) & t82 & (np.abs(T41) <= _runtime.ROTATION)
-    del t80, t81, t82
-    t84 = t83 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t83
-    t85 = t84 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t84
-    invalid = np.logical_not(t85)
-    del t85
-    t86 = -(_runtime.FEASIBILITY * (size * 0.5))
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t79)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t79)
+    del t79
+    t80 = np.arctan2(s_wrist, c_wrist)
+    t81 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
+    t82 = t81 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
+    del t81
+    t83 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
+    t84 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t85 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t86 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t87 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t88 = t82 & (0.0 <= d5) & t83 & t84 & t85 & t86 & (t87 <= _runtime.ROTATION)
+    del t82, t83, t84, t85, t86, t87
+    t89 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t90 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t91 = t88 & (t89 <= _runtime.ROTATION) & t90 & (np.abs(T41) <= _runtime.ROTATION)
+    del t88, t89, t90
+    t92 = t91 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t91
+    t93 = t92 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t92
+    invalid = np.logical_not(t93)
+    del t93
+    t94 = _runtime.FEASIBILITY * (size * 0.5)
     del size
-    t87 = (t86 <= t10) & (t86 <= t13) & (t86 <= t14)
-    del t10, t13, t14
-    unreachable = np.logical_not(t87 & (t86 <= t50) & (t86 <= t51))
-    del t50, t51
-    t88 = _runtime.poison(invalid | unreachable)
+    t95 = (-t94 <= t14) & (-t94 <= t17) & (-t94 <= t18)
+    del t14, t17, t18
+    t96 = t95 & (-t94 <= t58) & (-t94 <= t59)
+    del t58, t59
+    unreachable = np.logical_not(t96 & (np.abs(t72 - t73) <= t94))
+    del t73
+    t97 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t89 = t48 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t69)
-    t90 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t46 * (R1_31 * s6 - T33 * c6) - t89)
-    del R4_13, R4_23, t89
-    t91 = s_wrist * (t48 * R2_13 + t46 * R3_11) - c_wrist * (t48 * R2_23 + t46 * R3_21)
+    t98 = t56 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t77)
+    t99 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t54 * (R1_31 * s6 - T33 * c6) + t98)
+    del R4_13, R4_23, t98
+    t100 = s_wrist * (t56 * R2_13 - t54 * R3_11) - c_wrist * (t56 * R2_23 - t54 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t92 = s_wrist * (R2_11 * t69 + R1_13 * c5) - c_wrist * (t69 * R2_21 + R1_23 * c5)
+    t101 = s_wrist * (R2_11 * t77 + R1_13 * c5) - c_wrist * (t77 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t93 = np.arctan2(t91, t92)
-    del t91, t92
-    t94 = _runtime.wrap_cut(-np.arctan2(t48, t46)) + t88
-    t95 = _runtime.wrap_cut(-np.arctan2(t69, c5)) + t88
-    del c5, t69
-    t96 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t88
+    t102 = np.arctan2(t100, t101)
+    del t100, t101
+    t103 = _runtime.wrap_cut(np.arctan2(t56, t54))
+    t104 = t103 + t97
+    t105 = _runtime.wrap_cut(-np.arctan2(t77, c5)) + t97
+    del c5, t77
+    t106 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t97
     del c6, s6
-    t97 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t107 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t98 = t97 + t88
+    t108 = t107 + t97
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t99 = _runtime.select(free6, 0.0, t60 + t61)
-    del t60, t61
-    c6_bent_behind_front = _runtime.select(free6, 1.0, t64 - t63)
-    del t63, t64
-    t100 = R1_11 * t99 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t99
-    t101 = w_x_bent_behind_front * w_x_bent_behind_front
-    on_axis_5_bent_behind_front = np.minimum(t65, np.sqrt(t8 + t101)) <= t16
-    del t101, t65
+    t109 = _runtime.select(free6, 0.0, t67 + t68)
+    del t67, t68
+    c6_bent_behind_front = _runtime.select(free6, 1.0, t71 - t70)
+    del t70, t71
+    t110 = R1_11 * t109 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t109
+    t111 = w_x_bent_behind_front * w_x_bent_behind_front
+    t112 = np.sqrt(t12 + t111)
+    del t111
+    on_axis_5_bent_behind_front = np.minimum(t72, t112) <= t20
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t102 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t103 = 1.0 / np.sqrt(t67 + t102)
-    del t102, t67
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t103)
+    t113 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t114 = 1.0 / np.sqrt(t75 + t113)
+    del t113, t75
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t114)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t99
-    t104 = c5_bent_behind_front * R2_11_bent_behind_front
-    t105 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t66 * t103)
-    del t103, t66
-    R3_11_bent_behind_front = t104 - R1_13 * t105
-    del t104
-    t106 = t46 * t100 + t48 * R3_11_bent_behind_front
-    t107 = R1_21 * t99 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t99
-    t108 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t108 - R1_23 * t105
-    del t108
-    t109 = t46 * t107 + t48 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t106 * t106 + t109 * t109)
-    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t70
-    t110 = 1.0 / h_wrist_bent_behind_front
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t109
+    t115 = c5_bent_behind_front * R2_11_bent_behind_front
+    t116 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t74 * t114)
+    del t114, t74
+    R3_11_bent_behind_front = t115 - R1_13 * t116
+    del t115
+    t117 = t54 * t110 - t56 * R3_11_bent_behind_front
+    t118 = R1_21 * t109 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t109
+    t119 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t119 - R1_23 * t116
+    del t119
+    t120 = t54 * t118 - t56 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t117 * t117 + t120 * t120)
+    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t78
+    t121 = 1.0 / h_wrist_bent_behind_front
     del h_wrist_bent_behind_front
-    t111 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t109 * t110)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t106 * t110))
-    del t110
-    t112 = np.arctan2(t111, c_wrist_bent_behind_front)
-    t113 = t106 * c_wrist_bent_behind_front - t109 * t111
-    del t106, t109
-    t114 = t46 * (R1_31 * t99 + T33 * c6_bent_behind_front)
-    t115 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t99)
-    t116 = np.arctan2(t113, -(t114 + t48 * (t115 - R1_33 * t105)))
-    del t113, t114, t115
-    t117 = t111 * (t48 * t100 - t46 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t100
-    t118 = c_wrist_bent_behind_front * (t48 * t107 - t46 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t107, t46, t48
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t105 + R1_13 * c5_bent_behind_front
-    del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t105 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
-    del R2_21_bent_behind_front
-    t119 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t120 = np.arctan2(t117 + t118, -(t111 * R3_13_bent_behind_front + t119))
-    del R3_13_bent_behind_front, t111, t117, t118, t119
-    t121 = _runtime.wrap_cut(-np.arctan2(t105, c5_bent_behind_front))
-    del c5_bent_behind_front, t105
-    t122 = t121 + t88
+    t122 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t120 * t121)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t117 * t121))
     del t121
-    t123 = _runtime.wrap_cut(-np.arctan2(t99, c6_bent_behind_front))
-    del c6_bent_behind_front, t99
-    t124 = t123 + t88
-    del t123
+    t123 = np.arctan2(t122, c_wrist_bent_behind_front)
+    unreachable_2 = np.logical_not(t96 & (np.abs(t72 - t112) <= t94))
+    del t112, t72, t96
+    t124 = _runtime.poison(invalid | unreachable_2)
+    t125 = t117 * c_wrist_bent_behind_front - t120 * t122
+    del t117, t120
+    t126 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t109)
+    t127 = t54 * (R1_31 * t109 + T33 * c6_bent_behind_front)
+    t128 = np.arctan2(t125, t56 * (t126 - R1_33 * t116) - t127)
+    del t125, t126, t127
+    t129 = t122 * (t56 * t110 + t54 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t110
+    t130 = c_wrist_bent_behind_front * (t56 * t118 + t54 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t118, t54, t56
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t116 + R1_13 * c5_bent_behind_front
+    del R2_11_bent_behind_front
+    R3_23_bent_behind_front = t116 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    del R2_21_bent_behind_front
+    t131 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    del R3_23_bent_behind_front, c_wrist_bent_behind_front
+    t132 = np.arctan2(t129 + t130, -(t122 * R3_13_bent_behind_front + t131))
+    del R3_13_bent_behind_front, t122, t129, t130, t131
+    t133 = t103 + t124
+    del t103
+    t134 = _runtime.wrap_cut(-np.arctan2(t116, c5_bent_behind_front))
+    del c5_bent_behind_front, t116
+    t135 = t134 + t124
+    del t134
+    t136 = _runtime.wrap_cut(-np.arctan2(t109, c6_bent_behind_front))
+    del c6_bent_behind_front, t109
+    t137 = t136 + t124
+    del t136
+    t138 = t107 + t124
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t125 = _runtime.wrap(flip_wrist_bent_behind_back - t112)
-    t126 = _runtime.wrap(flip_wrist_bent_behind_back - t120)
+    t139 = _runtime.wrap(flip_wrist_bent_behind_back - t123)
+    t140 = _runtime.wrap(t132 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t127 = d5 - a4 * (t21 + t22) - d3 * (t23 - t24)
-    del t21, t22, t23, t24
-    t128 = t26 - t27
-    del t26, t27
-    slope__elbow_1_over_ahead_front = t127 * t128
-    t129 = slope__elbow_1_over_ahead_front * slope__elbow_1_over_ahead_front
-    square__elbow_1_over_ahead_front = t127 * t127
-    del t127
-    t130 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
+    t141 = t27 - t28
+    del t27, t28
+    t142 = t30 + t31
+    del t30, t31
+    qx__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t141 - d3 * t142, d3 * t141 - (d5 - a4 * t142))
+    del t141, t142, t26
+    t143 = t33 - t34
+    del t33, t34
+    t144 = qx__elbow_1_over_ahead_front * t143
+    square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
+    del qx__elbow_1_over_ahead_front
+    t145 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
     del high__elbow_1
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t130)
-    del low__elbow_1, square__elbow_1_over_ahead_front, t130
-    bend__elbow_1_over_ahead_front = t128 * t128
-    del t128
-    t131 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t129 - t131
-    del t129, t131
-    t132 = inner__elbow_1_over_ahead_front < 0.0
-    t133 = _runtime.sign(slope__elbow_1_over_ahead_front)
-    t134 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
-    del inner__elbow_1_over_ahead_front
-    outer__elbow_1_over_ahead_front = slope__elbow_1_over_ahead_front + t133 * np.sqrt(t134)
-    del t133, t134
-    below__elbow_1_over_ahead_front = _runtime.select(t132, 2.0 * bend__elbow_1_over_ahead_front, 2.0 * outer__elbow_1_over_ahead_front)
-    del bend__elbow_1_over_ahead_front, outer__elbow_1_over_ahead_front
-    above__elbow_1_over_ahead_front = _runtime.select(t132, slope__elbow_1_over_ahead_front, miss__elbow_1_over_ahead_front)
-    del miss__elbow_1_over_ahead_front, slope__elbow_1_over_ahead_front, t132
-    t135 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
-    t136 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front
-    t137 = _runtime.select(t135, 0.0, t136)
-    del t135, t136
-    t138 = t137 * t137
-    t139 = 1.0 / (1.0 + t138)
-    t140 = 2.0 * t137 * t139
-    del t137
-    by_c__elbow_1_over_ahead_front = t139 * (1.0 - t138)
-    del t138, t139
-    t141 = t140 * t140 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t141, 1.0 - by_c__elbow_1_over_ahead_front)
-    del t141
-    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t140) + t40 * versine__elbow_1_over_ahead_front
-    del lever_elbow, t40, versine__elbow_1_over_ahead_front
-    t142 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t142, by_c__elbow_1_over_ahead_front, 1.0)
-    del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t142, -t140, 0.0)
-    del t140, t142
-    t143 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t144 = t20 * cosine__elbow_1_over_ahead_front + t143
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t145)
+    del low__elbow_1, square__elbow_1_over_ahead_front, t145
+    bend__elbow_1_over_ahead_front = t143 * t143
     del t143
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, 1.0, -_runtime.select(tangent_elbow, t144, t20))
-    del t144
-    t145 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    del cosine__elbow_1_over_ahead_front
-    t146 = _runtime.select(tangent_elbow, t145 - t20 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t145, t20, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, 0.0, t146)
+    t146 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t144 * t144 - t146
     del t146
-    t147 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t148 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t147 = inner__elbow_1_over_ahead_front < 0.0
+    t148 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    del inner__elbow_1_over_ahead_front
+    t149 = 2.0 * (t144 - _runtime.sign(-t144) * np.sqrt(t148))
+    del t148
+    below__elbow_1_over_ahead_front = _runtime.select(t147, 2.0 * bend__elbow_1_over_ahead_front, -t149)
+    del bend__elbow_1_over_ahead_front, t149
+    above__elbow_1_over_ahead_front = _runtime.select(t147, -t144, miss__elbow_1_over_ahead_front)
+    del miss__elbow_1_over_ahead_front, t144, t147
+    t150 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
+    t151 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front
+    t152 = _runtime.select(t150, 0.0, t151)
+    del t150, t151
+    t153 = t152 * t152
+    t154 = 1.0 / (1.0 + t153)
+    t155 = 2.0 * t152 * t154
+    del t152
+    by_c__elbow_1_over_ahead_front = t154 * (1.0 - t153)
+    del t153, t154
+    t156 = t155 * t155 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t156, 1.0 - by_c__elbow_1_over_ahead_front)
+    del t156
+    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t155) + t48 * versine__elbow_1_over_ahead_front
+    del lever_elbow, t48, versine__elbow_1_over_ahead_front
+    t157 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    del cost__elbow_1_over_ahead_front, whole__elbow_1
+    cosine__elbow_1_over_ahead_front = _runtime.select(t157, by_c__elbow_1_over_ahead_front, 1.0)
+    del by_c__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t157, -t155, 0.0)
+    del t155, t157
+    t158 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t159 = t24 * cosine__elbow_1_over_ahead_front + t158
+    del t158
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t159, t24))
+    del t159, t8
+    t160 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    del cosine__elbow_1_over_ahead_front
+    t161 = _runtime.select(tangent_elbow, t160 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t160, t24, tangent_elbow
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t51, t161)
+    del t161, t51
+    t162 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t163 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t149 = d5 - a4 * t148 + d3 * t147
-    t150 = reach + t149
-    t151 = reach - t149
-    del t149
-    tangent6_over_ahead_front = np.sqrt(np.abs(t150 * t151)) - t52 <= t53
-    del t52, t53
-    v_x_over_ahead_front = a5 - a4 * t147 - d3 * t148
-    t152 = np.abs(v_x_over_ahead_front)
-    t153 = np.maximum(0.0, -((t55 - t152) * (t55 + t152)))
-    del t55
-    below6_over_ahead_front = np.maximum(t150, 0.0)
-    above6_over_ahead_front = np.maximum(t151, 0.0)
-    t154 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = _runtime.select(t152 < reach, t153, t154)
-    del t152, t153
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t154))
-    del t154
-    t155 = below6_over_ahead_front - above6_over_ahead_front
-    t156 = np.sqrt(4.0 * held6_over_ahead_front + t155 * t155)
+    t164 = d5 - a4 * t163 + d3 * t162
+    t165 = reach + t164
+    t166 = reach - t164
+    del t164
+    tangent6_over_ahead_front = np.sqrt(np.abs(t165 * t166)) - t60 <= t61
+    del t60, t61
+    v_x_over_ahead_front = a5 - a4 * t162 - d3 * t163
+    t167 = np.abs(v_x_over_ahead_front)
+    t168 = np.maximum(0.0, -((t25 - t167) * (t25 + t167)))
+    del t25
+    below6_over_ahead_front = np.maximum(t165, 0.0)
+    above6_over_ahead_front = np.maximum(t166, 0.0)
+    t169 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t167 < reach, t168, t169)
+    del t167, t168
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t169))
+    del t169
+    t170 = below6_over_ahead_front - above6_over_ahead_front
+    t171 = np.sqrt(4.0 * held6_over_ahead_front + t170 * t170)
     del held6_over_ahead_front
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t156, width6_over_ahead_front)
-    del t156, tangent6_over_ahead_front, width6_over_ahead_front
-    t157 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t171, width6_over_ahead_front)
+    del t171, tangent6_over_ahead_front, width6_over_ahead_front
+    t172 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t158 = t47 * kept6_over_ahead_front * t157
-    del t47
-    t159 = t157 * (u_x * t155)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t158 - t159)
-    t160 = t157 * (t62 * kept6_over_ahead_front)
-    del kept6_over_ahead_front, t62
-    t161 = t157 * (s_z * t155)
-    del t155, t157
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t160 + t161)
+    t173 = t55 * kept6_over_ahead_front * t172
+    del t55
+    t174 = t172 * (u_x * t170)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t173 - t174)
+    t175 = t172 * (t69 * kept6_over_ahead_front)
+    del kept6_over_ahead_front, t69
+    t176 = t172 * (s_z * t170)
+    del t170, t172
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t175 + t176)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t162 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t177 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t163 = t8 + w_x_over_ahead_front * w_x_over_ahead_front
-    on_axis_5_over_ahead_front = np.minimum(t162, np.sqrt(t163)) <= t16
-    del t163
+    t178 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
+    t179 = np.sqrt(t178)
+    del t178
+    on_axis_5_over_ahead_front = np.minimum(t177, t179) <= t20
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t164 = w_y * v_x_over_ahead_front
+    t180 = w_y * v_x_over_ahead_front
     del w_y
-    t165 = t164 * t164
-    t166 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t167 = 1.0 / np.sqrt(t165 + t166)
-    del t166
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t167)
+    t181 = t180 * t180
+    t182 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t183 = 1.0 / np.sqrt(t181 + t182)
+    del t182
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t183)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t168 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t164 * t167)
-    del t167
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t168
-    R4_13_over_ahead_front = t147 * R2_13_over_ahead_front + t148 * R3_11_over_ahead_front
-    t169 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t184 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t180 * t183)
+    del t183
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t184
+    R4_13_over_ahead_front = t162 * R2_13_over_ahead_front + t163 * R3_11_over_ahead_front
+    t185 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t168
-    R4_23_over_ahead_front = t147 * R2_23_over_ahead_front + t148 * R3_21_over_ahead_front
-    t170 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t169 + t170)
-    del t169, t170
-    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t70
-    t171 = 1.0 / h_wrist_over_ahead_front
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t184
+    R4_23_over_ahead_front = t162 * R2_23_over_ahead_front + t163 * R3_21_over_ahead_front
+    t186 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t185 + t186)
+    del t185, t186
+    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t78
+    t187 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t171)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t171)
-    del t171
-    t172 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    unreachable_2 = np.logical_not(t87 & (t86 <= t150) & (t86 <= t151))
-    del t150, t151, t86, t87
-    t173 = _runtime.poison(invalid | unreachable_2)
-    t174 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t187)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t187)
+    del t187
+    t188 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    t189 = t95 & (-t94 <= t165) & (-t94 <= t166)
+    del t165, t166, t95
+    unreachable_3 = np.logical_not(t189 & (np.abs(t177 - t179) <= t94))
+    del t179
+    t190 = _runtime.poison(invalid | unreachable_3)
+    t191 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t175 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t192 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t168
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t184
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t147 * R2_33_over_ahead_front + t148 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t162 * R2_33_over_ahead_front + t163 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t176 = np.arctan2(t174 + t175, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t174, t175
-    t177 = t148 * R2_13_over_ahead_front - t147 * R3_11_over_ahead_front
+    t193 = np.arctan2(t191 + t192, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t191, t192
+    t194 = t163 * R2_13_over_ahead_front - t162 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t178 = t148 * R2_23_over_ahead_front - t147 * R3_21_over_ahead_front
+    t195 = t163 * R2_23_over_ahead_front - t162 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t179 = s_wrist_over_ahead_front * t177 - c_wrist_over_ahead_front * t178
-    del t177, t178
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t168 + R1_13 * c5_over_ahead_front
+    t196 = s_wrist_over_ahead_front * t194 - c_wrist_over_ahead_front * t195
+    del t194, t195
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t184 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t180 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t197 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t168 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t184 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t181 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t198 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t182 = np.arctan2(t179, t180 - t181)
-    del t179, t180, t181
-    t183 = _runtime.wrap_cut(np.arctan2(t148, t147)) + t173
-    t184 = _runtime.wrap_cut(-np.arctan2(t168, c5_over_ahead_front))
-    del c5_over_ahead_front, t168
-    t185 = t184 + t173
-    del t184
-    t186 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t199 = np.arctan2(t196, t197 - t198)
+    del t196, t197, t198
+    t200 = _runtime.wrap_cut(np.arctan2(t163, t162))
+    t201 = t200 + t190
+    t202 = _runtime.wrap_cut(-np.arctan2(t184, c5_over_ahead_front))
+    del c5_over_ahead_front, t184
+    t203 = t202 + t190
+    del t202
+    t204 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t187 = _runtime.wrap_cut(t186) + t173
-    del t186
-    t188 = t97 + t173
-    del t97
+    t205 = _runtime.wrap_cut(t204) + t190
+    del t204
+    t206 = t107 + t190
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t189 = _runtime.wrap(t172 + flip_wrist_over_ahead_back)
-    t190 = _runtime.wrap(t182 + flip_wrist_over_ahead_back)
+    t207 = _runtime.wrap(t188 + flip_wrist_over_ahead_back)
+    t208 = _runtime.wrap(t199 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t191 = _runtime.select(free6, 0.0, t158 + t159)
-    del t158, t159
-    c6_over_behind_front = _runtime.select(free6, 1.0, t161 - t160)
-    del t160, t161
-    t192 = R1_11 * t191 + T13 * c6_over_behind_front
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t191
+    t209 = _runtime.select(free6, 0.0, t173 + t174)
+    del t173, t174
+    c6_over_behind_front = _runtime.select(free6, 1.0, t176 - t175)
+    del t175, t176
+    t210 = R1_11 * t209 + T13 * c6_over_behind_front
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t209
     del s_z, u_x
-    t193 = w_x_over_behind_front * w_x_over_behind_front
-    on_axis_5_over_behind_front = np.minimum(t162, np.sqrt(t8 + t193)) <= t16
-    del t16, t162, t193, t8
+    t211 = w_x_over_behind_front * w_x_over_behind_front
+    t212 = np.sqrt(t12 + t211)
+    del t12, t211
+    on_axis_5_over_behind_front = np.minimum(t177, t212) <= t20
+    del t20
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t194 = dot_5_over_behind_front * dot_5_over_behind_front
-    t195 = 1.0 / np.sqrt(t165 + t194)
-    del t165, t194
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t195)
+    t213 = dot_5_over_behind_front * dot_5_over_behind_front
+    t214 = 1.0 / np.sqrt(t181 + t213)
+    del t181, t213
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t214)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t191
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t209
     del R1_11
-    t196 = c5_over_behind_front * R2_11_over_behind_front
-    t197 = _runtime.select(on_axis_5_over_behind_front, 0.0, t164 * t195)
-    del t164, t195
-    R3_11_over_behind_front = t196 - R1_13 * t197
-    del t196
-    t198 = t147 * t192 - t148 * R3_11_over_behind_front
-    t199 = R1_21 * t191 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t191
-    del R1_21
-    t200 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t200 - R1_23 * t197
-    del t200
-    t201 = t147 * t199 - t148 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t198 * t198 + t201 * t201)
-    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t70
-    del t70
-    t202 = 1.0 / h_wrist_over_behind_front
-    del h_wrist_over_behind_front
-    t203 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t201 * t202)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t198 * t202))
-    del t202
-    t204 = np.arctan2(t203, c_wrist_over_behind_front)
-    t205 = t198 * c_wrist_over_behind_front - t201 * t203
-    del t198, t201
-    t206 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t191)
-    t207 = t147 * (R1_31 * t191 + T33 * c6_over_behind_front)
-    del R1_31
-    t208 = np.arctan2(t205, t148 * (t206 - R1_33 * t197) - t207)
-    del R1_33, t205, t206, t207
-    t209 = t203 * (t148 * t192 + t147 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t192
-    t210 = c_wrist_over_behind_front * (t148 * t199 + t147 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t147, t148, t199
-    R3_13_over_behind_front = R2_11_over_behind_front * t197 + R1_13 * c5_over_behind_front
-    del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t197 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
-    del R1_23, R2_21_over_behind_front
-    t211 = c_wrist_over_behind_front * R3_23_over_behind_front
-    del R3_23_over_behind_front, c_wrist_over_behind_front
-    t212 = np.arctan2(t209 + t210, -(t203 * R3_13_over_behind_front + t211))
-    del R3_13_over_behind_front, t203, t209, t210, t211
-    t213 = _runtime.wrap_cut(-np.arctan2(t197, c5_over_behind_front))
-    del c5_over_behind_front, t197
-    t214 = t213 + t173
-    del t213
-    t215 = _runtime.wrap_cut(-np.arctan2(t191, c6_over_behind_front))
-    del c6_over_behind_front, t191
-    t216 = t215 + t173
+    t215 = c5_over_behind_front * R2_11_over_behind_front
+    t216 = _runtime.select(on_axis_5_over_behind_front, 0.0, t180 * t214)
+    del t180, t214
+    R3_11_over_behind_front = t215 - R1_13 * t216
     del t215
+    t217 = t162 * t210 - t163 * R3_11_over_behind_front
+    t218 = R1_21 * t209 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t209
+    del R1_21
+    t219 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t219 - R1_23 * t216
+    del t219
+    t220 = t162 * t218 - t163 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t217 * t217 + t220 * t220)
+    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t78
+    del t78
+    t221 = 1.0 / h_wrist_over_behind_front
+    del h_wrist_over_behind_front
+    t222 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t220 * t221)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t217 * t221))
+    del t221
+    t223 = np.arctan2(t222, c_wrist_over_behind_front)
+    unreachable_4 = np.logical_not(t189 & (np.abs(t177 - t212) <= t94))
+    del t177, t189, t212, t94
+    t224 = _runtime.poison(invalid | unreachable_4)
+    t225 = t217 * c_wrist_over_behind_front - t220 * t222
+    del t217, t220
+    t226 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t209)
+    t227 = t162 * (R1_31 * t209 + T33 * c6_over_behind_front)
+    del R1_31
+    t228 = np.arctan2(t225, t163 * (t226 - R1_33 * t216) - t227)
+    del R1_33, t225, t226, t227
+    t229 = t222 * (t163 * t210 + t162 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t210
+    t230 = c_wrist_over_behind_front * (t163 * t218 + t162 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t162, t163, t218
+    R3_13_over_behind_front = R2_11_over_behind_front * t216 + R1_13 * c5_over_behind_front
+    del R1_13, R2_11_over_behind_front
+    R3_23_over_behind_front = t216 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    del R1_23, R2_21_over_behind_front
+    t231 = c_wrist_over_behind_front * R3_23_over_behind_front
+    del R3_23_over_behind_front, c_wrist_over_behind_front
+    t232 = np.arctan2(t229 + t230, -(t222 * R3_13_over_behind_front + t231))
+    del R3_13_over_behind_front, t222, t229, t230, t231
+    t233 = t200 + t224
+    del t200
+    t234 = _runtime.wrap_cut(-np.arctan2(t216, c5_over_behind_front))
+    del c5_over_behind_front, t216
+    t235 = t234 + t224
+    del t234
+    t236 = _runtime.wrap_cut(-np.arctan2(t209, c6_over_behind_front))
+    del c6_over_behind_front, t209
+    t237 = t236 + t224
+    del t236
+    t238 = t107 + t224
+    del t107
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t217 = _runtime.wrap(flip_wrist_over_behind_back - t204)
-    t218 = _runtime.wrap(t212 + flip_wrist_over_behind_back)
+    t239 = _runtime.wrap(flip_wrist_over_behind_back - t223)
+    t240 = _runtime.wrap(t232 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t219 = no_link_elbow | free6
+    t241 = no_link_elbow | free6
     del free6, no_link_elbow
-    t220 = _runtime.status(invalid, unreachable, t219 | on_axis_5 | aligned_wrist)
-    del aligned_wrist, on_axis_5
-    t221 = t219 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t242 = _runtime.status(invalid, unreachable, t241 | on_axis_5 | aligned_wrist)
+    del aligned_wrist, on_axis_5, unreachable
+    t243 = t241 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t222 = _runtime.status(invalid, unreachable, t221)
-    del t221, unreachable
-    t223 = t219 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t244 = _runtime.status(invalid, unreachable_2, t243)
+    del t243, unreachable_2
+    t245 = t241 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t224 = _runtime.status(invalid, unreachable_2, t223)
-    del t223
-    t225 = t219 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t219
-    t226 = _runtime.status(invalid, unreachable_2, t225)
-    del invalid, t225, unreachable_2
+    t246 = _runtime.status(invalid, unreachable_3, t245)
+    del t245, unreachable_3
+    t247 = t241 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t241
+    t248 = _runtime.status(invalid, unreachable_4, t247)
+    del invalid, t247, unreachable_4
     return (
-        _runtime.wrap_cut(t72) + t88,
-        _runtime.wrap_cut(t90) + t88,
-        _runtime.wrap_cut(-t93) + t88,
-        t94,
-        t95,
-        t96,
-        t98,
-        _runtime.wrap(t72 + flip_wrist) + t88,
-        _runtime.wrap_cut(-t90) + t88,
-        _runtime.wrap(flip_wrist - t93) + t88,
-        t94,
-        t95,
-        t96,
-        t98,
-        _runtime.wrap_cut(-t112) + t88,
-        _runtime.wrap_cut(-t116) + t88,
-        _runtime.wrap_cut(-t120) + t88,
-        t94,
-        t122,
-        t124,
-        t98,
-        t125 + t88,
-        _runtime.wrap_cut(t116) + t88,
-        t126 + t88,
-        t94,
-        t122,
-        t124,
-        t98,
-        _runtime.wrap_cut(t172) + t173,
-        _runtime.wrap_cut(t176) + t173,
-        _runtime.wrap_cut(t182) + t173,
-        t183,
-        t185,
-        t187,
-        t188,
-        t189 + t173,
-        _runtime.wrap_cut(-t176) + t173,
-        t190 + t173,
-        t183,
-        t185,
-        t187,
-        t188,
-        _runtime.wrap_cut(-t204) + t173,
-        _runtime.wrap_cut(-t208) + t173,
-        _runtime.wrap_cut(t212) + t173,
-        t183,
-        t214,
-        t216,
-        t188,
-        t217 + t173,
-        _runtime.wrap_cut(t208) + t173,
-        t218 + t173,
-        t183,
-        t214,
-        t216,
-        t188,
-        t220,
-        t220,
-        t222,
-        t222,
-        t224,
-        t224,
-        t226,
-        t226,
+        _runtime.wrap_cut(t80) + t97,
+        _runtime.wrap_cut(t99) + t97,
+        _runtime.wrap_cut(t102) + t97,
+        t104,
+        t105,
+        t106,
+        t108,
+        _runtime.wrap(t80 + flip_wrist) + t97,
+        _runtime.wrap_cut(-t99) + t97,
+        _runtime.wrap(t102 + flip_wrist) + t97,
+        t104,
+        t105,
+        t106,
+        t108,
+        _runtime.wrap_cut(-t123) + t124,
+        _runtime.wrap_cut(-t128) + t124,
+        _runtime.wrap_cut(t132) + t124,
+        t133,
+        t135,
+        t137,
+        t138,
+        t139 + t124,
+        _runtime.wrap_cut(t128) + t124,
+        t140 + t124,
+        t133,
+        t135,
+        t137,
+        t138,
+        _runtime.wrap_cut(t188) + t190,
+        _runtime.wrap_cut(t193) + t190,
+        _runtime.wrap_cut(t199) + t190,
+        t201,
+        t203,
+        t205,
+        t206,
+        t207 + t190,
+        _runtime.wrap_cut(-t193) + t190,
+        t208 + t190,
+        t201,
+        t203,
+        t205,
+        t206,
+        _runtime.wrap_cut(-t223) + t224,
+        _runtime.wrap_cut(-t228) + t224,
+        _runtime.wrap_cut(t232) + t224,
+        t233,
+        t235,
+        t237,
+        t238,
+        t239 + t224,
+        _runtime.wrap_cut(t228) + t224,
+        t240 + t224,
+        t233,
+        t235,
+        t237,
+        t238,
+        t242,
+        t242,
+        t244,
+        t244,
+        t246,
+        t246,
+        t248,
+        t248,
     )
 
 
@@ -1808,320 +1847,342 @@ def _ik_common(
     del t54
     invalid = np.logical_not(t55)
     del t55
-    t56 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t57 = (t56 <= t11) & (t56 <= t14) & (t56 <= t15)
+    t56 = _runtime.FEASIBILITY * (size * 0.5)
+    t57 = (-t56 <= t11) & (-t56 <= t14) & (-t56 <= t15)
     del t11, t14, t15
-    unreachable = np.logical_not(t57 & (t56 <= t28) & (t56 <= t27))
-    t58 = _runtime.poison(invalid | unreachable)
+    t58 = t57 & (-t56 <= t28) & (-t56 <= t27)
+    t59 = np.sqrt(v_x * v_x)
+    t60 = np.sqrt(t9 + w_x * w_x)
+    del w_x
+    unreachable = np.logical_not(t58 & (np.abs(t59 - t60) <= t56))
+    t61 = _runtime.poison(invalid | unreachable)
     h_wrist = np.sqrt(t41 * t41 + t40 * t40)
-    t59 = 1.0 / h_wrist
-    t60 = t41 * t59
-    t61 = t40 * t59
-    del t59
+    t62 = 1.0 / h_wrist
+    t63 = t41 * t62
+    t64 = t40 * t62
+    del t62
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t62 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
-    t63 = np.arctan2(t41 * t60 + t40 * t61, t62 - t21 * (R1_31 * s6 - T33 * c6))
-    del t40, t41, t62
-    t64 = t61 * (t25 * R2_13 + t21 * R3_11) - t60 * (t25 * R2_23 + t21 * R3_21)
+    t65 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
+    t66 = np.arctan2(t41 * t63 + t40 * t64, t65 - t21 * (R1_31 * s6 - T33 * c6))
+    del t40, t41, t65
+    t67 = t63 * (t25 * R2_23 + t21 * R3_21) - t64 * (t25 * R2_13 + t21 * R3_11)
     del R2_13, R2_23, R3_11, R3_21
-    t65 = t60 * (R2_21 * t39 + R1_23 * c5) - t61 * (t39 * R2_11 + R1_13 * c5)
-    del R2_11, R2_21, c5, t39, t60, t61
-    t66 = np.arctan2(t64, t65)
-    del t64, t65
-    t67 = _runtime.wrap_cut(-np.arctan2(-t25, -t21)) + t58
-    t68 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t58
+    t68 = t63 * (R2_21 * t39 + R1_23 * c5) - t64 * (t39 * R2_11 + R1_13 * c5)
+    del R2_11, R2_21, c5, t39, t63, t64
+    t69 = np.arctan2(t67, t68)
+    del t67, t68
+    t70 = _runtime.wrap_cut(np.arctan2(t25, -t21))
+    t71 = t70 + t61
+    t72 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t61
     del dot_5
-    t69 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t58
+    t73 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t61
     del c6, s6
-    t70 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t74 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t71 = t70 + t58
-    t72 = t30 - t32
+    t75 = t74 + t61
+    t76 = t30 - t32
     del t30, t32
-    t73 = t34 + t35
+    t77 = t34 + t35
     del t34, t35
-    t74 = R1_21 * t72 - T23 * t73
-    t75 = u_x * t73 + s_z * t72
-    t76 = v_x * t75
-    t77 = 1.0 / np.sqrt(t37 + t76 * t76)
+    t78 = R1_21 * t76 - T23 * t77
+    t79 = u_x * t77 + s_z * t76
+    t80 = v_x * t79
+    del v_x
+    t81 = 1.0 / np.sqrt(t37 + t80 * t80)
     del t37
-    t78 = t76 * t77
-    t79 = R1_21 * t73 + T23 * t72
-    t80 = t36 * t77
-    del t77
-    R3_21_bent_behind_front = t78 * t79 - R1_23 * t80
-    t81 = t21 * t74 + t25 * R3_21_bent_behind_front
-    t82 = R1_11 * t72 - T13 * t73
-    t83 = R1_11 * t73 + T13 * t72
-    R3_11_bent_behind_front = t78 * t83 - R1_13 * t80
-    t84 = t21 * t82 + t25 * R3_11_bent_behind_front
-    t85 = np.arctan2(t81, t84)
-    h_wrist_bent_behind_front = np.sqrt(t84 * t84 + t81 * t81)
-    t86 = 1.0 / h_wrist_bent_behind_front
-    c_wrist_bent_behind_front = t84 * t86
-    t87 = t81 * t86
-    del t86
-    t88 = -(t84 * c_wrist_bent_behind_front + t81 * t87)
-    del t81, t84
-    R3_31_bent_behind_front = t78 * (R1_31 * t73 + T33 * t72) - R1_33 * t80
-    R4_33_bent_behind_front = t21 * (R1_31 * t72 - T33 * t73) + t25 * R3_31_bent_behind_front
+    t82 = t80 * t81
+    t83 = R1_21 * t77 + T23 * t76
+    t84 = t36 * t81
+    del t81
+    R3_21_bent_behind_front = t82 * t83 - R1_23 * t84
+    t85 = t21 * t78 + t25 * R3_21_bent_behind_front
+    t86 = R1_11 * t76 - T13 * t77
+    t87 = R1_11 * t77 + T13 * t76
+    R3_11_bent_behind_front = t82 * t87 - R1_13 * t84
+    t88 = t21 * t86 + t25 * R3_11_bent_behind_front
+    t89 = np.arctan2(t85, t88)
+    t90 = np.sqrt(t9 + t79 * t79)
+    del t79
+    unreachable_2 = np.logical_not(t58 & (np.abs(t59 - t90) <= t56))
+    del t58
+    t91 = _runtime.poison(invalid | unreachable_2)
+    h_wrist_bent_behind_front = np.sqrt(t88 * t88 + t85 * t85)
+    t92 = 1.0 / h_wrist_bent_behind_front
+    c_wrist_bent_behind_front = t88 * t92
+    t93 = t85 * t92
+    del t92
+    t94 = -(t88 * c_wrist_bent_behind_front + t85 * t93)
+    del t85, t88
+    R3_31_bent_behind_front = t82 * (R1_31 * t77 + T33 * t76) - R1_33 * t84
+    R4_33_bent_behind_front = t21 * (R1_31 * t76 - T33 * t77) + t25 * R3_31_bent_behind_front
     del R3_31_bent_behind_front
-    t89 = np.arctan2(t88, R4_33_bent_behind_front)
-    del R4_33_bent_behind_front, t88
-    t90 = t87 * (t25 * t82 - t21 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t82
-    t91 = c_wrist_bent_behind_front * (t25 * t74 - t21 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t21, t25, t74
-    t92 = c_wrist_bent_behind_front * (t79 * t80 + R1_23 * t78)
-    del c_wrist_bent_behind_front, t79
-    t93 = np.arctan2(t90 - t91, t92 - t87 * (t80 * t83 + R1_13 * t78))
-    del t78, t80, t83, t87, t90, t91, t92
-    t94 = _runtime.wrap_cut(-np.arctan2(t36, -t76)) + t58
-    del t36, t76
-    t95 = _runtime.wrap_cut(-np.arctan2(t72, -t73)) + t58
-    del t72, t73
-    t96 = t19 - t20
+    t95 = np.arctan2(t94, R4_33_bent_behind_front)
+    del R4_33_bent_behind_front, t94
+    t96 = c_wrist_bent_behind_front * (t25 * t78 - t21 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t78
+    t97 = t93 * (t25 * t86 - t21 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t21, t25, t86
+    t98 = c_wrist_bent_behind_front * (t83 * t84 + R1_23 * t82)
+    del c_wrist_bent_behind_front, t83
+    t99 = np.arctan2(t96 - t97, t98 - t93 * (t84 * t87 + R1_13 * t82))
+    del t82, t84, t87, t93, t96, t97, t98
+    t100 = t70 + t91
+    del t70
+    t101 = _runtime.wrap_cut(-np.arctan2(t36, -t80)) + t91
+    del t36, t80
+    t102 = _runtime.wrap_cut(-np.arctan2(t76, -t77)) + t91
+    del t76, t77
+    t103 = t74 + t91
+    t104 = t19 - t20
     del t19, t20
-    t97 = t23 + t24
+    t105 = t23 + t24
     del t23, t24
-    t98 = d5 - a4 * t97 - d3 * t96
-    t99 = reach - t98
-    above6_over_ahead_front = np.maximum(t99, 0.0)
-    t100 = reach + t98
-    del t98
-    below6_over_ahead_front = np.maximum(t100, 0.0)
-    t101 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = np.sqrt(t101)
-    del t101
+    t106 = d5 - a4 * t105 - d3 * t104
+    t107 = reach - t106
+    above6_over_ahead_front = np.maximum(t107, 0.0)
+    t108 = reach + t106
+    del t106
+    below6_over_ahead_front = np.maximum(t108, 0.0)
+    t109 = above6_over_ahead_front * below6_over_ahead_front
+    root6_over_ahead_front = np.sqrt(t109)
+    del t109
     width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
-    t102 = 1.0 / (reach * width6_over_ahead_front)
+    t110 = 1.0 / (reach * width6_over_ahead_front)
     del width6_over_ahead_front
-    t103 = t22 * root6_over_ahead_front * t102
+    t111 = t22 * root6_over_ahead_front * t110
     del t22
-    t104 = above6_over_ahead_front - below6_over_ahead_front
+    t112 = above6_over_ahead_front - below6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    t105 = t102 * (u_x * t104)
-    s6_over_ahead_front = t103 + t105
-    t106 = t102 * (t33 * root6_over_ahead_front)
+    t113 = t110 * (u_x * t112)
+    s6_over_ahead_front = t111 + t113
+    t114 = t110 * (t33 * root6_over_ahead_front)
     del root6_over_ahead_front, t33
-    t107 = t102 * (s_z * t104)
-    del t102, t104
-    c6_over_ahead_front = t106 - t107
+    t115 = t110 * (s_z * t112)
+    del t110, t112
+    c6_over_ahead_front = t114 - t115
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
-    v_x_over_ahead_front = a5 + a4 * t96 - d3 * t97
+    v_x_over_ahead_front = a5 + a4 * t104 - d3 * t105
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t108 = w_y * v_x_over_ahead_front
+    t116 = w_y * v_x_over_ahead_front
     del w_y
-    t109 = t108 * t108
-    t110 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t111 = 1.0 / np.sqrt(t109 + t110)
-    del t110
-    c5_over_ahead_front = dot_5_over_ahead_front * t111
+    t117 = t116 * t116
+    t118 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t119 = 1.0 / np.sqrt(t117 + t118)
+    del t118
+    c5_over_ahead_front = dot_5_over_ahead_front * t119
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    t112 = t108 * t111
-    del t111
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t112
-    t113 = t96 * R2_23_over_ahead_front - t97 * R3_21_over_ahead_front
+    t120 = t116 * t119
+    del t119
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t120
+    t121 = t104 * R2_23_over_ahead_front - t105 * R3_21_over_ahead_front
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t112
-    t114 = t96 * R2_13_over_ahead_front - t97 * R3_11_over_ahead_front
-    t115 = np.arctan2(t113, -t114)
-    unreachable_2 = np.logical_not(t57 & (t56 <= t100) & (t56 <= t99))
-    del t56, t57
-    t116 = _runtime.poison(invalid | unreachable_2)
-    h_wrist_over_ahead_front = np.sqrt(t114 * t114 + t113 * t113)
-    t117 = 1.0 / h_wrist_over_ahead_front
-    t118 = t114 * t117
-    t119 = t113 * t117
-    del t117
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t120
+    t122 = t104 * R2_13_over_ahead_front - t105 * R3_11_over_ahead_front
+    t123 = np.arctan2(t121, -t122)
+    t124 = t57 & (-t56 <= t108) & (-t56 <= t107)
+    del t57
+    t125 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t126 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
+    del w_x_over_ahead_front
+    t127 = np.sqrt(t126)
+    del t126
+    unreachable_3 = np.logical_not(t124 & (np.abs(t125 - t127) <= t56))
+    t128 = _runtime.poison(invalid | unreachable_3)
+    h_wrist_over_ahead_front = np.sqrt(t122 * t122 + t121 * t121)
+    t129 = 1.0 / h_wrist_over_ahead_front
+    t130 = t122 * t129
+    t131 = t121 * t129
+    del t129
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t112
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t120
     del R2_31_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
-    R4_33_over_ahead_front = t97 * R3_31_over_ahead_front - t96 * R2_33_over_ahead_front
+    R4_33_over_ahead_front = t105 * R3_31_over_ahead_front - t104 * R2_33_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t120 = np.arctan2(t114 * t118 + t113 * t119, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t113, t114
-    t121 = t97 * R2_23_over_ahead_front + t96 * R3_21_over_ahead_front
+    t132 = np.arctan2(t122 * t130 + t121 * t131, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t121, t122
+    t133 = t105 * R2_23_over_ahead_front + t104 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t122 = t97 * R2_13_over_ahead_front + t96 * R3_11_over_ahead_front
+    t134 = t105 * R2_13_over_ahead_front + t104 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    R3_23_over_ahead_front = R2_21_over_ahead_front * t112 + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = R2_21_over_ahead_front * t120 + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    R3_13_over_ahead_front = t112 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
-    del R2_11_over_ahead_front, c5_over_ahead_front, t112
-    t123 = t118 * R3_23_over_ahead_front - t119 * R3_13_over_ahead_front
+    R3_13_over_ahead_front = t120 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
+    del R2_11_over_ahead_front, c5_over_ahead_front, t120
+    t135 = t130 * R3_23_over_ahead_front - t131 * R3_13_over_ahead_front
     del R3_13_over_ahead_front, R3_23_over_ahead_front
-    t124 = np.arctan2(t118 * t121 - t119 * t122, t123)
-    del t118, t119, t121, t122, t123
-    t125 = _runtime.wrap_cut(np.arctan2(t97, -t96)) + t116
-    t126 = _runtime.wrap_cut(-np.arctan2(t108, dot_5_over_ahead_front))
+    t136 = np.arctan2(t130 * t133 - t131 * t134, t135)
+    del t130, t131, t133, t134, t135
+    t137 = _runtime.wrap_cut(np.arctan2(t105, -t104))
+    t138 = t137 + t128
+    t139 = _runtime.wrap_cut(-np.arctan2(t116, dot_5_over_ahead_front))
     del dot_5_over_ahead_front
-    t127 = t126 + t116
-    del t126
-    t128 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t140 = t139 + t128
+    del t139
+    t141 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t129 = _runtime.wrap_cut(t128) + t116
-    del t128
-    t130 = t70 + t116
-    del t70
-    t131 = _runtime.wrap(3.141592653589793 - t115) + t116
-    t132 = _runtime.wrap(3.141592653589793 + t124) + t116
-    t133 = t103 - t105
-    del t103, t105
-    t134 = t106 + t107
-    del t106, t107
-    t135 = R1_21 * t133 - T23 * t134
-    t136 = u_x * t134 + s_z * t133
+    t142 = _runtime.wrap_cut(t141) + t128
+    del t141
+    t143 = t74 + t128
+    t144 = _runtime.wrap(3.141592653589793 - t123) + t128
+    t145 = _runtime.wrap(3.141592653589793 + t136) + t128
+    t146 = t111 - t113
+    del t111, t113
+    t147 = t114 + t115
+    del t114, t115
+    t148 = R1_21 * t146 - T23 * t147
+    t149 = u_x * t147 + s_z * t146
     del s_z, u_x
-    t137 = v_x_over_ahead_front * t136
-    t138 = 1.0 / np.sqrt(t109 + t137 * t137)
-    del t109
-    t139 = t137 * t138
-    t140 = R1_21 * t134 + T23 * t133
+    t150 = v_x_over_ahead_front * t149
+    del v_x_over_ahead_front
+    t151 = 1.0 / np.sqrt(t117 + t150 * t150)
+    del t117
+    t152 = t150 * t151
+    t153 = R1_21 * t147 + T23 * t146
     del R1_21
-    t141 = t108 * t138
-    del t138
-    R3_21_over_behind_front = t139 * t140 - R1_23 * t141
-    t142 = t96 * t135 + t97 * R3_21_over_behind_front
-    t143 = R1_11 * t133 - T13 * t134
-    t144 = R1_11 * t134 + T13 * t133
+    t154 = t116 * t151
+    del t151
+    R3_21_over_behind_front = t152 * t153 - R1_23 * t154
+    t155 = t104 * t148 + t105 * R3_21_over_behind_front
+    t156 = R1_11 * t146 - T13 * t147
+    t157 = R1_11 * t147 + T13 * t146
     del R1_11
-    R3_11_over_behind_front = t139 * t144 - R1_13 * t141
-    t145 = t96 * t143 + t97 * R3_11_over_behind_front
-    t146 = np.arctan2(t142, t145)
-    h_wrist_over_behind_front = np.sqrt(t145 * t145 + t142 * t142)
-    t147 = 1.0 / h_wrist_over_behind_front
-    c_wrist_over_behind_front = t145 * t147
-    t148 = t142 * t147
-    del t147
-    t149 = t145 * c_wrist_over_behind_front + t142 * t148
-    del t142, t145
-    R3_31_over_behind_front = t139 * (R1_31 * t134 + T33 * t133) - R1_33 * t141
+    R3_11_over_behind_front = t152 * t157 - R1_13 * t154
+    t158 = t104 * t156 + t105 * R3_11_over_behind_front
+    t159 = np.arctan2(t155, t158)
+    t160 = np.sqrt(t9 + t149 * t149)
+    del t149, t9
+    unreachable_4 = np.logical_not(t124 & (np.abs(t125 - t160) <= t56))
+    del t124, t56
+    t161 = _runtime.poison(invalid | unreachable_4)
+    h_wrist_over_behind_front = np.sqrt(t158 * t158 + t155 * t155)
+    t162 = 1.0 / h_wrist_over_behind_front
+    c_wrist_over_behind_front = t158 * t162
+    t163 = t155 * t162
+    del t162
+    t164 = t158 * c_wrist_over_behind_front + t155 * t163
+    del t155, t158
+    R3_31_over_behind_front = t152 * (R1_31 * t147 + T33 * t146) - R1_33 * t154
     del R1_33
-    R4_33_over_behind_front = t96 * (R1_31 * t133 - T33 * t134) + t97 * R3_31_over_behind_front
+    R4_33_over_behind_front = t104 * (R1_31 * t146 - T33 * t147) + t105 * R3_31_over_behind_front
     del R1_31, R3_31_over_behind_front
-    t150 = np.arctan2(-t149, R4_33_over_behind_front)
-    del R4_33_over_behind_front, t149
-    t151 = c_wrist_over_behind_front * (t97 * t135 - t96 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t135
-    t152 = t148 * (t97 * t143 - t96 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t143, t96, t97
-    t153 = c_wrist_over_behind_front * (t140 * t141 + R1_23 * t139)
-    del R1_23, c_wrist_over_behind_front, t140
-    t154 = np.arctan2(t151 - t152, t153 - t148 * (t141 * t144 + R1_13 * t139))
-    del R1_13, t139, t141, t144, t148, t151, t152, t153
-    t155 = _runtime.wrap_cut(-np.arctan2(t108, -t137)) + t116
-    del t108, t137
-    t156 = _runtime.wrap_cut(-np.arctan2(t133, -t134)) + t116
-    del t133, t134
-    t157 = _runtime.wrap(3.141592653589793 + t146) + t116
-    t158 = _runtime.wrap(3.141592653589793 + t154) + t116
-    t159 = _runtime.status(invalid, unreachable, np.False_)
+    t165 = np.arctan2(-t164, R4_33_over_behind_front)
+    del R4_33_over_behind_front, t164
+    t166 = c_wrist_over_behind_front * (t105 * t148 - t104 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t148
+    t167 = t163 * (t105 * t156 - t104 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t104, t105, t156
+    t168 = c_wrist_over_behind_front * (t153 * t154 + R1_23 * t152)
+    del R1_23, c_wrist_over_behind_front, t153
+    t169 = np.arctan2(t166 - t167, t168 - t163 * (t154 * t157 + R1_13 * t152))
+    del R1_13, t152, t154, t157, t163, t166, t167, t168
+    t170 = t137 + t161
+    del t137
+    t171 = _runtime.wrap_cut(-np.arctan2(t116, -t150)) + t161
+    del t116, t150
+    t172 = _runtime.wrap_cut(-np.arctan2(t146, -t147)) + t161
+    del t146, t147
+    t173 = t74 + t161
+    del t74
+    t174 = _runtime.wrap(3.141592653589793 + t159) + t161
+    t175 = _runtime.wrap(3.141592653589793 + t169) + t161
+    t176 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t160 = _runtime.status(invalid, unreachable_2, np.False_)
-    del invalid, unreachable_2
-    t161 = _runtime.VANISHING * size
+    t177 = _runtime.status(invalid, unreachable_2, np.False_)
+    del unreachable_2
+    t178 = _runtime.status(invalid, unreachable_3, np.False_)
+    del unreachable_3
+    t179 = _runtime.status(invalid, unreachable_4, np.False_)
+    del invalid, unreachable_4
+    t180 = _runtime.VANISHING * size
     no_link_elbow = upper * fore <= _runtime.VANISHING * (t5 * t5)
     del fore, t5, upper
-    t162 = (lever_elbow - size * 0.00390625 <= t161) | no_link_elbow
+    t181 = (lever_elbow - size * 0.00390625 <= t180) | no_link_elbow
     del lever_elbow, no_link_elbow, size
-    t163 = reach * 0.00390625
-    t164 = reach * _runtime.VANISHING
-    t165 = t162 | (np.sqrt(np.abs(t27 * t28)) - t163 <= t164)
-    del t162, t27, t28
-    t166 = np.sqrt(v_x * v_x)
-    del v_x
-    on_axis_5 = np.minimum(t166, np.sqrt(t9 + w_x * w_x)) <= t161
-    del w_x
-    t167 = _runtime.VANISHING * 16.0
-    t168 = t165 | (reach <= t161) | on_axis_5 | (h_wrist <= t167)
-    del h_wrist, on_axis_5, reach, t165
-    on_axis_5_bent_behind_front = np.minimum(t166, np.sqrt(t9 + t75 * t75)) <= t161
-    del t166, t75
-    t169 = t168 | on_axis_5_bent_behind_front | (h_wrist_bent_behind_front <= t167)
-    del h_wrist_bent_behind_front, on_axis_5_bent_behind_front, t168
-    t170 = t169 | (np.sqrt(np.abs(t99 * t100)) - t163 <= t164)
-    del t100, t163, t164, t169, t99
-    t171 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    del v_x_over_ahead_front
-    t172 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
-    del w_x_over_ahead_front
-    t173 = t170 | (np.minimum(t171, np.sqrt(t172)) <= t161)
-    del t170, t172
-    on_axis_5_over_behind_front = np.minimum(t171, np.sqrt(t9 + t136 * t136)) <= t161
-    del t136, t161, t171, t9
-    t174 = t173 | (h_wrist_over_ahead_front <= t167) | on_axis_5_over_behind_front
-    del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t173
+    t182 = reach * 0.00390625
+    t183 = reach * _runtime.VANISHING
+    t184 = t181 | (np.sqrt(np.abs(t27 * t28)) - t182 <= t183)
+    del t181, t27, t28
+    t185 = t184 | (reach <= t180) | (np.minimum(t59, t60) <= t180)
+    del reach, t184, t60
+    t186 = _runtime.VANISHING * 16.0
+    t187 = t185 | (h_wrist <= t186) | (np.minimum(t59, t90) <= t180)
+    del h_wrist, t185, t59, t90
+    t188 = t187 | (h_wrist_bent_behind_front <= t186) | (np.sqrt(np.abs(t107 * t108)) - t182 <= t183)
+    del h_wrist_bent_behind_front, t107, t108, t182, t183, t187
+    t189 = t188 | (np.minimum(t125, t127) <= t180) | (h_wrist_over_ahead_front <= t186)
+    del h_wrist_over_ahead_front, t127, t188
+    t190 = t189 | (np.minimum(t125, t160) <= t180) | (h_wrist_over_behind_front <= t186)
+    del h_wrist_over_behind_front, t125, t160, t180, t186, t189
     return (
-        _runtime.wrap_cut(-t42) + t58,
-        _runtime.wrap_cut(t63) + t58,
-        _runtime.wrap_cut(-t66) + t58,
-        t67,
-        t68,
-        t69,
+        _runtime.wrap_cut(-t42) + t61,
+        _runtime.wrap_cut(t66) + t61,
+        _runtime.wrap_cut(t69) + t61,
         t71,
-        _runtime.wrap(3.141592653589793 - t42) + t58,
-        _runtime.wrap_cut(-t63) + t58,
-        _runtime.wrap(3.141592653589793 - t66) + t58,
-        t67,
-        t68,
-        t69,
+        t72,
+        t73,
+        t75,
+        _runtime.wrap(3.141592653589793 - t42) + t61,
+        _runtime.wrap_cut(-t66) + t61,
+        _runtime.wrap(3.141592653589793 + t69) + t61,
         t71,
-        _runtime.wrap_cut(t85) + t58,
-        _runtime.wrap_cut(-t89) + t58,
-        _runtime.wrap_cut(-t93) + t58,
-        t67,
-        t94,
-        t95,
-        t71,
-        _runtime.wrap(3.141592653589793 + t85) + t58,
-        _runtime.wrap_cut(t89) + t58,
-        _runtime.wrap(3.141592653589793 - t93) + t58,
-        t67,
-        t94,
-        t95,
-        t71,
-        _runtime.wrap_cut(-t115) + t116,
-        _runtime.wrap_cut(t120) + t116,
-        _runtime.wrap_cut(t124) + t116,
-        t125,
-        t127,
-        t129,
-        t130,
-        t131,
-        _runtime.wrap_cut(-t120) + t116,
-        t132,
-        t125,
-        t127,
-        t129,
-        t130,
-        _runtime.wrap_cut(t146) + t116,
-        _runtime.wrap_cut(-t150) + t116,
-        _runtime.wrap_cut(t154) + t116,
-        t125,
-        t155,
-        t156,
-        t130,
-        t157,
-        _runtime.wrap_cut(t150) + t116,
-        t158,
-        t125,
-        t155,
-        t156,
-        t130,
-        t159,
-        t159,
-        t159,
-        t159,
-        t160,
-        t160,
-        t160,
-        t160,
-        t174 | (h_wrist_over_behind_front <= t167),
+        t72,
+        t73,
+        t75,
+        _runtime.wrap_cut(t89) + t91,
+        _runtime.wrap_cut(-t95) + t91,
+        _runtime.wrap_cut(t99) + t91,
+        t100,
+        t101,
+        t102,
+        t103,
+        _runtime.wrap(3.141592653589793 + t89) + t91,
+        _runtime.wrap_cut(t95) + t91,
+        _runtime.wrap(3.141592653589793 + t99) + t91,
+        t100,
+        t101,
+        t102,
+        t103,
+        _runtime.wrap_cut(-t123) + t128,
+        _runtime.wrap_cut(t132) + t128,
+        _runtime.wrap_cut(t136) + t128,
+        t138,
+        t140,
+        t142,
+        t143,
+        t144,
+        _runtime.wrap_cut(-t132) + t128,
+        t145,
+        t138,
+        t140,
+        t142,
+        t143,
+        _runtime.wrap_cut(t159) + t161,
+        _runtime.wrap_cut(-t165) + t161,
+        _runtime.wrap_cut(t169) + t161,
+        t170,
+        t171,
+        t172,
+        t173,
+        t174,
+        _runtime.wrap_cut(t165) + t161,
+        t175,
+        t170,
+        t171,
+        t172,
+        t173,
+        t176,
+        t176,
+        t177,
+        t177,
+        t178,
+        t178,
+        t179,
+        t179,
+        t190,
     )
 
 
@@ -2177,7 +2238,7 @@ def ik(T: "ArrayLike", theta7: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
       allow; over: it is bent to the other side.
     - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
     - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
-    - SINGULAR: a link without length: elbow is free, 0 is returned.
+    - SINGULAR: a link without length: elbow is free, one within reach is returned.
     - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
       returned.
     - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.

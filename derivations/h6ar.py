@@ -438,7 +438,7 @@ p.determined(length, m.al, "the wrist links are stretched")
 slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi))
 gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
 apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
-slack, beside = allowances(p, m, apart_by, gap)
+slack, beside = allowances(p, m, length, apart_by, gap)
 middle = solve_mid_plane(p, m, q, (length, base), slack=slack, gap=gap)
 upper, elbow = middle.upper, middle.elbow
 # in the axes of the upper arm: there sin(alpha) multiplies (0, L1)

@@ -441,7 +441,7 @@ LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 slants = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
-slack, beside = allowances(p, m, sum(sp.Abs(half_base * t) for t in slants))
+slack, beside = allowances(p, m, wrist, sum(sp.Abs(half_base * t) for t in slants))
 mid = solve_mid_plane(p, m, q, (wrist, half_base), slack=slack)
 upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)

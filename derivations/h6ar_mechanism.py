@@ -305,14 +305,19 @@ def condition(m: Dimensions) -> sp.Expr:
 
 
 def allowances(
-    program: Program, m: Dimensions, apart: sp.Expr, gap: Iterable[sp.Expr] = ()
+    program: Program, m: Dimensions, wrist: sp.Symbol, apart: sp.Expr, gap: Iterable[sp.Expr] = ()
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Scales of what a target may be missed by: at the tip, and at the tips of the real arms.
 
     They are a quarter of what an answer may miss, because several limits may be missed at once.
     Yaw and roll are given to some units in the last place, and so is what is ``apart`` by as many.
+    Where the links of the ``wrist`` are stretched, and the status says so, its length is known only
+    to the root of such a unit.
     """
-    far = program.let("far_apart", apart / 512, nonnegative=True)
+    base = m.al + m.gs + apart
+    by_root = m.al * base / (2**9 * wrist + base / 2**14)
+    stretched = sp.Piecewise((by_root, wrist < m.al / 2**10), (0, True))
+    far = program.let("far_apart", apart / 512 + stretched, nonnegative=True)
     lengths = program.let("lengths", sum(m))
     reached = program.let("slack", lengths / 4 + far, nonnegative=True)
     beside = program.let("play", sum(map(sp.Abs, gap), m.d) / 4 + lengths / 2048 + far)

@@ -350,6 +350,49 @@ def test_no_posture_is_lost_where_two_events_meet(model, dimensions: dict) -> No
         assert lost.mean() < 5e-3 and np.abs(off[status == OK]).max() < 2e-11 * sum(params)
 
 
+def with_stretched_wrist(model, n: int, seed: int) -> np.ndarray:
+    """Arms a right angle apart at one joint, and at the other as far as the wrist spans."""
+    rng = np.random.default_rng(seed)
+    waist, upper, bend, pitch = rng.uniform(-3, 3, (4, n))
+    right = rng.choice((-1, 1), n) * np.pi / 2
+    right += rng.choice((0, 1e-15, 1e-12, 1e-9), n) * rng.choice((-1, 1), n)
+    first = rng.random(n) < 0.5
+
+    def posture(other: np.ndarray) -> np.ndarray:
+        alpha, beta = np.where(first, right, other), np.where(first, other, right)
+        columns = (waist, upper + alpha, bend + beta - alpha)
+        return np.stack((*columns, upper - alpha, bend - beta + alpha, pitch), -1)
+
+    def spans(other: np.ndarray) -> np.ndarray:
+        return np.isfinite(model.fk(posture(other))).all(-1)
+
+    places = np.linspace(-3.2, 3.2, 41)
+    within = np.stack([spans(np.full(n, place)) for place in places], -1)
+    change = within[:, 1:] != within[:, :-1]
+    rows, at = np.arange(n), np.argmax(change, -1)
+    near, beyond = (np.where(within[rows, at] == k, places[at], places[at + 1]) for k in (1, 0))
+    for _ in range(60):
+        middle = (near + beyond) / 2
+        near, beyond = (
+            np.where(spans(middle) == k, middle, e) for k, e in ((1, near), (0, beyond))
+        )
+    inwards = np.sign(near - beyond) * rng.choice((0, 1e-14, 1e-12, 1e-11, 1e-10), n)
+    return posture(near + inwards)[change.any(-1)]
+
+
+def test_a_stretched_wrist_at_a_right_angle_is_not_lost(published) -> None:
+    """A unit in the last place of yaw changes the length of a stretched wrist by its root."""
+    x = published.fk(with_stretched_wrist(published, 20_000, 43))
+    x = x[np.isfinite(x).all(-1)]
+    assert len(x) > 10_000
+    solutions, status = published.ik(x)
+    assert (status != OK).all()
+    lost = ~(status == SINGULAR).any(-1)  # one, whose waist is tangent too: docs/reliability.md
+    assert lost.mean() < 2e-4
+    off = missed(published, solutions, x, P)[status == SINGULAR]
+    assert np.nanmax(np.abs(off)) < 1e-5  # NaN: rounded joints stretch the wrist a little further
+
+
 def test_a_virtual_arm_without_direction_is_singular(closed) -> None:
     """Equal links folded onto their shoulders: the joints do not determine yaw and roll."""
     equal = P._replace(a3=0.0)

@@ -12,10 +12,10 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 592 compare and select, 459 add, 33 atan2, 150 divide, 561 multiply, 1 reduce to a turn, 3
-#     sincos, 42 sqrt
-#   ik where nothing vanishes: 247 compare and select, 167 add, 17 atan2, 33 divide, 147 multiply,
-#     1 reduce to a turn, 3 sincos, 16 sqrt
+#   ik: 594 compare and select, 466 add, 33 atan2, 156 divide, 579 multiply, 1 reduce to a turn, 3
+#     sincos, 50 sqrt
+#   ik where nothing vanishes: 249 compare and select, 178 add, 17 atan2, 43 divide, 165 multiply,
+#     1 reduce to a turn, 3 sincos, 24 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1524,53 +1524,61 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t_phi = s_phi / c_phi
     del s_phi
     higher = d * t_phi
+    t16 = np.abs(t_phi * higher)
     t_psi = s_psi * t8
     del t8
     ahead = d * t_psi
-    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
-    slack = far_apart + lengths * 0.25
-    t16 = h * slack
+    t17 = np.abs(t_psi * ahead)
+    t18 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t16 * 6.103515625e-05
+    t19 = al * (t1 + t16 + t17) / (t18 + t17 * 6.103515625e-05 + 512.0 * wrist)
+    del t18
+    t20 = _runtime.select(wrist < al * 0.0009765625, t19, 0.0)
+    del t19
+    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + t20
+    del t16, t17, t20
+    slack = lengths * 0.25 + far_apart
+    t21 = h * slack
     del h
-    tangent = 4.0 * root * t15 - t16 * 0.00390625 <= _runtime.VANISHING * t16
+    tangent = 4.0 * root * t15 - t21 * 0.00390625 <= _runtime.VANISHING * t21
     gap_size = np.sqrt(higher * higher + ahead * ahead)
     fore_size = np.sqrt(L2 * L2 + a3 * a3)
-    t17 = L1 < fore_size
-    shorter = _runtime.select(t17, L1, fore)
-    t18 = z - d1
-    t19 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
-    t20 = 1.0 / (t19 + gap_size)
-    del t19
-    t21 = 1.0 / fore_size
-    t22 = _runtime.select(t17, t21 * (L2 * L_2W + a3 * a_3W), L1)
-    t23 = t20 * t22
-    del t22
-    t24 = _runtime.select(t17, -(t21 * (a3 * L_2W - L2 * a_3W)), 0.0)
-    del t21
-    long_x = t20 * t24
+    t22 = L1 < fore_size
+    shorter = _runtime.select(t22, L1, fore)
+    t23 = z - d1
+    t24 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    t25 = 1.0 / (t24 + gap_size)
     del t24
-    t25 = ahead * t23 - higher * long_x
-    beyond_gap_behind = t18 - t25
-    t26 = gap_size * (shorter - np.abs(beyond_gap_behind))
-    t27 = np.abs(higher)
-    across_long = _runtime.select(t17, L1 * t27 * t20, fore_size)
-    del t17, t20
-    long_r = ahead * long_x + higher * t23
-    del long_x, t23
-    t28 = long_r * long_r
+    t26 = 1.0 / fore_size
+    t27 = _runtime.select(t22, t26 * (L2 * L_2W + a3 * a_3W), L1)
+    t28 = t25 * t27
+    del t27
+    t29 = _runtime.select(t22, -(t26 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    del t26
+    long_x = t25 * t29
+    del t29
+    t30 = ahead * t28 - higher * long_x
+    beyond_gap_behind = t23 - t30
+    t31 = gap_size * (shorter - np.abs(beyond_gap_behind))
+    t32 = np.abs(higher)
+    across_long = _runtime.select(t22, L1 * t32 * t25, fore_size)
+    del t22, t25
+    long_r = ahead * long_x + higher * t28
+    del long_x, t28
+    t33 = long_r * long_r
     del long_r
     short_h_behind = np.maximum(-shorter, np.minimum(beyond_gap_behind, shorter))
-    beyond_gap_ahead = t18 + t25
-    del t25
-    t29 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
-    left_r_behind = np.sqrt(np.maximum(0.0, t28 - t29))
-    del t29
-    t30 = -t26 <= across_long * left_r_behind
-    del t26
-    t31 = gap_size <= np.maximum(L1, fore_size)
-    t32 = (shorter - short_h_behind) * (shorter + short_h_behind)
+    beyond_gap_ahead = t23 + t30
+    del t30
+    t34 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
+    left_r_behind = np.sqrt(np.maximum(0.0, t33 - t34))
+    del t34
+    t35 = -t31 <= across_long * left_r_behind
+    del t31
+    t36 = gap_size <= np.maximum(L1, fore_size)
+    t37 = (shorter - short_h_behind) * (shorter + short_h_behind)
     del short_h_behind
-    short_r_behind = np.sqrt(t32)
-    del t32
+    short_r_behind = np.sqrt(t37)
+    del t37
     root_apart_behind = np.abs(left_r_behind - short_r_behind)
     root_apart_behind_squared = root_apart_behind * root_apart_behind
     del root_apart_behind
@@ -1579,19 +1587,19 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_behind_squared = root_same_behind * root_same_behind
     del root_same_behind
     root_same_behind_away = np.abs(t14 - root_same_behind_squared)
-    t33 = gap_size * (shorter - np.abs(beyond_gap_ahead))
+    t38 = gap_size * (shorter - np.abs(beyond_gap_ahead))
     del gap_size
     short_h_ahead = np.maximum(-shorter, np.minimum(beyond_gap_ahead, shorter))
-    t34 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
+    t39 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
     del beyond_gap_ahead, beyond_gap_behind
-    left_r_ahead = np.sqrt(np.maximum(0.0, t28 - t34))
-    del t28, t34
-    t35 = (-t33 <= across_long * left_r_ahead) & t31
-    del across_long, t33
-    t36 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
+    left_r_ahead = np.sqrt(np.maximum(0.0, t33 - t39))
+    del t33, t39
+    t40 = (-t38 <= across_long * left_r_ahead) & t36
+    del across_long, t38
+    t41 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
     del short_h_ahead, shorter
-    short_r_ahead = np.sqrt(t36)
-    del t36
+    short_r_ahead = np.sqrt(t41)
+    del t41
     root_apart_ahead = np.abs(left_r_ahead - short_r_ahead)
     root_apart_ahead_squared = root_apart_ahead * root_apart_ahead
     del root_apart_ahead
@@ -1601,1288 +1609,1302 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_ahead_squared = root_same_ahead * root_same_ahead
     del root_same_ahead
     root_same_ahead_away = np.abs(t14 - root_same_ahead_squared)
-    t37 = t16 * 1.8189894035458565e-12
-    t38 = t35 & (root_same_ahead_away <= t37)
-    root_same_ahead_least = _runtime.select(t38, root_same_ahead_away, t37)
-    del root_same_ahead_away, t37
-    t39 = root_apart_ahead_away <= root_same_ahead_least
-    t40 = t35 & t39
-    del t35, t39
-    root_apart_ahead_least = _runtime.select(t40, root_apart_ahead_away, root_same_ahead_least)
+    t42 = t21 * 1.8189894035458565e-12
+    t43 = t40 & (root_same_ahead_away <= t42)
+    root_same_ahead_least = _runtime.select(t43, root_same_ahead_away, t42)
+    del root_same_ahead_away, t42
+    t44 = root_apart_ahead_away <= root_same_ahead_least
+    t45 = t40 & t44
+    del t40, t44
+    root_apart_ahead_least = _runtime.select(t45, root_apart_ahead_away, root_same_ahead_least)
     del root_apart_ahead_away, root_same_ahead_least
-    t41 = root_same_behind_away <= root_apart_ahead_least
-    t42 = t41 & t30 & t31
-    del t41
-    root_same_behind_least = _runtime.select(t42, root_same_behind_away, root_apart_ahead_least)
-    del root_apart_ahead_least, root_same_behind_away
-    t43 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
-    del root_same_behind_least
-    t44 = L1 - fore
-    t45 = t44 * t44
-    t46 = t18 * t18
-    t47 = t15 * t15
-    wanted = np.maximum(np.maximum(0.0, t45 - t46), np.minimum(t14, t47 - t46))
-    t48 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t16, wanted, t14)
-    del t14, t16, wanted
-    root_same_ahead_held = _runtime.select(t38, root_same_ahead_squared, t48)
-    del root_same_ahead_squared, t38, t48
-    root_apart_ahead_held = _runtime.select(t40, root_apart_ahead_squared, root_same_ahead_held)
-    del root_apart_ahead_squared, root_same_ahead_held, t40
-    root_same_behind_held = _runtime.select(t42, root_same_behind_squared, root_apart_ahead_held)
-    del root_apart_ahead_held, root_same_behind_squared, t42
-    root_apart_behind_held = _runtime.select(t30 & t31 & t43, root_apart_behind_squared, root_same_behind_held)
-    del root_apart_behind_squared, root_same_behind_held, t30, t31, t43
-    t49 = np.sqrt(root_apart_behind_held)
-    del root_apart_behind_held
-    t50 = _runtime.select(tangent, np.arctan2(t49, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below
-    t51 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t50))
-    t52 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t53 = t52 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t52
-    t54 = t53 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t53
-    t55 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t56 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
-    del t2
-    t57 = t54 & (0.0 <= loff) & (0.0 <= lp) & t55 & (t56 <= _runtime.ROTATION)
-    del t54, t55, t56
-    invalid = np.logical_not(t57)
-    del t57
-    t58 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
-    del c_psi, s_psi
-    t59 = -(_runtime.FEASIBILITY * (t1 * t58))
-    del t1, t58
-    t60 = (-_runtime.FEASIBILITY <= c_phi) & (t59 <= t5)
-    del c_phi, t5
-    t61 = -(_runtime.FEASIBILITY * slack)
-    t62 = t60 & (t59 <= t6) & (t61 <= t13) & (t61 <= t12)
-    del t12, t13, t59, t6, t60, t61
-    t63 = 2.0 * fore
-    t64 = _runtime.FEASIBILITY * ((L1 * 2.0 + t63) * slack)
-    in_reach = _runtime.select(tangent, t49, root)
-    del root, t49, tangent
-    square = t46 + in_reach * in_reach
+    t46 = root_same_behind_away <= root_apart_ahead_least
+    t47 = t46 & t35 & t36
     del t46
-    t65 = t47 - square
-    t66 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t67 = _runtime.FEASIBILITY * ((t66 + 2.0 * np.abs(t44)) * slack)
-    del t66
-    t68 = square - t45
-    del square, t45
-    t69 = t62 & (-t64 <= t65) & (-t67 <= t68)
-    del t62, t64, t67
-    t70 = d * 0.25 + t27 * 0.25 + far_apart + np.abs(ahead) * 0.25
-    del far_apart, t27
-    play = t70 + lengths * 0.00048828125
-    del lengths, t70
-    t71 = fore_size * play
-    t72 = _runtime.VANISHING * t15
-    folded = np.abs(t18) + np.abs(in_reach) <= t72
-    short = L1 * fore <= _runtime.VANISHING * t47
-    del t47
-    M = np.maximum(t68, 0.0)
-    del t68
-    N = np.maximum(t65, 0.0)
-    del t65
-    t73 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t15, t44 + t63 * M * t73)
-    del t15, t44, t63
-    t74 = in_reach * ahead_1
-    t75 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t73 * t75)
-    t76 = fore * s_bend_front_elbow_down
-    t77 = t18 * t76
-    out_2 = t74 - t77
-    t78 = t18 * ahead_1
-    del ahead_1, t18
-    t79 = in_reach * t76
-    del in_reach, t76
-    up = t78 + t79
-    t80 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t81 = out_2 * t80
-    ctheta2A = _runtime.select(folded, 1.0, t81)
-    stheta2A = _runtime.select(folded, 0.0, up * t80)
-    del t80
-    t82 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t82
-    bare = fore <= t72
-    del t72
-    t83 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t83)
-    t84 = M - N
-    del M, N
-    c_bend = _runtime.select(short, 1.0, t73 * t84)
+    root_same_behind_least = _runtime.select(t47, root_same_behind_away, root_apart_ahead_least)
+    del root_apart_ahead_least, root_same_behind_away
+    t48 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
+    del root_same_behind_least
+    t49 = L1 - fore
+    t50 = t49 * t49
+    t51 = t23 * t23
+    t52 = t15 * t15
+    wanted = np.maximum(np.maximum(0.0, t50 - t51), np.minimum(t14, t52 - t51))
+    t53 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t21, wanted, t14)
+    del t14, t21, wanted
+    root_same_ahead_held = _runtime.select(t43, root_same_ahead_squared, t53)
+    del root_same_ahead_squared, t43, t53
+    root_apart_ahead_held = _runtime.select(t45, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t45
+    root_same_behind_held = _runtime.select(t47, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t47
+    root_apart_behind_held = _runtime.select(t35 & t36 & t48, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t35, t36, t48
+    t54 = np.sqrt(root_apart_behind_held)
+    del root_apart_behind_held
+    t55 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below
+    t56 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t55))
+    t57 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t58 = t57 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t57
+    t59 = t58 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t58
+    t60 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t61 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    del t2
+    t62 = t59 & (0.0 <= loff) & (0.0 <= lp) & t60 & (t61 <= _runtime.ROTATION)
+    del t59, t60, t61
+    invalid = np.logical_not(t62)
+    del t62
+    t63 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    del c_psi, s_psi
+    t64 = -(_runtime.FEASIBILITY * (t1 * t63))
+    del t1, t63
+    t65 = (-_runtime.FEASIBILITY <= c_phi) & (t64 <= t5)
+    del c_phi, t5
+    t66 = -(_runtime.FEASIBILITY * slack)
+    t67 = t65 & (t64 <= t6) & (t66 <= t13) & (t66 <= t12)
+    del t12, t13, t6, t64, t65, t66
+    t68 = 2.0 * fore
+    t69 = _runtime.FEASIBILITY * ((L1 * 2.0 + t68) * slack)
+    in_reach = _runtime.select(tangent, t54, root)
+    del root, t54, tangent
+    square = t51 + in_reach * in_reach
+    del t51
+    t70 = t52 - square
+    t71 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t72 = _runtime.FEASIBILITY * ((t71 + 2.0 * np.abs(t49)) * slack)
+    del t71
+    t73 = square - t50
+    del square, t50
+    t74 = t67 & (-t69 <= t70) & (-t72 <= t73)
+    del t67, t69, t72
+    t75 = d * 0.25 + t32 * 0.25 + np.abs(ahead) * 0.25 + far_apart
+    del far_apart, t32
+    play = t75 + lengths * 0.00048828125
+    del lengths, t75
+    t76 = fore_size * play
+    t77 = _runtime.VANISHING * t15
+    folded = np.abs(t23) + np.abs(in_reach) <= t77
+    short = L1 * fore <= _runtime.VANISHING * t52
+    del t52
+    M = np.maximum(t73, 0.0)
     del t73
-    t85 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t83)
-    del bare, t83
-    t86 = c_lag * s_bend_front_elbow_down
-    s_relative = t85 - t86
-    t87 = c_lag * c_bend
+    N = np.maximum(t70, 0.0)
+    del t70
+    t78 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t15, t49 + t68 * M * t78)
+    del t15, t49, t68
+    t79 = in_reach * ahead_1
+    t80 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t78 * t80)
+    t81 = fore * s_bend_front_elbow_down
+    t82 = t23 * t81
+    out_2 = t79 - t82
+    t83 = t23 * ahead_1
+    del ahead_1, t23
+    t84 = in_reach * t81
+    del in_reach, t81
+    up = t83 + t84
+    t85 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t86 = out_2 * t85
+    ctheta2A = _runtime.select(folded, 1.0, t86)
+    stheta2A = _runtime.select(folded, 0.0, up * t85)
+    del t85
+    t87 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t87
+    bare = fore <= t77
+    del t77
+    t88 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t88)
+    t89 = M - N
+    del M, N
+    c_bend = _runtime.select(short, 1.0, t78 * t89)
+    del t78
+    t90 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t88)
+    del bare, t88
+    t91 = c_lag * s_bend_front_elbow_down
+    s_relative = t90 - t91
+    t92 = c_lag * c_bend
     del c_bend
-    t88 = s_lag * s_bend_front_elbow_down
+    t93 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t87 + t88
+    c_relative = t92 + t93
     v_2 = L2 * s_relative + a3 * c_relative
-    t89 = ahead * stheta2A
+    t94 = ahead * stheta2A
     del stheta2A
-    t90 = t89 - higher * ctheta2A
+    t95 = t94 - higher * ctheta2A
     del ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t91 = p_1 * v_2 + t90 * v_1
+    t96 = p_1 * v_2 + t95 * v_1
     whole_alpha = L1 * v_1
-    t92 = np.abs(whole_alpha)
-    t93 = np.abs(t91) - t92
-    t94 = np.maximum(t93 * 9.094947017729282e-13, -t93)
-    t95 = _runtime.VANISHING * t71
-    spent_alpha = t94 <= t95
-    del t94
-    t96 = v_2 * _runtime.sign(whole_alpha)
+    t97 = np.abs(whole_alpha)
+    t98 = np.abs(t96) - t97
+    t99 = np.maximum(t98 * 9.094947017729282e-13, -t98)
+    t100 = _runtime.VANISHING * t76
+    spent_alpha = t99 <= t100
+    del t99
+    t101 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t97 = t96 * drawn
-    t98 = _runtime.sign(-t91) * (p_1 * v_1 - v_2 * t90)
-    del t91
-    t99 = t97 - t98
-    del t98
-    t100 = np.abs(t99)
-    t101 = 1.0 / slack
-    t102 = 1.4142135623730951 * np.sqrt(slack)
-    del slack
-    t103 = 1.0 / L1
-    t104 = 1.0 - t103 * drawn
-    t105 = t102 * np.sqrt(fore + L1 * (t104 * t104)) / 2000000.0
-    del t104
-    t106 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    del c_relative, s_relative
-    t107 = t101 * (t105 + t106)
-    del t105, t106
-    heavy_0_alpha = _runtime.select(spent_alpha, t107, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t100 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t96
+    t102 = t101 * drawn
+    t103 = _runtime.sign(-t96) * (p_1 * v_1 - v_2 * t95)
     del t96
-    t108 = np.abs(slope_aside_alpha)
-    t109 = t101 * (L1 + np.sqrt(L1) * t102 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t109, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t108 / heavy_1_alpha, 0.0)
-    t110 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t111 = -(_runtime.FEASIBILITY * (t71 + t110)) <= -t93
-    del t110
-    t112 = L1 * play
-    t113 = gain_1_alpha * gain_1_alpha
+    t104 = t102 - t103
+    del t103
+    t105 = np.abs(t104)
+    t106 = 1.0 / slack
+    t107 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t108 = 1.0 / L1
+    t109 = 1.0 - t108 * drawn
+    t110 = t107 * np.sqrt(fore + L1 * (t109 * t109)) / 2000000.0
+    del t109
+    t111 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    del c_relative, s_relative
+    t112 = t106 * (t110 + t111)
+    del t110, t111
+    heavy_0_alpha = _runtime.select(spent_alpha, t112, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t105 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t101
+    del t101
+    t113 = np.abs(slope_aside_alpha)
+    t114 = t106 * (L1 + np.sqrt(L1) * t107 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t114, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t113 / heavy_1_alpha, 0.0)
+    t115 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t116 = -(_runtime.FEASIBILITY * (t76 + t115)) <= -t98
+    del t115
+    t117 = L1 * play
+    t118 = gain_1_alpha * gain_1_alpha
     del gain_1_alpha
-    t114 = play * play
-    t115 = fore_size * fore_size * t114
+    t119 = play * play
+    t120 = fore_size * fore_size * t119
     del fore_size
-    t116 = t113 / (t113 + t115 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t113
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t93 < 0.0, t116, 0.0), 0.0)
-    del t116
-    t117 = _runtime.sign(slope_aside_alpha)
+    t121 = t118 / (t118 + t120 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t118
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t98 < 0.0, t121, 0.0), 0.0)
+    del t121
+    t122 = _runtime.sign(slope_aside_alpha)
     del slope_aside_alpha
-    t118 = t108 + t71 * heavy_1_alpha * 5.960464477539063e-08
+    t123 = t113 + t76 * heavy_1_alpha * 5.960464477539063e-08
     del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t93 * share_alpha * t117 / t118, 0.0)
-    del t118
-    lack_alpha = t93 * (1.0 - share_alpha)
-    del share_alpha, t93
-    t119 = t100 + t71 * heavy_0_alpha * 5.960464477539063e-08
-    del t100
-    t120 = 1.0 / t119
-    del t119
-    t121 = heavy_0_alpha * lack_alpha * t120 <= 9.094947017729282e-13
-    del heavy_0_alpha
-    t122 = lack_alpha * t120
-    del lack_alpha, t120
-    t123 = _runtime.select(t121 & (0.0 < t122), t122, 0.0)
-    del t121, t122
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t99) * t123, 0.0)
-    del t123, t99
-    t124 = aside_alpha + turn_alpha - t103 * (drawn * turn_alpha)
-    del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t124, 0.0)
+    aside_alpha = _runtime.select(spent_alpha, t98 * share_alpha * t122 / t123, 0.0)
+    del t123
+    lack_alpha = t98 * (1.0 - share_alpha)
+    del share_alpha, t98
+    t124 = t105 + t76 * heavy_0_alpha * 5.960464477539063e-08
+    del t105
+    t125 = 1.0 / t124
     del t124
-    t125 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t126 = 1.0 / t125
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t126 - t90 * lean_alpha * t126, p_1)
+    t126 = heavy_0_alpha * lack_alpha * t125 <= 9.094947017729282e-13
+    del heavy_0_alpha
+    t127 = lack_alpha * t125
+    del lack_alpha, t125
+    t128 = _runtime.select(t126 & (0.0 < t127), t127, 0.0)
+    del t126, t127
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t104) * t128, 0.0)
+    del t104, t128
+    t129 = aside_alpha + turn_alpha - t108 * (drawn * turn_alpha)
+    del aside_alpha
+    lean_alpha = _runtime.select(spent_alpha, t129, 0.0)
+    del t129
+    t130 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t131 = 1.0 / t130
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t131 - t95 * lean_alpha * t131, p_1)
     part_beta = L1 * p_1_alpha
-    t127 = t125 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t125
-    t128 = 1.0 / t127
-    del t127
-    t129 = t128 + t128 * (turn_alpha * lean_alpha)
-    t130 = lean_alpha * t128 - turn_alpha * t128
-    del t128
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t129 + v_2 * t130, v_1)
-    whole_beta = L1 * v_1_alpha
-    t131 = np.abs(part_beta) - np.abs(whole_beta)
-    t132 = np.maximum(t131 * 9.094947017729282e-13, -t131)
-    t133 = _runtime.VANISHING * t112
-    spent_beta = t132 <= t133
+    t132 = t130 * np.sqrt(1.0 + turn_alpha * turn_alpha)
+    del t130
+    t133 = 1.0 / t132
     del t132
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t129 - v_1 * t130, v_2)
-    del t129, t130
-    t134 = v_2_alpha * _runtime.sign(whole_beta)
+    t134 = t133 + t133 * (turn_alpha * lean_alpha)
+    t135 = lean_alpha * t133 - turn_alpha * t133
+    del t133
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t134 + v_2 * t135, v_1)
+    whole_beta = L1 * v_1_alpha
+    t136 = np.abs(part_beta) - np.abs(whole_beta)
+    t137 = np.maximum(t136 * 9.094947017729282e-13, -t136)
+    t138 = _runtime.VANISHING * t117
+    spent_beta = t137 <= t138
+    del t137
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t134 - v_1 * t135, v_2)
+    del t134, t135
+    t139 = v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    t135 = _runtime.select(spent_alpha, t126 * (p_1 * lean_alpha) + t90 * t126, t90)
-    del p_1, t126, t90
-    t136 = t135 * _runtime.sign(part_beta)
+    t140 = _runtime.select(spent_alpha, t131 * (p_1 * lean_alpha) + t95 * t131, t95)
+    del p_1, t131, t95
+    t141 = t140 * _runtime.sign(part_beta)
     del part_beta
-    t137 = L1 - drawn
-    t138 = drawn * t134 - t136 * t137
-    t139 = np.abs(t138)
-    heavy_0_beta = _runtime.select(spent_beta, t107, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t139 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t134 + t136)
-    del t134, t136
-    t140 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t109, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t140 / heavy_1_beta, 0.0)
-    t141 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t142 = -(_runtime.FEASIBILITY * (t112 + t141)) <= -t131
-    del t141
-    t143 = -(_runtime.FEASIBILITY * play)
-    t144 = gain_1_beta * gain_1_beta
-    del gain_1_beta
-    t145 = L1 * L1 * t114
-    del t114
-    t146 = t144 / (t144 + t145 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t144
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t131 < 0.0, t146, 0.0), 0.0)
+    t142 = L1 - drawn
+    t143 = drawn * t139 - t141 * t142
+    t144 = np.abs(t143)
+    heavy_0_beta = _runtime.select(spent_beta, t112, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t144 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t139 + t141)
+    del t139, t141
+    t145 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t114, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t145 / heavy_1_beta, 0.0)
+    t146 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t147 = -(_runtime.FEASIBILITY * (t117 + t146)) <= -t136
     del t146
-    lack_beta = t131 * (1.0 - share_beta)
-    t147 = t139 + t112 * heavy_0_beta * 5.960464477539063e-08
-    del t139
-    t148 = 1.0 / t147
-    del t147
-    t149 = heavy_0_beta * lack_beta * t148 <= 9.094947017729282e-13
+    t148 = -(_runtime.FEASIBILITY * play)
+    t149 = gain_1_beta * gain_1_beta
+    del gain_1_beta
+    t150 = L1 * L1 * t119
+    del t119
+    t151 = t149 / (t149 + t150 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t149
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t136 < 0.0, t151, 0.0), 0.0)
+    del t151
+    lack_beta = t136 * (1.0 - share_beta)
+    t152 = t144 + t117 * heavy_0_beta * 5.960464477539063e-08
+    del t144
+    t153 = 1.0 / t152
+    del t152
+    t154 = heavy_0_beta * lack_beta * t153 <= 9.094947017729282e-13
     del heavy_0_beta
-    t150 = lack_beta * t148
-    del lack_beta, t148
-    t151 = _runtime.select(t149 & (0.0 < t150), t150, 0.0)
-    del t149, t150
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t138) * t151, 0.0)
-    del t138, t151
-    t152 = t131 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t131
-    t153 = t140 + t112 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t140
-    aside_beta = _runtime.select(spent_beta, t152 / t153, 0.0)
-    del t152, t153
-    t154 = turn_beta + aside_beta - t103 * (drawn * turn_beta)
+    t155 = lack_beta * t153
+    del lack_beta, t153
+    t156 = _runtime.select(t154 & (0.0 < t155), t155, 0.0)
+    del t154, t155
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t143) * t156, 0.0)
+    del t143, t156
+    t157 = t136 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t136
+    t158 = t145 + t117 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t145
+    aside_beta = _runtime.select(spent_beta, t157 / t158, 0.0)
+    del t157, t158
+    t159 = turn_beta + aside_beta - t108 * (drawn * turn_beta)
     del aside_beta
-    lean_beta = _runtime.select(spent_beta, t154, 0.0)
-    del t154
-    t155 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t156 = 1.0 / (t155 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t157 = t156 + t156 * (turn_beta * lean_beta)
-    t158 = lean_beta * t156 - turn_beta * t156
-    del t156
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t157 + v_2_alpha * t158, v_1_alpha)
+    lean_beta = _runtime.select(spent_beta, t159, 0.0)
+    del t159
+    t160 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t161 = 1.0 / (t160 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t162 = t161 + t161 * (turn_beta * lean_beta)
+    t163 = lean_beta * t161 - turn_beta * t161
+    del t161
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t162 + v_2_alpha * t163, v_1_alpha)
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t159 = 1.0 / t155
-    del t155
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t159 - t135 * lean_beta * t159, p_1_alpha)
-    t160 = sigma_uv * p_1_beta
-    t161 = v_1_beta * sigma_uv
-    del sigma_uv
-    t162 = t69 & t111 & t142 & (t143 <= t160 - t161) & (t143 <= -(t161 + t160))
-    del t111, t142
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t157 - v_1_alpha * t158, v_2_alpha)
-    del t157, t158, v_1_alpha, v_2_alpha
-    t163 = np.abs(v_2_beta)
-    parallel = -t161 <= _runtime.VANISHING * (64.0 * t163)
-    whole_y = _runtime.select(parallel, L1 + t163, -t161)
-    t164 = _runtime.select(spent_beta, t159 * (p_1_alpha * lean_beta) + t135 * t159, t135)
-    del p_1_alpha, t135, t159
-    t165 = _runtime.select(parallel, t164 * _runtime.sign(v_2_beta), t160)
+    t164 = 1.0 / t160
     del t160
-    t166 = whole_y + t165
-    t167 = whole_y - t165
-    t168 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t166, t168)
-    above_beta_0 = np.maximum(t167, t168)
-    t169 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t164 - t140 * lean_beta * t164, p_1_alpha)
+    t165 = sigma_uv * p_1_beta
+    t166 = v_1_beta * sigma_uv
+    del sigma_uv
+    t167 = t74 & t116 & t147 & (t148 <= t165 - t166) & (t148 <= -(t166 + t165))
+    del t116, t147
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t162 - v_1_alpha * t163, v_2_alpha)
+    del t162, t163, v_1_alpha, v_2_alpha
+    t168 = np.abs(v_2_beta)
+    parallel = -t166 <= _runtime.VANISHING * (64.0 * t168)
+    whole_y = _runtime.select(parallel, L1 + t168, -t166)
+    t169 = _runtime.select(spent_beta, t164 * (p_1_alpha * lean_beta) + t140 * t164, t140)
+    del p_1_alpha, t140, t164
+    t170 = _runtime.select(parallel, t169 * _runtime.sign(v_2_beta), t165)
+    del t165
+    t171 = whole_y + t170
+    t172 = whole_y - t170
+    t173 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t171, t173)
+    above_beta_0 = np.maximum(t172, t173)
+    t174 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t170 = t164 - v_2_beta * t169
-    del t169
-    left_along = L1 - np.abs(t170)
-    t171 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t172 = _runtime.VANISHING * play
-    spent_along = t171 <= t172
-    del t171
-    t173 = L1 / 1000000000.0
-    t174 = _runtime.select(spent_along, t163 / (t173 - t161), 0.0)
-    del t163
-    t175 = -(_runtime.FEASIBILITY * (play * (1.0 + t174)))
+    t175 = t169 - v_2_beta * t174
     del t174
-    t176 = t162 & (t143 <= t166) & (t143 <= t167) & (t175 <= left_along)
-    del t162, t166, t167, t175
-    t177 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    left_along = L1 - np.abs(t175)
+    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t177 = _runtime.VANISHING * play
+    spent_along = t176 <= t177
+    del t176
+    t178 = L1 / 1000000000.0
+    t179 = _runtime.select(spent_along, t168 / (t178 - t166), 0.0)
+    del t168
+    t180 = -(_runtime.FEASIBILITY * (play * (1.0 + t179)))
+    del t179
+    t181 = t167 & (t148 <= t171) & (t148 <= t172) & (t180 <= left_along)
+    del t167, t171, t172, t180
+    t182 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t178 = t177 / (t161 * t161 + v_2_beta * v_2_beta) * _runtime.sign(-t170)
-    del t161, t170, t177
-    t179 = _runtime.select(spent_along, t165 + whole_y * t178, t165)
-    del t165, t178
-    t180 = whole_y + t179
-    t181 = whole_y - t179
-    del t179, whole_y
-    below_beta = np.maximum(t180, t168)
-    above_beta = np.maximum(t181, t168)
-    t182 = below_beta - above_beta
-    t183 = t182 / (below_beta + above_beta)
-    t184 = t164 - v_2_beta * t183
-    del t164, v_2_beta
-    t185 = L1 + t184
-    t186 = t176 & (t143 <= t180) & (t143 <= t181) & (t143 <= t185)
-    del t176, t180, t181
-    t187 = L1 - t184
-    unreachable = np.logical_not(t186 & (t143 <= t187))
-    del t186
-    t188 = _runtime.poison(invalid | unreachable)
-    t189 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t190 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    t183 = t182 / (t166 * t166 + v_2_beta * v_2_beta) * _runtime.sign(-t175)
+    del t166, t175, t182
+    t184 = _runtime.select(spent_along, t170 + whole_y * t183, t170)
+    del t170, t183
+    t185 = whole_y + t184
+    t186 = whole_y - t184
+    del t184, whole_y
+    below_beta = np.maximum(t185, t173)
+    above_beta = np.maximum(t186, t173)
+    t187 = 1.0 / (below_beta + above_beta)
+    t188 = (below_beta - above_beta) * t187
+    t189 = t169 - v_2_beta * t188
+    del t169, v_2_beta
+    t190 = L1 + t189
+    t191 = t181 & (t148 <= t185) & (t148 <= t186) & (t148 <= t190)
+    del t181, t185, t186
+    t192 = L1 - t189
+    unreachable = np.logical_not(t191 & (t148 <= t192))
+    del t191
+    t193 = _runtime.poison(invalid | unreachable)
+    t194 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t195 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
     del lean_alpha, lean_beta
-    t191 = t189 + t190
-    del t189
-    below_alpha = np.maximum(t185, t168)
-    del t185
-    above_alpha = np.maximum(t187, t168)
-    del t187
-    t192 = below_alpha - above_alpha
-    t193 = np.arctan2(t192, 2.0 * np.sqrt(below_alpha * above_alpha))
-    t194 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    t196 = t194 + t195
+    del t194
+    below_alpha = np.maximum(t190, t173)
+    del t190
+    above_alpha = np.maximum(t192, t173)
+    del t192
+    t197 = 1.0 / (below_alpha + above_alpha)
+    t198 = (below_alpha - above_alpha) * t197
+    t199 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    del above_alpha, below_alpha
+    t200 = np.arctan2(t198, t197 * t199)
+    del t197, t199
+    t201 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
     del turn_alpha, turn_beta
-    t195 = np.arctan2(s_lag, c_lag)
+    t202 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t196 = _runtime.select(short, 0.0, np.arctan2(t75, t84))
-    del t75, t84
-    t197 = t195 - t196
-    t198 = t194 - (t190 - t197)
-    del t190, t194
-    t199 = np.arctan2(t182, 2.0 * np.sqrt(below_beta * above_beta))
-    del above_beta, below_beta, t182
-    t200 = t193 - t199
-    del t199
-    t201 = _runtime.wrap(principal_pitch)
+    t203 = _runtime.select(short, 0.0, np.arctan2(t80, t89))
+    del t80, t89
+    t204 = t202 - t203
+    t205 = t201 - (t195 - t204)
+    del t195, t201
+    t206 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    del above_beta, below_beta
+    t207 = t200 - np.arctan2(t188, t187 * t206)
+    del t187, t206
+    t208 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    out_front_elbow_down = t74 + t77
-    del t74, t77
-    up_front_elbow_down = t78 - t79
-    del t78, t79
-    t202 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t203 = 1.0 / np.sqrt(t202)
-    del t202
-    t204 = out_front_elbow_down * t203
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t204)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t203)
-    del t203
-    t205 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t205
-    s_relative_front_elbow_down = t85 + t86
-    del t85, t86
-    c_relative_front_elbow_down = t87 - t88
-    del t87, t88
+    out_front_elbow_down = t79 + t82
+    del t79, t82
+    up_front_elbow_down = t83 - t84
+    del t83, t84
+    t209 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t210 = 1.0 / np.sqrt(t209)
+    del t209
+    t211 = out_front_elbow_down * t210
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t211)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t210)
+    del t210
+    t212 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t212
+    s_relative_front_elbow_down = t90 + t91
+    del t90, t91
+    c_relative_front_elbow_down = t92 - t93
+    del t92, t93
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t206 = ahead * stheta2A_front_elbow_down
+    t213 = ahead * stheta2A_front_elbow_down
     del stheta2A_front_elbow_down
-    t207 = t206 - higher * ctheta2A_front_elbow_down
+    t214 = t213 - higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t208 = p_1_front_elbow_down * v_2_front_elbow_down + t207 * v_1_front_elbow_down
+    t215 = p_1_front_elbow_down * v_2_front_elbow_down + t214 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t209 = np.abs(whole_alpha_front_elbow_down)
-    t210 = np.abs(t208) - t209
-    t211 = np.maximum(t210 * 9.094947017729282e-13, -t210)
-    spent_alpha_front_elbow_down = t211 <= t95
-    del t211
-    t212 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t216 = np.abs(whole_alpha_front_elbow_down)
+    t217 = np.abs(t215) - t216
+    t218 = np.maximum(t217 * 9.094947017729282e-13, -t217)
+    spent_alpha_front_elbow_down = t218 <= t100
+    del t218
+    t219 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t213 = t212 * drawn_front_elbow_down
-    t214 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t207
-    t215 = t213 - _runtime.sign(-t208) * t214
-    del t208, t214
-    t216 = np.abs(t215)
-    t217 = 1.0 - t103 * drawn_front_elbow_down
-    t218 = t102 * np.sqrt(fore + L1 * (t217 * t217)) / 2000000.0
-    del fore, t102, t217
+    t220 = t219 * drawn_front_elbow_down
+    t221 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t214
+    t222 = t220 - _runtime.sign(-t215) * t221
+    del t215, t221
+    t223 = np.abs(t222)
+    t224 = 1.0 - t108 * drawn_front_elbow_down
+    t225 = t107 * np.sqrt(fore + L1 * (t224 * t224)) / 2000000.0
+    del fore, t107, t224
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t219 = t101 * (t218 + np.abs(tilt_front_elbow_down))
-    del t101, t218, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t219, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t216 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t212
-    del t212
-    t220 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t109, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t220 / heavy_1_alpha_front_elbow_down, 0.0)
-    t221 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t222 = _runtime.select(spent_alpha_front_elbow_down, t221, 0.0)
-    del t221
-    t223 = -(_runtime.FEASIBILITY * (t71 + t222)) <= -t210
-    del t222
-    t224 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    del gain_1_alpha_front_elbow_down
-    t225 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down
-    t226 = _runtime.select(-t210 < 0.0, t224 / (t115 + t224 + t225), 0.0)
-    del t224, t225
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226, 0.0)
-    del t226
-    t227 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    del slope_aside_alpha_front_elbow_down
-    t228 = t71 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t229 = t210 * share_alpha_front_elbow_down * t227 / (t220 + t228)
+    t226 = t106 * (t225 + np.abs(tilt_front_elbow_down))
+    del t106, t225, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t223 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t219
+    del t219
+    t227 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t114, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t227 / heavy_1_alpha_front_elbow_down, 0.0)
+    t228 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t229 = _runtime.select(spent_alpha_front_elbow_down, t228, 0.0)
     del t228
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t229, 0.0)
+    t230 = -(_runtime.FEASIBILITY * (t76 + t229)) <= -t217
     del t229
-    lack_alpha_front_elbow_down = t210 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t210
-    t230 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t231 = t71 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_alpha_front_elbow_down
-    t232 = 1.0 / (t216 + t231)
-    del t216, t231
-    t233 = lack_alpha_front_elbow_down * t232
-    del lack_alpha_front_elbow_down
-    t234 = (t230 * t232 <= 9.094947017729282e-13) & (0.0 < t233)
-    del t230, t232
-    t235 = _runtime.sign(-t215) * _runtime.select(t234, t233, 0.0)
-    del t215, t233, t234
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t235, 0.0)
+    t231 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    del gain_1_alpha_front_elbow_down
+    t232 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down
+    t233 = _runtime.select(-t217 < 0.0, t231 / (t120 + t231 + t232), 0.0)
+    del t231, t232
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t233, 0.0)
+    del t233
+    t234 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    del slope_aside_alpha_front_elbow_down
+    t235 = t76 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t236 = t217 * share_alpha_front_elbow_down * t234 / (t227 + t235)
     del t235
-    t236 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t236, 0.0)
+    del t236
+    lack_alpha_front_elbow_down = t217 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t217
+    t237 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t238 = t76 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t239 = 1.0 / (t223 + t238)
+    del t223, t238
+    t240 = lack_alpha_front_elbow_down * t239
+    del lack_alpha_front_elbow_down
+    t241 = (t237 * t239 <= 9.094947017729282e-13) & (0.0 < t240)
+    del t237, t239
+    t242 = _runtime.sign(-t222) * _runtime.select(t241, t240, 0.0)
+    del t222, t240, t241
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t242, 0.0)
+    del t242
+    t243 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
     del aside_alpha_front_elbow_down
-    t237 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t236 - t103 * t237, 0.0)
-    del t236, t237
-    t238 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t239 = np.sqrt(1.0 + t238)
-    del t238
-    t240 = 1.0 / t239
-    t241 = p_1_front_elbow_down * t240 - t207 * lean_alpha_front_elbow_down * t240
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241, p_1_front_elbow_down)
-    del t241
+    t244 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243 - t108 * t244, 0.0)
+    del t243, t244
+    t245 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t246 = np.sqrt(1.0 + t245)
+    del t245
+    t247 = 1.0 / t246
+    t248 = p_1_front_elbow_down * t247 - t214 * lean_alpha_front_elbow_down * t247
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248, p_1_front_elbow_down)
+    del t248
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t242 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t243 = 1.0 / (t239 * np.sqrt(1.0 + t242))
-    del t239, t242
-    t244 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t245 = t243 + t243 * t244
-    del t244
-    t246 = lean_alpha_front_elbow_down * t243 - turn_alpha_front_elbow_down * t243
-    del t243
-    t247 = v_1_front_elbow_down * t245 + v_2_front_elbow_down * t246
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247, v_1_front_elbow_down)
-    del t247
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t248 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t249 = np.maximum(t248 * 9.094947017729282e-13, -t248)
-    spent_beta_front_elbow_down = t249 <= t133
-    del t249
-    t250 = v_2_front_elbow_down * t245 - v_1_front_elbow_down * t246
-    del t245, t246
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t250, v_2_front_elbow_down)
+    t249 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t250 = 1.0 / (t246 * np.sqrt(1.0 + t249))
+    del t246, t249
+    t251 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t252 = t250 + t250 * t251
+    del t251
+    t253 = lean_alpha_front_elbow_down * t250 - turn_alpha_front_elbow_down * t250
     del t250
-    t251 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t254 = v_1_front_elbow_down * t252 + v_2_front_elbow_down * t253
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t254, v_1_front_elbow_down)
+    del t254
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t255 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t256 = np.maximum(t255 * 9.094947017729282e-13, -t255)
+    spent_beta_front_elbow_down = t256 <= t138
+    del t256
+    t257 = v_2_front_elbow_down * t252 - v_1_front_elbow_down * t253
+    del t252, t253
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t257, v_2_front_elbow_down)
+    del t257
+    t258 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    t252 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t259 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t253 = _runtime.select(spent_alpha_front_elbow_down, t240 * t252 + t207 * t240, t207)
-    del t207, t240, t252
-    t254 = t253 * _runtime.sign(part_beta_front_elbow_down)
+    t260 = _runtime.select(spent_alpha_front_elbow_down, t247 * t259 + t214 * t247, t214)
+    del t214, t247, t259
+    t261 = t260 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t255 = L1 - drawn_front_elbow_down
-    t256 = drawn_front_elbow_down * t251 - t254 * t255
-    t257 = np.abs(t256)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t219, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t251 + t254)
-    del t251, t254
-    t258 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t109, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t258 / heavy_1_beta_front_elbow_down, 0.0)
-    t259 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t260 = _runtime.select(spent_beta_front_elbow_down, t259, 0.0)
-    del t259
-    t261 = -(_runtime.FEASIBILITY * (t112 + t260)) <= -t248
-    del t260
-    t262 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t262 = L1 - drawn_front_elbow_down
+    t263 = drawn_front_elbow_down * t258 - t261 * t262
+    t264 = np.abs(t263)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t226, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t258 + t261)
+    del t258, t261
+    t265 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t114, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t265 / heavy_1_beta_front_elbow_down, 0.0)
+    t266 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t267 = _runtime.select(spent_beta_front_elbow_down, t266, 0.0)
+    del t266
+    t268 = -(_runtime.FEASIBILITY * (t117 + t267)) <= -t255
+    del t267
+    t269 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
     del gain_1_beta_front_elbow_down
-    t263 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t270 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down
-    t264 = _runtime.select(-t248 < 0.0, t262 / (t145 + t262 + t263), 0.0)
-    del t262, t263
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264, 0.0)
-    del t264
-    lack_beta_front_elbow_down = t248 * (1.0 - share_beta_front_elbow_down)
-    t265 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t266 = t112 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t271 = _runtime.select(-t255 < 0.0, t269 / (t150 + t269 + t270), 0.0)
+    del t269, t270
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t271, 0.0)
+    del t271
+    lack_beta_front_elbow_down = t255 * (1.0 - share_beta_front_elbow_down)
+    t272 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t273 = t117 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t267 = 1.0 / (t257 + t266)
-    del t257, t266
-    t268 = lack_beta_front_elbow_down * t267
+    t274 = 1.0 / (t264 + t273)
+    del t264, t273
+    t275 = lack_beta_front_elbow_down * t274
     del lack_beta_front_elbow_down
-    t269 = (t265 * t267 <= 9.094947017729282e-13) & (0.0 < t268)
-    del t265, t267
-    t270 = _runtime.sign(-t256) * _runtime.select(t269, t268, 0.0)
-    del t256, t268, t269
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 0.0)
-    del t270
-    t271 = _runtime.sign(slope_aside_beta_front_elbow_down)
-    del slope_aside_beta_front_elbow_down
-    t272 = t112 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_front_elbow_down
-    t273 = t248 * share_beta_front_elbow_down * t271 / (t258 + t272)
-    del share_beta_front_elbow_down, t248, t258, t271, t272
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t273, 0.0)
-    del t273
-    t274 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
-    del aside_beta_front_elbow_down
-    t275 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t274 - t103 * t275, 0.0)
-    del t274, t275
-    t276 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t277 = np.sqrt(1.0 + t276)
-    del t276
-    t278 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t279 = 1.0 / (t277 * np.sqrt(1.0 + t278))
-    del t278
-    t280 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t281 = t279 + t279 * t280
-    del t280
-    t282 = lean_beta_front_elbow_down * t279 - turn_beta_front_elbow_down * t279
-    del t279
-    t283 = v_1_alpha_front_elbow_down * t281 + v_2_alpha_front_elbow_down * t282
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t283, v_1_alpha_front_elbow_down)
-    del t283
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t284 = 1.0 / t277
+    t276 = (t272 * t274 <= 9.094947017729282e-13) & (0.0 < t275)
+    del t272, t274
+    t277 = _runtime.sign(-t263) * _runtime.select(t276, t275, 0.0)
+    del t263, t275, t276
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t277, 0.0)
     del t277
-    t285 = p_1_alpha_front_elbow_down * t284 - t253 * lean_beta_front_elbow_down * t284
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t285, p_1_alpha_front_elbow_down)
+    t278 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    del slope_aside_beta_front_elbow_down
+    t279 = t117 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_front_elbow_down
+    t280 = t255 * share_beta_front_elbow_down * t278 / (t265 + t279)
+    del share_beta_front_elbow_down, t255, t265, t278, t279
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t280, 0.0)
+    del t280
+    t281 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    del aside_beta_front_elbow_down
+    t282 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t281 - t108 * t282, 0.0)
+    del t281, t282
+    t283 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t284 = np.sqrt(1.0 + t283)
+    del t283
+    t285 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t286 = 1.0 / (t284 * np.sqrt(1.0 + t285))
     del t285
-    t286 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t287 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t287 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t288 = t286 + t286 * t287
+    del t287
+    t289 = lean_beta_front_elbow_down * t286 - turn_beta_front_elbow_down * t286
+    del t286
+    t290 = v_1_alpha_front_elbow_down * t288 + v_2_alpha_front_elbow_down * t289
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t290, v_1_alpha_front_elbow_down)
+    del t290
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t291 = 1.0 / t284
+    del t284
+    t292 = p_1_alpha_front_elbow_down * t291 - t260 * lean_beta_front_elbow_down * t291
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t292, p_1_alpha_front_elbow_down)
+    del t292
+    t293 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t294 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del sigma_uv_front_elbow_down
-    t288 = t69 & t223 & t261 & (t143 <= t286 - t287) & (t143 <= -(t287 + t286))
-    del t223, t261
-    t289 = v_2_alpha_front_elbow_down * t281 - v_1_alpha_front_elbow_down * t282
-    del t281, t282, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289, v_2_alpha_front_elbow_down)
-    del t289, v_2_alpha_front_elbow_down
-    t290 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t287 <= _runtime.VANISHING * (64.0 * t290)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t290, -t287)
-    t291 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t295 = t74 & t230 & t268 & (t148 <= t293 - t294) & (t148 <= -(t294 + t293))
+    del t230, t268
+    t296 = v_2_alpha_front_elbow_down * t288 - v_1_alpha_front_elbow_down * t289
+    del t288, t289, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296, v_2_alpha_front_elbow_down)
+    del t296, v_2_alpha_front_elbow_down
+    t297 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t294 <= _runtime.VANISHING * (64.0 * t297)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t297, -t294)
+    t298 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t292 = _runtime.select(spent_beta_front_elbow_down, t284 * t291 + t253 * t284, t253)
-    del t253, t284, t291
-    t293 = t292 * _runtime.sign(v_2_beta_front_elbow_down)
-    t294 = _runtime.select(parallel_front_elbow_down, t293, t286)
-    del t286, t293
-    t295 = whole_y_front_elbow_down + t294
-    t296 = whole_y_front_elbow_down - t294
-    below_beta_0_front_elbow_down = np.maximum(t295, t168)
-    above_beta_0_front_elbow_down = np.maximum(t296, t168)
-    t297 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t299 = _runtime.select(spent_beta_front_elbow_down, t291 * t298 + t260 * t291, t260)
+    del t260, t291, t298
+    t300 = t299 * _runtime.sign(v_2_beta_front_elbow_down)
+    t301 = _runtime.select(parallel_front_elbow_down, t300, t293)
+    del t293, t300
+    t302 = whole_y_front_elbow_down + t301
+    t303 = whole_y_front_elbow_down - t301
+    below_beta_0_front_elbow_down = np.maximum(t302, t173)
+    above_beta_0_front_elbow_down = np.maximum(t303, t173)
+    t304 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t298 = v_2_beta_front_elbow_down * (t297 / total_beta_0_front_elbow_down)
-    del t297, total_beta_0_front_elbow_down
-    t299 = t292 - t298
-    del t298
-    left_along_front_elbow_down = L1 - np.abs(t299)
-    t300 = left_along_front_elbow_down * 9.094947017729282e-13
-    t301 = np.maximum(-t300, left_along_front_elbow_down)
-    del t300
-    spent_along_front_elbow_down = t301 <= t172
-    del t301
-    t302 = _runtime.select(spent_along_front_elbow_down, t290 / (t173 - t287), 0.0)
-    del t290
-    t303 = -(_runtime.FEASIBILITY * (play * (1.0 + t302)))
-    del t302
-    t304 = t288 & (t143 <= t295) & (t143 <= t296) & (t303 <= left_along_front_elbow_down)
-    del t288, t295, t296, t303
-    t305 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    t305 = v_2_beta_front_elbow_down * (t304 / total_beta_0_front_elbow_down)
+    del t304, total_beta_0_front_elbow_down
+    t306 = t299 - t305
+    del t305
+    left_along_front_elbow_down = L1 - np.abs(t306)
+    t307 = left_along_front_elbow_down * 9.094947017729282e-13
+    t308 = np.maximum(-t307, left_along_front_elbow_down)
+    del t307
+    spent_along_front_elbow_down = t308 <= t177
+    del t308
+    t309 = _runtime.select(spent_along_front_elbow_down, t297 / (t178 - t294), 0.0)
+    del t297
+    t310 = -(_runtime.FEASIBILITY * (play * (1.0 + t309)))
+    del t309
+    t311 = t295 & (t148 <= t302) & (t148 <= t303) & (t310 <= left_along_front_elbow_down)
+    del t295, t302, t303, t310
+    t312 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t306 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t307 = v_2_beta_front_elbow_down * t305 / (t287 * t287 + t306)
-    del t287, t305, t306
-    t308 = whole_y_front_elbow_down * (t307 * _runtime.sign(-t299))
-    del t299, t307
-    t309 = _runtime.select(spent_along_front_elbow_down, t294 + t308, t294)
-    del t294, t308
-    t310 = whole_y_front_elbow_down + t309
-    t311 = whole_y_front_elbow_down - t309
-    del t309, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t310, t168)
-    above_beta_front_elbow_down = np.maximum(t311, t168)
-    t312 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t313 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t314 = v_2_beta_front_elbow_down * t312 / (t294 * t294 + t313)
+    del t294, t312, t313
+    t315 = whole_y_front_elbow_down * (t314 * _runtime.sign(-t306))
+    del t306, t314
+    t316 = _runtime.select(spent_along_front_elbow_down, t301 + t315, t301)
+    del t301, t315
+    t317 = whole_y_front_elbow_down + t316
+    t318 = whole_y_front_elbow_down - t316
+    del t316, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t317, t173)
+    above_beta_front_elbow_down = np.maximum(t318, t173)
+    t319 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t313 = t312 / total_beta_front_elbow_down
+    t320 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t314 = t292 - v_2_beta_front_elbow_down * t313
-    del t292, v_2_beta_front_elbow_down
-    t315 = L1 + t314
-    t316 = t304 & (t143 <= t310) & (t143 <= t311) & (t143 <= t315)
-    del t304, t310, t311
-    t317 = L1 - t314
-    unreachable_2 = np.logical_not(t316 & (t143 <= t317))
-    del t316
-    t318 = _runtime.poison(invalid | unreachable_2)
-    t319 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t320 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t321 = _runtime.select(folded, 0.0, t319) + t320
+    t321 = t319 * t320
     del t319
-    below_alpha_front_elbow_down = np.maximum(t315, t168)
-    del t315
-    above_alpha_front_elbow_down = np.maximum(t317, t168)
-    del t317
-    t322 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t323 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
-    t324 = np.arctan2(t322, 2.0 * np.sqrt(t323))
+    t322 = t299 - v_2_beta_front_elbow_down * t321
+    del t299, v_2_beta_front_elbow_down
+    t323 = L1 + t322
+    t324 = t311 & (t148 <= t317) & (t148 <= t318) & (t148 <= t323)
+    del t311, t317, t318
+    t325 = L1 - t322
+    unreachable_2 = np.logical_not(t324 & (t148 <= t325))
+    del t324
+    t326 = _runtime.poison(invalid | unreachable_2)
+    t327 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t328 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t329 = _runtime.select(folded, 0.0, t327) + t328
+    del t327
+    below_alpha_front_elbow_down = np.maximum(t323, t173)
     del t323
-    t325 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    above_alpha_front_elbow_down = np.maximum(t325, t173)
+    del t325
+    t330 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t331 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t332 = t330 * t331
+    del t330
+    t333 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
+    t334 = np.arctan2(t332, t331 * t333)
+    del t331, t333
+    t335 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t326 = t195 + t196
-    del t195, t196
-    t327 = t325 - (t320 - t326)
-    del t320, t325
-    t328 = below_beta_front_elbow_down * above_beta_front_elbow_down
+    t336 = t202 + t203
+    del t202, t203
+    t337 = t335 - (t328 - t336)
+    del t328, t335
+    t338 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t329 = t324 - np.arctan2(t312, 2.0 * np.sqrt(t328))
-    del t312, t328
-    t330 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t50))
-    del t3, t50
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t81)
-    del t81
-    p_1_rear_elbow_up = t82 + ahead * ctheta2A_rear_elbow_up
-    del t82
-    t331 = t89 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t89
-    t332 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t331
-    margin_alpha_rear_elbow_up = t209 - np.abs(t332)
-    del t209
-    t333 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t334 = np.maximum(-t333, margin_alpha_rear_elbow_up)
-    del t333
-    spent_alpha_rear_elbow_up = t334 <= t95
-    del t334
-    t335 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t331
-    t336 = t213 - _runtime.sign(-t332) * t335
-    del t213, t332, t335
-    t337 = np.abs(t336)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t219, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t337 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t109, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t220 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t338 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t339 = _runtime.select(spent_alpha_rear_elbow_up, t338, 0.0)
-    del t338
-    t340 = -(_runtime.FEASIBILITY * (t71 + t339)) <= margin_alpha_rear_elbow_up
-    del t339
-    t341 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    del gain_1_alpha_rear_elbow_up
-    t342 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    del gain_0_alpha_rear_elbow_up
-    t343 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t341 / (t115 + t341 + t342), 0.0)
-    del t341, t342
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t343, 0.0)
+    t339 = t334 - np.arctan2(t321, t320 * t338)
+    del t320, t338
+    t340 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t55))
+    del t3, t55
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t86)
+    del t86
+    p_1_rear_elbow_up = t87 + ahead * ctheta2A_rear_elbow_up
+    del t87
+    t341 = t94 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t94
+    t342 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t341
+    margin_alpha_rear_elbow_up = t216 - np.abs(t342)
+    del t216
+    t343 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t344 = np.maximum(-t343, margin_alpha_rear_elbow_up)
     del t343
-    t344 = t227 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t227
-    t345 = t71 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    spent_alpha_rear_elbow_up = t344 <= t100
+    del t344
+    t345 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t341
+    t346 = t220 - _runtime.sign(-t342) * t345
+    del t220, t342, t345
+    t347 = np.abs(t346)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t226, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t347 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t114, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t348 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t349 = _runtime.select(spent_alpha_rear_elbow_up, t348, 0.0)
+    del t348
+    t350 = -(_runtime.FEASIBILITY * (t76 + t349)) <= margin_alpha_rear_elbow_up
+    del t349
+    t351 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    del gain_1_alpha_rear_elbow_up
+    t352 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    del gain_0_alpha_rear_elbow_up
+    t353 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t351 / (t120 + t351 + t352), 0.0)
+    del t351, t352
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t353, 0.0)
+    del t353
+    t354 = t234 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t234
+    t355 = t76 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t344 / (t220 + t345)), 0.0)
-    del t220, t344, t345
-    t346 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t354 / (t227 + t355)), 0.0)
+    del t227, t354, t355
+    t356 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del margin_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t347 = t71 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t348 = 1.0 / (t337 + t347)
-    del t337, t347
-    t349 = -(heavy_0_alpha_rear_elbow_up * t346 * t348) <= 9.094947017729282e-13
+    t357 = t76 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t358 = 1.0 / (t347 + t357)
+    del t347, t357
+    t359 = -(heavy_0_alpha_rear_elbow_up * t356 * t358) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t350 = -(t346 * t348)
-    del t346, t348
-    t351 = _runtime.select(t349 & (0.0 < t350), t350, 0.0)
-    del t349, t350
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t336) * t351, 0.0)
-    del t336, t351
-    t352 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t360 = -(t356 * t358)
+    del t356, t358
+    t361 = _runtime.select(t359 & (0.0 < t360), t360, 0.0)
+    del t359, t360
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t346) * t361, 0.0)
+    del t346, t361
+    t362 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t353 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352 - t103 * t353, 0.0)
-    del t352, t353
-    t354 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t355 = np.sqrt(1.0 + t354)
-    del t354
-    t356 = 1.0 / t355
-    t357 = p_1_rear_elbow_up * t356 - t331 * lean_alpha_rear_elbow_up * t356
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t357, p_1_rear_elbow_up)
-    del t357
+    t363 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t362 - t108 * t363, 0.0)
+    del t362, t363
+    t364 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t365 = np.sqrt(1.0 + t364)
+    del t364
+    t366 = 1.0 / t365
+    t367 = p_1_rear_elbow_up * t366 - t341 * lean_alpha_rear_elbow_up * t366
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t367, p_1_rear_elbow_up)
+    del t367
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t358 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t359 = 1.0 / (t355 * np.sqrt(1.0 + t358))
-    del t355, t358
-    t360 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t361 = t359 + t359 * t360
-    del t360
-    t362 = lean_alpha_rear_elbow_up * t359 - turn_alpha_rear_elbow_up * t359
-    del t359
-    t363 = v_1_front_elbow_down * t361 + v_2_front_elbow_down * t362
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t363, v_1_front_elbow_down)
-    del t363
+    t368 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t369 = 1.0 / (t365 * np.sqrt(1.0 + t368))
+    del t365, t368
+    t370 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t371 = t369 + t369 * t370
+    del t370
+    t372 = lean_alpha_rear_elbow_up * t369 - turn_alpha_rear_elbow_up * t369
+    del t369
+    t373 = v_1_front_elbow_down * t371 + v_2_front_elbow_down * t372
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t373, v_1_front_elbow_down)
+    del t373
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t364 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t365 = np.maximum(t364 * 9.094947017729282e-13, -t364)
-    spent_beta_rear_elbow_up = t365 <= t133
-    del t365
-    t366 = v_2_front_elbow_down * t361 - v_1_front_elbow_down * t362
-    del t361, t362, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t366, v_2_front_elbow_down)
-    del t366, v_2_front_elbow_down
-    t367 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
-    del whole_beta_rear_elbow_up
-    t368 = t356 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
-    del p_1_rear_elbow_up
-    t369 = _runtime.select(spent_alpha_rear_elbow_up, t368 + t331 * t356, t331)
-    del t331, t356, t368
-    t370 = t369 * _runtime.sign(part_beta_rear_elbow_up)
-    del part_beta_rear_elbow_up
-    t371 = drawn_front_elbow_down * t367 - t255 * t370
-    del t255
-    t372 = np.abs(t371)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t219, 1.0)
-    del t219
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t372 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t367 + t370)
-    del t367, t370
-    t373 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t109, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t373 / heavy_1_beta_rear_elbow_up, 0.0)
-    t374 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t375 = _runtime.select(spent_beta_rear_elbow_up, t374, 0.0)
-    del t374
-    t376 = -(_runtime.FEASIBILITY * (t112 + t375)) <= -t364
+    t374 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t375 = np.maximum(t374 * 9.094947017729282e-13, -t374)
+    spent_beta_rear_elbow_up = t375 <= t138
     del t375
-    t377 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    del gain_1_beta_rear_elbow_up
-    t378 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up
-    t379 = _runtime.select(-t364 < 0.0, t377 / (t145 + t377 + t378), 0.0)
-    del t377, t378
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t379, 0.0)
-    del t379
-    lack_beta_rear_elbow_up = t364 * (1.0 - share_beta_rear_elbow_up)
-    t380 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t381 = t112 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t382 = 1.0 / (t372 + t381)
-    del t372, t381
-    t383 = lack_beta_rear_elbow_up * t382
-    del lack_beta_rear_elbow_up
-    t384 = (t380 * t382 <= 9.094947017729282e-13) & (0.0 < t383)
-    del t380, t382
-    t385 = _runtime.sign(-t371) * _runtime.select(t384, t383, 0.0)
-    del t371, t383, t384
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t385, 0.0)
+    t376 = v_2_front_elbow_down * t371 - v_1_front_elbow_down * t372
+    del t371, t372, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t376, v_2_front_elbow_down)
+    del t376, v_2_front_elbow_down
+    t377 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    del whole_beta_rear_elbow_up
+    t378 = t366 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    del p_1_rear_elbow_up
+    t379 = _runtime.select(spent_alpha_rear_elbow_up, t378 + t341 * t366, t341)
+    del t341, t366, t378
+    t380 = t379 * _runtime.sign(part_beta_rear_elbow_up)
+    del part_beta_rear_elbow_up
+    t381 = drawn_front_elbow_down * t377 - t262 * t380
+    del t262
+    t382 = np.abs(t381)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t226, 1.0)
+    del t226
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t382 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t377 + t380)
+    del t377, t380
+    t383 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t114, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t383 / heavy_1_beta_rear_elbow_up, 0.0)
+    t384 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t385 = _runtime.select(spent_beta_rear_elbow_up, t384, 0.0)
+    del t384
+    t386 = -(_runtime.FEASIBILITY * (t117 + t385)) <= -t374
     del t385
-    t386 = _runtime.sign(slope_aside_beta_rear_elbow_up)
-    del slope_aside_beta_rear_elbow_up
-    t387 = t112 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_up
-    t388 = t364 * share_beta_rear_elbow_up * t386 / (t373 + t387)
-    del share_beta_rear_elbow_up, t364, t373, t386, t387
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388, 0.0)
-    del t388
-    t389 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
-    del aside_beta_rear_elbow_up
-    t390 = drawn_front_elbow_down * turn_beta_rear_elbow_up
-    del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t389 - t103 * t390, 0.0)
-    del t389, t390
-    t391 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t392 = np.sqrt(1.0 + t391)
-    del t391
-    t393 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t394 = 1.0 / (t392 * np.sqrt(1.0 + t393))
-    del t393
-    t395 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t396 = t394 + t394 * t395
+    t387 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    del gain_1_beta_rear_elbow_up
+    t388 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up
+    t389 = _runtime.select(-t374 < 0.0, t387 / (t150 + t387 + t388), 0.0)
+    del t387, t388
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t389, 0.0)
+    del t389
+    lack_beta_rear_elbow_up = t374 * (1.0 - share_beta_rear_elbow_up)
+    t390 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t391 = t117 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t392 = 1.0 / (t382 + t391)
+    del t382, t391
+    t393 = lack_beta_rear_elbow_up * t392
+    del lack_beta_rear_elbow_up
+    t394 = (t390 * t392 <= 9.094947017729282e-13) & (0.0 < t393)
+    del t390, t392
+    t395 = _runtime.sign(-t381) * _runtime.select(t394, t393, 0.0)
+    del t381, t393, t394
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t395, 0.0)
     del t395
-    t397 = lean_beta_rear_elbow_up * t394 - turn_beta_rear_elbow_up * t394
-    del t394
-    t398 = v_1_alpha_rear_elbow_up * t396 + v_2_alpha_rear_elbow_up * t397
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398, v_1_alpha_rear_elbow_up)
+    t396 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t397 = t117 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t398 = t374 * share_beta_rear_elbow_up * t396 / (t383 + t397)
+    del share_beta_rear_elbow_up, t374, t383, t396, t397
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398, 0.0)
     del t398
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t399 = 1.0 / t392
-    del t392
-    t400 = p_1_alpha_rear_elbow_up * t399 - t369 * lean_beta_rear_elbow_up * t399
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t400, p_1_alpha_rear_elbow_up)
-    del t400
-    t401 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t402 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del sigma_uv_rear_elbow_up
-    t403 = t69 & t340 & t376 & (t143 <= t401 - t402) & (t143 <= -(t402 + t401))
-    del t340, t376
-    t404 = v_2_alpha_rear_elbow_up * t396 - v_1_alpha_rear_elbow_up * t397
-    del t396, t397, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t404, v_2_alpha_rear_elbow_up)
-    del t404, v_2_alpha_rear_elbow_up
-    t405 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t402 <= _runtime.VANISHING * (64.0 * t405)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t405, -t402)
-    t406 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del p_1_alpha_rear_elbow_up
-    t407 = _runtime.select(spent_beta_rear_elbow_up, t399 * t406 + t369 * t399, t369)
-    del t369, t399, t406
-    t408 = _runtime.select(parallel_rear_elbow_up, t407 * _runtime.sign(v_2_beta_rear_elbow_up), t401)
+    t399 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    del aside_beta_rear_elbow_up
+    t400 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    del drawn_front_elbow_down
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399 - t108 * t400, 0.0)
+    del t399, t400
+    t401 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t402 = np.sqrt(1.0 + t401)
     del t401
-    t409 = whole_y_rear_elbow_up + t408
-    t410 = whole_y_rear_elbow_up - t408
-    below_beta_0_rear_elbow_up = np.maximum(t409, t168)
-    above_beta_0_rear_elbow_up = np.maximum(t410, t168)
-    t411 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t403 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t404 = 1.0 / (t402 * np.sqrt(1.0 + t403))
+    del t403
+    t405 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t406 = t404 + t404 * t405
+    del t405
+    t407 = lean_beta_rear_elbow_up * t404 - turn_beta_rear_elbow_up * t404
+    del t404
+    t408 = v_1_alpha_rear_elbow_up * t406 + v_2_alpha_rear_elbow_up * t407
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t408, v_1_alpha_rear_elbow_up)
+    del t408
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t409 = 1.0 / t402
+    del t402
+    t410 = p_1_alpha_rear_elbow_up * t409 - t379 * lean_beta_rear_elbow_up * t409
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t410, p_1_alpha_rear_elbow_up)
+    del t410
+    t411 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t412 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del sigma_uv_rear_elbow_up
+    t413 = t74 & t350 & t386 & (t148 <= t411 - t412) & (t148 <= -(t412 + t411))
+    del t350, t386
+    t414 = v_2_alpha_rear_elbow_up * t406 - v_1_alpha_rear_elbow_up * t407
+    del t406, t407, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t414, v_2_alpha_rear_elbow_up)
+    del t414, v_2_alpha_rear_elbow_up
+    t415 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t412 <= _runtime.VANISHING * (64.0 * t415)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t415, -t412)
+    t416 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del p_1_alpha_rear_elbow_up
+    t417 = _runtime.select(spent_beta_rear_elbow_up, t409 * t416 + t379 * t409, t379)
+    del t379, t409, t416
+    t418 = _runtime.select(parallel_rear_elbow_up, t417 * _runtime.sign(v_2_beta_rear_elbow_up), t411)
+    del t411
+    t419 = whole_y_rear_elbow_up + t418
+    t420 = whole_y_rear_elbow_up - t418
+    below_beta_0_rear_elbow_up = np.maximum(t419, t173)
+    above_beta_0_rear_elbow_up = np.maximum(t420, t173)
+    t421 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t412 = v_2_beta_rear_elbow_up * (t411 / total_beta_0_rear_elbow_up)
-    del t411, total_beta_0_rear_elbow_up
-    t413 = t407 - t412
-    del t412
-    left_along_rear_elbow_up = L1 - np.abs(t413)
-    t414 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t414, left_along_rear_elbow_up) <= t172
-    del t414
-    t415 = _runtime.select(spent_along_rear_elbow_up, t405 / (t173 - t402), 0.0)
-    del t405
-    t416 = -(_runtime.FEASIBILITY * (play * (1.0 + t415)))
+    t422 = v_2_beta_rear_elbow_up * (t421 / total_beta_0_rear_elbow_up)
+    del t421, total_beta_0_rear_elbow_up
+    t423 = t417 - t422
+    del t422
+    left_along_rear_elbow_up = L1 - np.abs(t423)
+    t424 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t424, left_along_rear_elbow_up) <= t177
+    del t424
+    t425 = _runtime.select(spent_along_rear_elbow_up, t415 / (t178 - t412), 0.0)
     del t415
-    t417 = t403 & (t143 <= t409) & (t143 <= t410) & (t416 <= left_along_rear_elbow_up)
-    del t403, t409, t410, t416
-    t418 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t426 = -(_runtime.FEASIBILITY * (play * (1.0 + t425)))
+    del t425
+    t427 = t413 & (t148 <= t419) & (t148 <= t420) & (t426 <= left_along_rear_elbow_up)
+    del t413, t419, t420, t426
+    t428 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t419 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t420 = v_2_beta_rear_elbow_up * t418 / (t402 * t402 + t419)
-    del t402, t418, t419
-    t421 = whole_y_rear_elbow_up * (t420 * _runtime.sign(-t413))
-    del t413, t420
-    t422 = _runtime.select(spent_along_rear_elbow_up, t408 + t421, t408)
-    del t408, t421
-    t423 = whole_y_rear_elbow_up + t422
-    t424 = whole_y_rear_elbow_up - t422
-    del t422, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t423, t168)
-    above_beta_rear_elbow_up = np.maximum(t424, t168)
-    t425 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t429 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t430 = v_2_beta_rear_elbow_up * t428 / (t412 * t412 + t429)
+    del t412, t428, t429
+    t431 = whole_y_rear_elbow_up * (t430 * _runtime.sign(-t423))
+    del t423, t430
+    t432 = _runtime.select(spent_along_rear_elbow_up, t418 + t431, t418)
+    del t418, t431
+    t433 = whole_y_rear_elbow_up + t432
+    t434 = whole_y_rear_elbow_up - t432
+    del t432, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t433, t173)
+    above_beta_rear_elbow_up = np.maximum(t434, t173)
+    t435 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t426 = t425 / total_beta_rear_elbow_up
+    t436 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t427 = t407 - v_2_beta_rear_elbow_up * t426
-    del t407, v_2_beta_rear_elbow_up
-    t428 = L1 + t427
-    t429 = t417 & (t143 <= t423) & (t143 <= t424) & (t143 <= t428)
-    del t417, t423, t424
-    t430 = L1 - t427
-    unreachable_3 = np.logical_not(t429 & (t143 <= t430))
-    del t429
-    t431 = _runtime.poison(invalid | unreachable_3)
-    t432 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    t437 = t435 * t436
+    del t435
+    t438 = t417 - v_2_beta_rear_elbow_up * t437
+    del t417, v_2_beta_rear_elbow_up
+    t439 = L1 + t438
+    t440 = t427 & (t148 <= t433) & (t148 <= t434) & (t148 <= t439)
+    del t427, t433, t434
+    t441 = L1 - t438
+    unreachable_3 = np.logical_not(t440 & (t148 <= t441))
+    del t440
+    t442 = _runtime.poison(invalid | unreachable_3)
+    t443 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t433 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    t444 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t434 = t432 + t433
-    del t432
-    below_alpha_rear_elbow_up = np.maximum(t428, t168)
-    del t428
-    above_alpha_rear_elbow_up = np.maximum(t430, t168)
-    del t430
-    t435 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t436 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    t437 = np.arctan2(t435, 2.0 * np.sqrt(t436))
-    del t436
-    t438 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t439 = t438 + (t326 - t433)
-    del t326, t433, t438
-    t440 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t441 = t437 - np.arctan2(t425, 2.0 * np.sqrt(t440))
-    del t425, t440
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t204)
-    del t204
-    p_1_rear_elbow_down = t205 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t205
-    t442 = t206 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t206
-    t443 = v_2 * p_1_rear_elbow_down + v_1 * t442
-    margin_alpha_rear_elbow_down = t92 - np.abs(t443)
-    del t92
-    t444 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t445 = np.maximum(-t444, margin_alpha_rear_elbow_down)
-    del t444
-    spent_alpha_rear_elbow_down = t445 <= t95
-    del t445, t95
-    t446 = _runtime.sign(-t443) * (v_1 * p_1_rear_elbow_down - v_2 * t442)
+    t445 = t443 + t444
     del t443
-    t447 = t97 - t446
-    del t446, t97
-    t448 = np.abs(t447)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t107, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t448 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t109, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t108 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t449 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t450 = _runtime.select(spent_alpha_rear_elbow_down, t449, 0.0)
-    del t449
-    t451 = -(_runtime.FEASIBILITY * (t71 + t450)) <= margin_alpha_rear_elbow_down
-    del t450
-    t452 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    del gain_1_alpha_rear_elbow_down
-    t453 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    del gain_0_alpha_rear_elbow_down
-    t454 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t452 / (t115 + t452 + t453), 0.0)
-    del t115, t452, t453
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t454, 0.0)
-    del t454
-    t455 = t117 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t117
-    t456 = t71 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t455 / (t108 + t456)), 0.0)
-    del t108, t455, t456
-    t457 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t458 = t71 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t71
-    t459 = 1.0 / (t448 + t458)
-    del t448, t458
-    t460 = -(heavy_0_alpha_rear_elbow_down * t457 * t459)
-    del heavy_0_alpha_rear_elbow_down
-    t461 = -(t457 * t459)
-    del t457, t459
-    t462 = (t460 <= 9.094947017729282e-13) & (0.0 < t461)
-    del t460
-    t463 = _runtime.sign(-t447) * _runtime.select(t462, t461, 0.0)
-    del t447, t461, t462
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t463, 0.0)
+    below_alpha_rear_elbow_up = np.maximum(t439, t173)
+    del t439
+    above_alpha_rear_elbow_up = np.maximum(t441, t173)
+    del t441
+    t446 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t447 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t448 = t446 * t447
+    del t446
+    t449 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t450 = np.arctan2(t448, t447 * t449)
+    del t447, t449
+    t451 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
+    t452 = t451 + (t336 - t444)
+    del t336, t444, t451
+    t453 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t454 = t450 - np.arctan2(t437, t436 * t453)
+    del t436, t453
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t211)
+    del t211
+    p_1_rear_elbow_down = t212 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t212
+    t455 = t213 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t213
+    t456 = v_2 * p_1_rear_elbow_down + v_1 * t455
+    margin_alpha_rear_elbow_down = t97 - np.abs(t456)
+    del t97
+    t457 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t458 = np.maximum(-t457, margin_alpha_rear_elbow_down)
+    del t457
+    spent_alpha_rear_elbow_down = t458 <= t100
+    del t100, t458
+    t459 = _runtime.sign(-t456) * (v_1 * p_1_rear_elbow_down - v_2 * t455)
+    del t456
+    t460 = t102 - t459
+    del t102, t459
+    t461 = np.abs(t460)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t112, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t461 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t114, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t462 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t463 = _runtime.select(spent_alpha_rear_elbow_down, t462, 0.0)
+    del t462
+    t464 = -(_runtime.FEASIBILITY * (t76 + t463)) <= margin_alpha_rear_elbow_down
     del t463
-    t464 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    t465 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    del gain_1_alpha_rear_elbow_down
+    t466 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down
+    t467 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t465 / (t120 + t465 + t466), 0.0)
+    del t120, t465, t466
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t467, 0.0)
+    del t467
+    t468 = t122 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t122
+    t469 = t76 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t468 / (t113 + t469)), 0.0)
+    del t113, t468, t469
+    t470 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
+    t471 = t76 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    del t76
+    t472 = 1.0 / (t461 + t471)
+    del t461, t471
+    t473 = -(heavy_0_alpha_rear_elbow_down * t470 * t472)
+    del heavy_0_alpha_rear_elbow_down
+    t474 = -(t470 * t472)
+    del t470, t472
+    t475 = (t473 <= 9.094947017729282e-13) & (0.0 < t474)
+    del t473
+    t476 = _runtime.sign(-t460) * _runtime.select(t475, t474, 0.0)
+    del t460, t474, t475
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t476, 0.0)
+    del t476
+    t477 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
     del aside_alpha_rear_elbow_down
-    t465 = t464 - t103 * (drawn * turn_alpha_rear_elbow_down)
-    del t464
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t465, 0.0)
-    del t465
-    t466 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t467 = np.sqrt(1.0 + t466)
-    del t466
-    t468 = 1.0 / t467
-    t469 = p_1_rear_elbow_down * t468 - t442 * lean_alpha_rear_elbow_down * t468
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t469, p_1_rear_elbow_down)
-    del t469
+    t478 = t477 - t108 * (drawn * turn_alpha_rear_elbow_down)
+    del t477
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t478, 0.0)
+    del t478
+    t479 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t480 = np.sqrt(1.0 + t479)
+    del t479
+    t481 = 1.0 / t480
+    t482 = p_1_rear_elbow_down * t481 - t455 * lean_alpha_rear_elbow_down * t481
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t482, p_1_rear_elbow_down)
+    del t482
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t470 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t471 = 1.0 / (t467 * np.sqrt(1.0 + t470))
-    del t467, t470
-    t472 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t473 = t471 + t471 * t472
-    del t472
-    t474 = lean_alpha_rear_elbow_down * t471 - turn_alpha_rear_elbow_down * t471
-    del t471
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t473 + v_2 * t474, v_1)
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t475 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t476 = np.maximum(t475 * 9.094947017729282e-13, -t475)
-    spent_beta_rear_elbow_down = t476 <= t133
-    del t133, t476
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t473 - v_1 * t474, v_2)
-    del t473, t474, v_1, v_2
-    t477 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
-    del whole_beta_rear_elbow_down
-    t478 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t479 = _runtime.select(spent_alpha_rear_elbow_down, t468 * t478 + t442 * t468, t442)
-    del t442, t468, t478
-    t480 = t479 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    t481 = drawn * t477 - t137 * t480
-    del t137
-    t482 = np.abs(t481)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t107, 1.0)
-    del t107
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t482 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t477 + t480)
-    del t477, t480
-    t483 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t109, 1.0)
-    del t109
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t483 / heavy_1_beta_rear_elbow_down, 0.0)
-    t484 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t485 = _runtime.select(spent_beta_rear_elbow_down, t484, 0.0)
-    del t484
-    t486 = -(_runtime.FEASIBILITY * (t112 + t485)) <= -t475
+    t483 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t484 = 1.0 / (t480 * np.sqrt(1.0 + t483))
+    del t480, t483
+    t485 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t486 = t484 + t484 * t485
     del t485
-    t487 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    del gain_1_beta_rear_elbow_down
-    t488 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down
-    t489 = _runtime.select(-t475 < 0.0, t487 / (t145 + t487 + t488), 0.0)
-    del t145, t487, t488
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t489, 0.0)
-    del t489
-    lack_beta_rear_elbow_down = t475 * (1.0 - share_beta_rear_elbow_down)
-    t490 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t491 = t112 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t492 = 1.0 / (t482 + t491)
-    del t482, t491
-    t493 = lack_beta_rear_elbow_down * t492
-    del lack_beta_rear_elbow_down
-    t494 = (t490 * t492 <= 9.094947017729282e-13) & (0.0 < t493)
-    del t490, t492
-    t495 = _runtime.sign(-t481) * _runtime.select(t494, t493, 0.0)
-    del t481, t493, t494
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495, 0.0)
-    del t495
-    t496 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t497 = t112 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t112
-    t498 = t475 * share_beta_rear_elbow_down * t496 / (t483 + t497)
-    del share_beta_rear_elbow_down, t475, t483, t496, t497
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t498, 0.0)
+    t487 = lean_alpha_rear_elbow_down * t484 - turn_alpha_rear_elbow_down * t484
+    del t484
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t486 + v_2 * t487, v_1)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t488 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t489 = np.maximum(t488 * 9.094947017729282e-13, -t488)
+    spent_beta_rear_elbow_down = t489 <= t138
+    del t138, t489
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t486 - v_1 * t487, v_2)
+    del t486, t487, v_1, v_2
+    t490 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    t491 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t492 = _runtime.select(spent_alpha_rear_elbow_down, t481 * t491 + t455 * t481, t455)
+    del t455, t481, t491
+    t493 = t492 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    t494 = drawn * t490 - t142 * t493
+    del t142
+    t495 = np.abs(t494)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t112, 1.0)
+    del t112
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t490 + t493)
+    del t490, t493
+    t496 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t114, 1.0)
+    del t114
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496 / heavy_1_beta_rear_elbow_down, 0.0)
+    t497 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t498 = _runtime.select(spent_beta_rear_elbow_down, t497, 0.0)
+    del t497
+    t499 = -(_runtime.FEASIBILITY * (t117 + t498)) <= -t488
     del t498
-    t499 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
-    del aside_beta_rear_elbow_down
-    t500 = t499 - t103 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t103, t499
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t500, 0.0)
-    del t500
-    t501 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t502 = np.sqrt(1.0 + t501)
-    del t501
-    t503 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t504 = 1.0 / (t502 * np.sqrt(1.0 + t503))
-    del t503
-    t505 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t506 = t504 + t504 * t505
-    del t505
-    t507 = lean_beta_rear_elbow_down * t504 - turn_beta_rear_elbow_down * t504
-    del t504
-    t508 = v_1_alpha_rear_elbow_down * t506 + v_2_alpha_rear_elbow_down * t507
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t508, v_1_alpha_rear_elbow_down)
-    del t508
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t509 = 1.0 / t502
+    t500 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    del gain_1_beta_rear_elbow_down
+    t501 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down
+    t502 = _runtime.select(-t488 < 0.0, t500 / (t150 + t500 + t501), 0.0)
+    del t150, t500, t501
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t502, 0.0)
     del t502
-    t510 = p_1_alpha_rear_elbow_down * t509 - t479 * lean_beta_rear_elbow_down * t509
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t510, p_1_alpha_rear_elbow_down)
-    del t510
-    t511 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t512 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    lack_beta_rear_elbow_down = t488 * (1.0 - share_beta_rear_elbow_down)
+    t503 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t504 = t117 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t505 = 1.0 / (t495 + t504)
+    del t495, t504
+    t506 = lack_beta_rear_elbow_down * t505
+    del lack_beta_rear_elbow_down
+    t507 = (t503 * t505 <= 9.094947017729282e-13) & (0.0 < t506)
+    del t503, t505
+    t508 = _runtime.sign(-t494) * _runtime.select(t507, t506, 0.0)
+    del t494, t506, t507
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t508, 0.0)
+    del t508
+    t509 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t510 = t117 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t117
+    t511 = t488 * share_beta_rear_elbow_down * t509 / (t496 + t510)
+    del share_beta_rear_elbow_down, t488, t496, t509, t510
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t511, 0.0)
+    del t511
+    t512 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    del aside_beta_rear_elbow_down
+    t513 = t512 - t108 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t108, t512
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t513, 0.0)
+    del t513
+    t514 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t515 = np.sqrt(1.0 + t514)
+    del t514
+    t516 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t517 = 1.0 / (t515 * np.sqrt(1.0 + t516))
+    del t516
+    t518 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t519 = t517 + t517 * t518
+    del t518
+    t520 = lean_beta_rear_elbow_down * t517 - turn_beta_rear_elbow_down * t517
+    del t517
+    t521 = v_1_alpha_rear_elbow_down * t519 + v_2_alpha_rear_elbow_down * t520
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t521, v_1_alpha_rear_elbow_down)
+    del t521
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t522 = 1.0 / t515
+    del t515
+    t523 = p_1_alpha_rear_elbow_down * t522 - t492 * lean_beta_rear_elbow_down * t522
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t523, p_1_alpha_rear_elbow_down)
+    del t523
+    t524 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t525 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t513 = t69 & t451 & t486 & (t143 <= t511 - t512) & (t143 <= -(t512 + t511))
-    del t451, t486, t69
-    t514 = v_2_alpha_rear_elbow_down * t506 - v_1_alpha_rear_elbow_down * t507
-    del t506, t507, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t514, v_2_alpha_rear_elbow_down)
-    del t514, v_2_alpha_rear_elbow_down
-    t515 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t512 <= _runtime.VANISHING * (64.0 * t515)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t515, -t512)
-    t516 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t526 = t74 & t464 & t499 & (t148 <= t524 - t525) & (t148 <= -(t525 + t524))
+    del t464, t499, t74
+    t527 = v_2_alpha_rear_elbow_down * t519 - v_1_alpha_rear_elbow_down * t520
+    del t519, t520, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t527, v_2_alpha_rear_elbow_down)
+    del t527, v_2_alpha_rear_elbow_down
+    t528 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t525 <= _runtime.VANISHING * (64.0 * t528)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t528, -t525)
+    t529 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t517 = _runtime.select(spent_beta_rear_elbow_down, t509 * t516 + t479 * t509, t479)
-    del t479, t509, t516
-    t518 = t517 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t519 = _runtime.select(parallel_rear_elbow_down, t518, t511)
-    del t511, t518
-    t520 = whole_y_rear_elbow_down + t519
-    t521 = whole_y_rear_elbow_down - t519
-    below_beta_0_rear_elbow_down = np.maximum(t520, t168)
-    above_beta_0_rear_elbow_down = np.maximum(t521, t168)
-    t522 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t530 = _runtime.select(spent_beta_rear_elbow_down, t522 * t529 + t492 * t522, t492)
+    del t492, t522, t529
+    t531 = t530 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t532 = _runtime.select(parallel_rear_elbow_down, t531, t524)
+    del t524, t531
+    t533 = whole_y_rear_elbow_down + t532
+    t534 = whole_y_rear_elbow_down - t532
+    below_beta_0_rear_elbow_down = np.maximum(t533, t173)
+    above_beta_0_rear_elbow_down = np.maximum(t534, t173)
+    t535 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t523 = v_2_beta_rear_elbow_down * (t522 / total_beta_0_rear_elbow_down)
-    del t522, total_beta_0_rear_elbow_down
-    t524 = t517 - t523
-    del t523
-    left_along_rear_elbow_down = L1 - np.abs(t524)
-    t525 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t526 = np.maximum(-t525, left_along_rear_elbow_down)
-    del t525
-    spent_along_rear_elbow_down = t526 <= t172
-    del t172, t526
-    t527 = _runtime.select(spent_along_rear_elbow_down, t515 / (t173 - t512), 0.0)
-    del t173, t515
-    t528 = -(_runtime.FEASIBILITY * (play * (1.0 + t527)))
-    del play, t527
-    t529 = t513 & (t143 <= t520) & (t143 <= t521) & (t528 <= left_along_rear_elbow_down)
-    del t513, t520, t521, t528
-    t530 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t536 = v_2_beta_rear_elbow_down * (t535 / total_beta_0_rear_elbow_down)
+    del t535, total_beta_0_rear_elbow_down
+    t537 = t530 - t536
+    del t536
+    left_along_rear_elbow_down = L1 - np.abs(t537)
+    t538 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t539 = np.maximum(-t538, left_along_rear_elbow_down)
+    del t538
+    spent_along_rear_elbow_down = t539 <= t177
+    del t177, t539
+    t540 = _runtime.select(spent_along_rear_elbow_down, t528 / (t178 - t525), 0.0)
+    del t178, t528
+    t541 = -(_runtime.FEASIBILITY * (play * (1.0 + t540)))
+    del play, t540
+    t542 = t526 & (t148 <= t533) & (t148 <= t534) & (t541 <= left_along_rear_elbow_down)
+    del t526, t533, t534, t541
+    t543 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t531 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t532 = v_2_beta_rear_elbow_down * t530 / (t512 * t512 + t531)
-    del t512, t530, t531
-    t533 = whole_y_rear_elbow_down * (t532 * _runtime.sign(-t524))
-    del t524, t532
-    t534 = _runtime.select(spent_along_rear_elbow_down, t519 + t533, t519)
-    del t519, t533
-    t535 = whole_y_rear_elbow_down + t534
-    t536 = whole_y_rear_elbow_down - t534
-    del t534, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t535, t168)
-    above_beta_rear_elbow_down = np.maximum(t536, t168)
-    t537 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t544 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t545 = v_2_beta_rear_elbow_down * t543 / (t525 * t525 + t544)
+    del t525, t543, t544
+    t546 = whole_y_rear_elbow_down * (t545 * _runtime.sign(-t537))
+    del t537, t545
+    t547 = _runtime.select(spent_along_rear_elbow_down, t532 + t546, t532)
+    del t532, t546
+    t548 = whole_y_rear_elbow_down + t547
+    t549 = whole_y_rear_elbow_down - t547
+    del t547, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t548, t173)
+    above_beta_rear_elbow_down = np.maximum(t549, t173)
+    t550 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t538 = t537 / total_beta_rear_elbow_down
+    t551 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t539 = t517 - v_2_beta_rear_elbow_down * t538
-    del t517, v_2_beta_rear_elbow_down
-    t540 = L1 + t539
-    t541 = t529 & (t143 <= t535) & (t143 <= t536) & (t143 <= t540)
-    del t529, t535, t536
-    t542 = L1 - t539
-    unreachable_4 = np.logical_not(t541 & (t143 <= t542))
-    del t143, t541
-    t543 = _runtime.poison(invalid | unreachable_4)
-    t544 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t552 = t550 * t551
+    del t550
+    t553 = t530 - v_2_beta_rear_elbow_down * t552
+    del t530, v_2_beta_rear_elbow_down
+    t554 = L1 + t553
+    t555 = t542 & (t148 <= t548) & (t148 <= t549) & (t148 <= t554)
+    del t542, t548, t549
+    t556 = L1 - t553
+    unreachable_4 = np.logical_not(t555 & (t148 <= t556))
+    del t148, t555
+    t557 = _runtime.poison(invalid | unreachable_4)
+    t558 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t545 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t559 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t546 = _runtime.select(folded, 0.0, t544) + t545
-    del t544
-    below_alpha_rear_elbow_down = np.maximum(t540, t168)
-    del t540
-    above_alpha_rear_elbow_down = np.maximum(t542, t168)
-    del t168, t542
-    t547 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t548 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    t549 = np.arctan2(t547, 2.0 * np.sqrt(t548))
-    del t548
-    t550 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
-    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t551 = t550 + (t197 - t545)
-    del t197, t545, t550
-    t552 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
-    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t553 = t549 - np.arctan2(t537, 2.0 * np.sqrt(t552))
-    del t537, t552
-    t554 = (wrist <= al * _runtime.DETERMINED) | nowhere
-    del nowhere, wrist
-    t555 = t554 | folded | short
-    del folded, short, t554
-    t556 = spent_along | spent_alpha | spent_beta
-    del spent_along, spent_alpha, spent_beta
-    t557 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t558 = t557 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t557
-    t559 = t558 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    t560 = _runtime.select(folded, 0.0, t558) + t559
     del t558
-    t560 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
-    del t_phi, t_psi
-    t561 = t559 * t560
-    del t559, t560
-    t562 = t184 - L1 * (t192 / (below_alpha + above_alpha))
-    del above_alpha, below_alpha, t184, t192
-    t563 = np.abs(p_1_beta + v_1_beta * t183) + np.abs(t562)
-    del p_1_beta, t183, t562, v_1_beta
-    t564 = 1125899906842624.0 * _runtime.select(t556, t563, 0.0)
-    del t563
-    t565 = _runtime.select(t556, t561, 1.0) <= _runtime.DETERMINED * t564
-    del t556, t564
-    t566 = _runtime.status(invalid, unreachable, t555 | parallel | t565)
-    del parallel, t565, unreachable
-    t567 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t568 = t567 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t567
-    t569 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t313
-    del p_1_beta_front_elbow_down, t313, v_1_beta_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t570 = t314 - L1 * (t322 / total_alpha_front_elbow_down)
-    del t314, t322, total_alpha_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t568, np.abs(t569) + np.abs(t570), 0.0)
-    del t569, t570
-    t571 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
-    del missed_front_elbow_down
-    t572 = t555 | parallel_front_elbow_down | (_runtime.select(t568, t561, 1.0) <= t571)
-    del parallel_front_elbow_down, t568, t571
-    t573 = _runtime.status(invalid, unreachable_2, t572)
-    del t572, unreachable_2
-    t574 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t575 = t574 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t574
-    t576 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t426
-    del p_1_beta_rear_elbow_up, t426, v_1_beta_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t577 = t427 - L1 * (t435 / total_alpha_rear_elbow_up)
-    del t427, t435, total_alpha_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t575, np.abs(t576) + np.abs(t577), 0.0)
-    del t576, t577
-    t578 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
-    del missed_rear_elbow_up
-    t579 = t555 | parallel_rear_elbow_up | (_runtime.select(t575, t561, 1.0) <= t578)
-    del parallel_rear_elbow_up, t575, t578
-    t580 = _runtime.status(invalid, unreachable_3, t579)
-    del t579, unreachable_3
-    t581 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t582 = t581 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t581
-    t583 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t538
-    del p_1_beta_rear_elbow_down, t538, v_1_beta_rear_elbow_down
+    below_alpha_rear_elbow_down = np.maximum(t554, t173)
+    del t554
+    above_alpha_rear_elbow_down = np.maximum(t556, t173)
+    del t173, t556
+    t561 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t562 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t563 = t561 * t562
+    del t561
+    t564 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t584 = t539 - L1 * (t547 / total_alpha_rear_elbow_down)
-    del t539, t547, total_alpha_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t582, np.abs(t583) + np.abs(t584), 0.0)
-    del t583, t584
-    t585 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t565 = np.arctan2(t563, t562 * t564)
+    del t562, t564
+    t566 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
+    t567 = t566 + (t204 - t559)
+    del t204, t559, t566
+    t568 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
+    t569 = t565 - np.arctan2(t552, t551 * t568)
+    del t551, t568
+    t570 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    del nowhere, wrist
+    t571 = t570 | folded | short
+    del folded, short, t570
+    t572 = spent_along | spent_alpha | spent_beta
+    del spent_along, spent_alpha, spent_beta
+    t573 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t574 = t573 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t573
+    t575 = t574 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t574
+    t576 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    del t_phi, t_psi
+    t577 = t575 * t576
+    del t575, t576
+    t578 = np.abs(p_1_beta + v_1_beta * t188) + np.abs(t189 - L1 * t198)
+    del p_1_beta, t188, t189, t198, v_1_beta
+    t579 = 1125899906842624.0 * _runtime.select(t572, t578, 0.0)
+    del t578
+    t580 = _runtime.select(t572, t577, 1.0) <= _runtime.DETERMINED * t579
+    del t572, t579
+    t581 = _runtime.status(invalid, unreachable, t571 | parallel | t580)
+    del parallel, t580, unreachable
+    t582 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    del spent_along_front_elbow_down, spent_alpha_front_elbow_down
+    t583 = t582 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t582
+    t584 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t321
+    del p_1_beta_front_elbow_down, t321, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t583, np.abs(t584) + np.abs(t322 - L1 * t332), 0.0)
+    del t322, t332, t584
+    t585 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    del missed_front_elbow_down
+    t586 = t571 | parallel_front_elbow_down | (_runtime.select(t583, t577, 1.0) <= t585)
+    del parallel_front_elbow_down, t583, t585
+    t587 = _runtime.status(invalid, unreachable_2, t586)
+    del t586, unreachable_2
+    t588 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
+    t589 = t588 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t588
+    t590 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t437
+    del p_1_beta_rear_elbow_up, t437, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t589, np.abs(t590) + np.abs(t438 - L1 * t448), 0.0)
+    del t438, t448, t590
+    t591 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    del missed_rear_elbow_up
+    t592 = t571 | parallel_rear_elbow_up | (_runtime.select(t589, t577, 1.0) <= t591)
+    del parallel_rear_elbow_up, t589, t591
+    t593 = _runtime.status(invalid, unreachable_3, t592)
+    del t592, unreachable_3
+    t594 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
+    t595 = t594 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t594
+    t596 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t552
+    del p_1_beta_rear_elbow_down, t552, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t595, np.abs(t596) + np.abs(t553 - L1 * t563), 0.0)
+    del t553, t563, t596
+    t597 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t586 = t555 | parallel_rear_elbow_down | (_runtime.select(t582, t561, 1.0) <= t585)
-    del parallel_rear_elbow_down, t555, t561, t582, t585
-    t587 = _runtime.status(invalid, unreachable_4, t586)
-    del invalid, t586, unreachable_4
+    t598 = t571 | parallel_rear_elbow_down | (_runtime.select(t595, t577, 1.0) <= t597)
+    del parallel_rear_elbow_down, t571, t577, t595, t597
+    t599 = _runtime.status(invalid, unreachable_4, t598)
+    del invalid, t598, unreachable_4
     return (
-        t51 + t188,
-        _runtime.wrap(t191 - t193) + t188,
-        _runtime.wrap(t198 + t200) + t188,
-        _runtime.wrap(t191 + t193) + t188,
-        _runtime.wrap(t198 - t200) + t188,
-        t201 + t188,
-        t51 + t318,
-        _runtime.wrap(t321 - t324) + t318,
-        _runtime.wrap(t327 + t329) + t318,
-        _runtime.wrap(t321 + t324) + t318,
-        _runtime.wrap(t327 - t329) + t318,
-        t201 + t318,
-        t330 + t431,
-        _runtime.wrap(t434 - t437) + t431,
-        _runtime.wrap(t439 + t441) + t431,
-        _runtime.wrap(t434 + t437) + t431,
-        _runtime.wrap(t439 - t441) + t431,
-        t201 + t431,
-        t330 + t543,
-        _runtime.wrap(t546 - t549) + t543,
-        _runtime.wrap(t551 + t553) + t543,
-        _runtime.wrap(t546 + t549) + t543,
-        _runtime.wrap(t551 - t553) + t543,
-        t201 + t543,
-        t566,
-        t573,
-        t580,
+        t56 + t193,
+        _runtime.wrap(t196 - t200) + t193,
+        _runtime.wrap(t205 + t207) + t193,
+        _runtime.wrap(t196 + t200) + t193,
+        _runtime.wrap(t205 - t207) + t193,
+        t208 + t193,
+        t56 + t326,
+        _runtime.wrap(t329 - t334) + t326,
+        _runtime.wrap(t337 + t339) + t326,
+        _runtime.wrap(t329 + t334) + t326,
+        _runtime.wrap(t337 - t339) + t326,
+        t208 + t326,
+        t340 + t442,
+        _runtime.wrap(t445 - t450) + t442,
+        _runtime.wrap(t452 + t454) + t442,
+        _runtime.wrap(t445 + t450) + t442,
+        _runtime.wrap(t452 - t454) + t442,
+        t208 + t442,
+        t340 + t557,
+        _runtime.wrap(t560 - t565) + t557,
+        _runtime.wrap(t567 + t569) + t557,
+        _runtime.wrap(t560 + t565) + t557,
+        _runtime.wrap(t567 - t569) + t557,
+        t208 + t557,
+        t581,
         t587,
+        t593,
+        t599,
     )
 
 
@@ -2933,443 +2955,471 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t22
     t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t3)
     del t3
+    lengths = L1 + d1 + d + loff + lp + t2 + t19
+    del t19
     t_phi = s_phi / c_phi
     higher = d * t_phi
+    t25 = np.abs(t_phi * higher)
+    del t_phi
     t_psi = s_psi * t6
     del s_psi, t6
     ahead = d * t_psi
-    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
-    del t_phi, t_psi
-    lengths = L1 + d1 + d + loff + lp + t2 + t19
-    del t19, t2
-    slack = far_apart + lengths * 0.25
-    t25 = -(_runtime.FEASIBILITY * slack)
-    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t10)
-    del t10, t11, t23, t24, t25, t4
+    t26 = np.abs(t_psi * ahead)
+    del t_psi
+    t27 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t25 * 6.103515625e-05
+    t28 = al * (t2 + t25 + t26) / (t27 + t26 * 6.103515625e-05 + 512.0 * wrist)
+    del t2, t27
+    t29 = _runtime.select(wrist < al * 0.0009765625, t28, 0.0)
+    del t28
+    far_apart = t25 * 0.001953125 + t26 * 0.001953125 + t29
+    del t25, t26, t29
+    slack = lengths * 0.25 + far_apart
+    t30 = -(_runtime.FEASIBILITY * slack)
+    t31 = t24 & (t23 <= t4) & (t30 <= t11) & (t30 <= t10)
+    del t10, t11, t23, t24, t30, t4
     L_2W = L2 + c_psi * t7
     del c_psi, t7
     a_3W = a3 + c_phi * t1 + s_phi * t8
     del c_phi, s_phi, t1, t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = 2.0 * fore
-    t28 = _runtime.FEASIBILITY * ((L1 * 2.0 + t27) * slack)
-    t29 = L1 + fore
-    t30 = t29 * t29
-    t31 = z - d1
-    square = t31 * t31 + root * root
-    t32 = t30 - square
-    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t34 = L1 - fore
-    t35 = _runtime.FEASIBILITY * ((t33 + 2.0 * np.abs(t34)) * slack)
-    del t33
-    t36 = square - t34 * t34
-    del square
-    t37 = t26 & (-t28 <= t32) & (-t35 <= t36)
-    del t26, t28, t35
-    t38 = d * 0.25 + np.abs(higher) * 0.25 + far_apart + np.abs(ahead) * 0.25
-    del far_apart
-    play = t38 + lengths * 0.00048828125
+    t32 = 2.0 * fore
+    t33 = _runtime.FEASIBILITY * ((L1 * 2.0 + t32) * slack)
+    t34 = L1 + fore
+    t35 = t34 * t34
+    t36 = z - d1
+    square = t36 * t36 + root * root
+    t37 = t35 - square
+    t38 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t39 = L1 - fore
+    t40 = _runtime.FEASIBILITY * ((t38 + 2.0 * np.abs(t39)) * slack)
     del t38
+    t41 = square - t39 * t39
+    del square
+    t42 = t31 & (-t33 <= t37) & (-t40 <= t41)
+    del t31, t33, t40
+    t43 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
+    play = t43 + far_apart + lengths * 0.00048828125
+    del far_apart, t43
     play_alpha = np.sqrt(L2 * L2 + a3 * a3) * play
-    t39 = -(_runtime.FEASIBILITY * play_alpha)
-    t40 = 1.0 / fore
-    c_lag = a_3W * t40
-    M = np.maximum(t36, 0.0)
-    del t36
-    N = np.maximum(t32, 0.0)
-    del t32
-    t41 = 1.0 / (M + N)
-    t42 = M - N
-    c_bend = t41 * t42
-    t43 = c_lag * c_bend
-    s_lag = L_2W * t40
-    del t40
-    t44 = 2.0 * np.sqrt(M * N)
+    t44 = -(_runtime.FEASIBILITY * play_alpha)
+    t45 = 1.0 / fore
+    c_lag = a_3W * t45
+    M = np.maximum(t41, 0.0)
+    del t41
+    N = np.maximum(t37, 0.0)
+    del t37
+    t46 = 1.0 / (M + N)
+    t47 = M - N
+    c_bend = t46 * t47
+    t48 = c_lag * c_bend
+    s_lag = L_2W * t45
+    del t45
+    t49 = 2.0 * np.sqrt(M * N)
     del N
-    s_bend_front_elbow_down = t41 * t44
-    t45 = s_lag * s_bend_front_elbow_down
-    c_relative = t43 + t45
-    t46 = s_lag * c_bend
+    s_bend_front_elbow_down = t46 * t49
+    t50 = s_lag * s_bend_front_elbow_down
+    c_relative = t48 + t50
+    t51 = s_lag * c_bend
     del c_bend, s_lag
-    t47 = c_lag * s_bend_front_elbow_down
+    t52 = c_lag * s_bend_front_elbow_down
     del c_lag
-    s_relative = t46 - t47
+    s_relative = t51 - t52
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
-    t48 = np.abs(whole_alpha)
-    t49 = fore * s_bend_front_elbow_down
+    t53 = np.abs(whole_alpha)
+    t54 = fore * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    t50 = root * t49
-    ahead_1 = t34 + t27 * M * t41
-    del M, t27, t34, t41
-    t51 = t31 * ahead_1
-    up = t50 + t51
-    t52 = t31 * t49
-    del t49
-    t53 = root * ahead_1
-    del ahead_1
-    out_rear_elbow_up = t52 - t53
-    t54 = out_rear_elbow_up * out_rear_elbow_up + up * up
-    t55 = 1.0 / np.sqrt(t54)
+    t55 = root * t54
+    ahead_1 = t39 + t32 * M * t46
+    del M, t32, t39, t46
+    t56 = t36 * ahead_1
+    up = t55 + t56
+    t57 = t36 * t54
     del t54
-    stheta2A = up * t55
-    t56 = ahead * stheta2A
-    t57 = out_rear_elbow_up * t55
-    del t55
-    t58 = higher * t57
-    t59 = t56 + t58
+    t58 = root * ahead_1
+    del ahead_1
+    out_rear_elbow_up = t57 - t58
+    t59 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t60 = 1.0 / np.sqrt(t59)
+    del t59
+    stheta2A = up * t60
+    t61 = ahead * stheta2A
+    t62 = out_rear_elbow_up * t60
+    del t60
+    t63 = higher * t62
+    t64 = t61 + t63
     v_2 = L2 * s_relative + a3 * c_relative
     del c_relative, s_relative
-    t60 = ahead * t57
-    del t57
-    t61 = higher * stheta2A
+    t65 = ahead * t62
+    del t62
+    t66 = higher * stheta2A
     del stheta2A
-    t62 = t60 - t61
-    margin_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
+    t67 = t65 - t66
+    margin_alpha = t53 - np.abs(v_1 * t64 - v_2 * t67)
     play_beta = L1 * play
-    t63 = -(_runtime.FEASIBILITY * play_beta)
-    margin_beta = t48 - np.abs(-(L1 * t62))
-    t64 = t37 & (t39 <= margin_alpha) & (t63 <= margin_beta)
-    t65 = -(_runtime.FEASIBILITY * play)
+    t68 = -(_runtime.FEASIBILITY * play_beta)
+    margin_beta = t53 - np.abs(-(L1 * t67))
+    t69 = t42 & (t44 <= margin_alpha) & (t68 <= margin_beta)
+    t70 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t66 = v_1 * sigma_uv
-    p_across_u = sigma_uv * t62
-    del t62
-    t67 = -(t66 + p_across_u)
-    t68 = t65 <= t67
-    t69 = p_across_u - t66
-    del p_across_u
-    t70 = t65 <= t69
-    t71 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t67, t71)
+    t71 = v_1 * sigma_uv
+    p_across_u = sigma_uv * t67
     del t67
-    above_beta_0 = np.maximum(t69, t71)
-    del t69
-    t72 = below_beta_0 - above_beta_0
-    t73 = t59 - v_2 * (t72 / (below_beta_0 + above_beta_0))
-    del t59
-    left_along = L1 - np.abs(t73)
-    t74 = t64 & t68 & t70 & t68 & t70 & (t65 <= left_along)
+    t72 = -(t71 + p_across_u)
+    t73 = t70 <= t72
+    t74 = p_across_u - t71
+    del p_across_u
+    t75 = t70 <= t74
+    t76 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t72, t76)
+    del t72
+    above_beta_0 = np.maximum(t74, t76)
+    del t74
+    t77 = 1.0 / (below_beta_0 + above_beta_0)
+    t78 = (below_beta_0 - above_beta_0) * t77
+    t79 = t64 - v_2 * t78
     del t64
-    t75 = L1 + t73
-    t76 = L1 - t73
-    del t73
-    t77 = t74 & t68 & t70 & (t65 <= t75) & (t65 <= t76)
-    del t68, t70, t74
-    unreachable = np.logical_not(t77)
-    del t77
-    t78 = _runtime.poison(invalid | unreachable)
-    t79 = np.arctan2(0.0, 1.0)
-    t80 = t79 + t79
+    left_along = L1 - np.abs(t79)
+    t80 = t69 & t73 & t75 & t73 & t75 & (t70 <= left_along)
+    del t69
+    t81 = L1 + t79
+    t82 = L1 - t79
     del t79
-    t81 = t80 + np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t75, t71)
-    del t75
-    above_alpha = np.maximum(t76, t71)
-    del t76
-    t82 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
-    del above_alpha, below_alpha
-    t83 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
-    del above_beta_0, below_beta_0, t72
-    t84 = t82 - t83
+    t83 = t80 & t73 & t75 & (t70 <= t81) & (t70 <= t82)
+    del t73, t75, t80
+    unreachable = np.logical_not(t83)
     del t83
-    t85 = np.arctan2(t44, t42)
-    del t42, t44
-    t86 = np.arctan2(L_2W, a_3W)
+    t84 = _runtime.poison(invalid | unreachable)
+    t85 = np.arctan2(0.0, 1.0)
+    t86 = t85 + t85
+    del t85
+    t87 = t86 + np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t81, t76)
+    del t81
+    above_alpha = np.maximum(t82, t76)
+    del t82
+    t88 = 1.0 / (below_alpha + above_alpha)
+    t89 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t90 = np.arctan2((below_alpha - above_alpha) * t88, t88 * t89)
+    del above_alpha, below_alpha, t88, t89
+    t91 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
+    del above_beta_0, below_beta_0
+    t92 = t90 - np.arctan2(t78, t77 * t91)
+    del t77, t78, t91
+    t93 = np.arctan2(t49, t47)
+    del t47, t49
+    t94 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t87 = t85 - t86
-    t88 = _runtime.wrap(principal_pitch)
+    t95 = t93 - t94
+    t96 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    c_relative_front_elbow_down = t43 - t45
-    del t43, t45
-    s_relative_front_elbow_down = t46 + t47
-    del t46, t47
+    c_relative_front_elbow_down = t48 - t50
+    del t48, t50
+    s_relative_front_elbow_down = t51 + t52
+    del t51, t52
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t89 = np.abs(whole_alpha_front_elbow_down)
+    t97 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    out_front_elbow_down = t52 + t53
-    del t52, t53
-    t90 = t50 - t51
-    del t50, t51
-    t91 = out_front_elbow_down * out_front_elbow_down + t90 * t90
-    t92 = 1.0 / np.sqrt(t91)
-    del t91
-    ctheta2A_front_elbow_down = out_front_elbow_down * t92
-    t93 = ahead * ctheta2A_front_elbow_down
-    t94 = t90 * t92
-    del t92
-    t95 = higher * t94
-    p_1_front_elbow_down = t93 - t95
-    t96 = ahead * t94
-    del ahead, t94
-    t97 = higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down, higher
-    t98 = t96 + t97
-    t99 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t98
-    margin_alpha_front_elbow_down = t89 - np.abs(t99)
+    out_front_elbow_down = t57 + t58
+    del t57, t58
+    t98 = t55 - t56
+    del t55, t56
+    t99 = out_front_elbow_down * out_front_elbow_down + t98 * t98
+    t100 = 1.0 / np.sqrt(t99)
     del t99
-    margin_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
-    t100 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
+    ctheta2A_front_elbow_down = out_front_elbow_down * t100
+    t101 = ahead * ctheta2A_front_elbow_down
+    t102 = t98 * t100
+    del t100
+    t103 = higher * t102
+    p_1_front_elbow_down = t101 - t103
+    t104 = ahead * t102
+    del ahead, t102
+    t105 = higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, higher
+    t106 = t104 + t105
+    t107 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t106
+    margin_alpha_front_elbow_down = t97 - np.abs(t107)
+    del t107
+    margin_beta_front_elbow_down = t97 - np.abs(L1 * p_1_front_elbow_down)
+    t108 = t42 & (t44 <= margin_alpha_front_elbow_down) & (t68 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t101 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t109 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t102 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t103 = t101 - t102
-    t104 = t65 <= t103
-    t105 = -(t102 + t101)
-    del t101
-    t106 = t65 <= t105
-    below_beta_0_front_elbow_down = np.maximum(t103, t71)
-    del t103
-    above_beta_0_front_elbow_down = np.maximum(t105, t71)
-    del t105
-    t107 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
-    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t108 = v_2_front_elbow_down * (t107 / total_beta_0_front_elbow_down)
-    del total_beta_0_front_elbow_down
-    along_u_front_elbow_down = t98 + t108
-    del t108, t98
-    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t109 = t100 & t104 & t106 & t104 & t106 & (t65 <= left_along_front_elbow_down)
-    del t100
-    t110 = L1 - along_u_front_elbow_down
-    t111 = L1 + along_u_front_elbow_down
-    del along_u_front_elbow_down
-    t112 = t109 & t104 & t106 & (t65 <= t110) & (t65 <= t111)
-    del t104, t106, t109
-    unreachable_2 = np.logical_not(t112)
-    del t112
-    t113 = _runtime.poison(invalid | unreachable_2)
-    t114 = t80 + np.arctan2(-t90, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t110, t71)
-    del t110
-    above_alpha_front_elbow_down = np.maximum(t111, t71)
+    t110 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t111 = t109 - t110
+    t112 = t70 <= t111
+    t113 = -(t110 + t109)
+    del t109
+    t114 = t70 <= t113
+    below_beta_0_front_elbow_down = np.maximum(t111, t76)
     del t111
-    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t116 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    above_beta_0_front_elbow_down = np.maximum(t113, t76)
+    del t113
+    t115 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    t116 = 1.0 / total_beta_0_front_elbow_down
+    del total_beta_0_front_elbow_down
+    t117 = t115 * t116
+    del t115
+    along_u_front_elbow_down = t106 + v_2_front_elbow_down * t117
+    del t106
+    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
+    t118 = t108 & t112 & t114 & t112 & t114 & (t70 <= left_along_front_elbow_down)
+    del t108
+    t119 = L1 - along_u_front_elbow_down
+    t120 = L1 + along_u_front_elbow_down
+    del along_u_front_elbow_down
+    t121 = t118 & t112 & t114 & (t70 <= t119) & (t70 <= t120)
+    del t112, t114, t118
+    unreachable_2 = np.logical_not(t121)
+    del t121
+    t122 = _runtime.poison(invalid | unreachable_2)
+    t123 = t86 + np.arctan2(-t98, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t119, t76)
+    del t119
+    above_alpha_front_elbow_down = np.maximum(t120, t76)
+    del t120
+    t124 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t125 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t126 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t117 = np.arctan2(t115, 2.0 * np.sqrt(t116))
-    del t115, t116
-    t118 = t85 + t86
-    del t85, t86
-    t119 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    t127 = np.arctan2(t124 * t125, t125 * t126)
+    del t124, t125, t126
+    t128 = t93 + t94
+    del t93, t94
+    t129 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t120 = t117 - np.arctan2(t107, 2.0 * np.sqrt(t119))
-    del t107, t119
-    t121 = _runtime.wrap(-(t13 + t12))
+    t130 = t127 - np.arctan2(t117, t116 * t129)
+    del t116, t117, t129
+    t131 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t122 = t60 + t61
-    del t60, t61
-    t123 = t56 - t58
-    del t56, t58
-    t124 = v_2_front_elbow_down * t122 + v_1_front_elbow_down * t123
+    t132 = t65 + t66
+    del t65, t66
+    t133 = t61 - t63
+    del t61, t63
+    t134 = v_2_front_elbow_down * t132 + v_1_front_elbow_down * t133
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t89 - np.abs(t124)
-    del t124
-    margin_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
-    del t89
-    t125 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
-    t126 = sigma_uv_front_elbow_down * t122
-    del sigma_uv_front_elbow_down, t122
-    t127 = t126 - t102
-    t128 = t65 <= t127
-    t129 = -(t102 + t126)
-    del t126
-    t130 = t65 <= t129
-    below_beta_0_rear_elbow_up = np.maximum(t127, t71)
-    del t127
-    above_beta_0_rear_elbow_up = np.maximum(t129, t71)
-    del t129
-    t131 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
-    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t132 = v_2_front_elbow_down * (t131 / total_beta_0_rear_elbow_up)
-    del total_beta_0_rear_elbow_up
-    t133 = t123 - t132
-    del t123, t132
-    left_along_rear_elbow_up = L1 - np.abs(t133)
-    t134 = t125 & t128 & t130 & t128 & t130 & (t65 <= left_along_rear_elbow_up)
-    del t125
-    t135 = L1 + t133
-    t136 = L1 - t133
-    del t133
-    t137 = t134 & t128 & t130 & (t65 <= t135) & (t65 <= t136)
-    del t128, t130, t134
-    unreachable_3 = np.logical_not(t137)
-    del t137
-    t138 = _runtime.poison(invalid | unreachable_3)
-    t139 = t80 + np.arctan2(up, out_rear_elbow_up)
-    del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t135, t71)
-    del t135
-    above_alpha_rear_elbow_up = np.maximum(t136, t71)
+    margin_alpha_rear_elbow_up = t97 - np.abs(t134)
+    del t134
+    margin_beta_rear_elbow_up = t97 - np.abs(L1 * t132)
+    del t97
+    t135 = t42 & (t44 <= margin_alpha_rear_elbow_up) & (t68 <= margin_beta_rear_elbow_up)
+    t136 = sigma_uv_front_elbow_down * t132
+    del sigma_uv_front_elbow_down, t132
+    t137 = t136 - t110
+    t138 = t70 <= t137
+    t139 = -(t110 + t136)
     del t136
-    t140 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t141 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t142 = np.arctan2(t140, 2.0 * np.sqrt(t141))
-    del t140, t141
-    t143 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
-    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t144 = t142 - np.arctan2(t131, 2.0 * np.sqrt(t143))
-    del t131, t143
-    t145 = t93 + t95
-    del t93, t95
-    t146 = t96 - t97
-    del t96, t97
-    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
-    del v_1
-    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
-    del t48
-    t147 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
-    del t37, t39, t63
-    p_across_u_rear_elbow_down = sigma_uv * t145
-    del sigma_uv, t145
-    t148 = -(t66 + p_across_u_rear_elbow_down)
-    t149 = t65 <= t148
-    t150 = p_across_u_rear_elbow_down - t66
-    del p_across_u_rear_elbow_down
-    t151 = t65 <= t150
-    below_beta_0_rear_elbow_down = np.maximum(t148, t71)
+    t140 = t70 <= t139
+    below_beta_0_rear_elbow_up = np.maximum(t137, t76)
+    del t137
+    above_beta_0_rear_elbow_up = np.maximum(t139, t76)
+    del t139
+    t141 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t142 = 1.0 / total_beta_0_rear_elbow_up
+    del total_beta_0_rear_elbow_up
+    t143 = t141 * t142
+    del t141
+    t144 = t133 - v_2_front_elbow_down * t143
+    del t133
+    left_along_rear_elbow_up = L1 - np.abs(t144)
+    t145 = t135 & t138 & t140 & t138 & t140 & (t70 <= left_along_rear_elbow_up)
+    del t135
+    t146 = L1 + t144
+    t147 = L1 - t144
+    del t144
+    t148 = t145 & t138 & t140 & (t70 <= t146) & (t70 <= t147)
+    del t138, t140, t145
+    unreachable_3 = np.logical_not(t148)
     del t148
-    above_beta_0_rear_elbow_down = np.maximum(t150, t71)
-    del t150
-    t152 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
-    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    along_u_rear_elbow_down = t146 + v_2 * (t152 / total_beta_0_rear_elbow_down)
-    del t146, total_beta_0_rear_elbow_down
-    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t153 = t147 & t149 & t151 & t149 & t151 & (t65 <= left_along_rear_elbow_down)
+    t149 = _runtime.poison(invalid | unreachable_3)
+    t150 = t86 + np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t146, t76)
+    del t146
+    above_alpha_rear_elbow_up = np.maximum(t147, t76)
     del t147
-    t154 = L1 - along_u_rear_elbow_down
-    t155 = L1 + along_u_rear_elbow_down
+    t151 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t152 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t153 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t154 = np.arctan2(t151 * t152, t152 * t153)
+    del t151, t152, t153
+    t155 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
+    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
+    t156 = t154 - np.arctan2(t143, t142 * t155)
+    del t142, t143, t155
+    t157 = t101 + t103
+    del t101, t103
+    t158 = t104 - t105
+    del t104, t105
+    margin_alpha_rear_elbow_down = t53 - np.abs(-(v_2 * t157 + v_1 * t158))
+    del v_1
+    margin_beta_rear_elbow_down = t53 - np.abs(-(L1 * t157))
+    del t53
+    t159 = t42 & (t44 <= margin_alpha_rear_elbow_down) & (t68 <= margin_beta_rear_elbow_down)
+    del t42, t44, t68
+    p_across_u_rear_elbow_down = sigma_uv * t157
+    del sigma_uv, t157
+    t160 = -(t71 + p_across_u_rear_elbow_down)
+    t161 = t70 <= t160
+    t162 = p_across_u_rear_elbow_down - t71
+    del p_across_u_rear_elbow_down
+    t163 = t70 <= t162
+    below_beta_0_rear_elbow_down = np.maximum(t160, t76)
+    del t160
+    above_beta_0_rear_elbow_down = np.maximum(t162, t76)
+    del t162
+    t164 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
+    t165 = 1.0 / total_beta_0_rear_elbow_down
+    del total_beta_0_rear_elbow_down
+    t166 = t164 * t165
+    del t164
+    along_u_rear_elbow_down = t158 + v_2 * t166
+    del t158
+    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
+    t167 = t159 & t161 & t163 & t161 & t163 & (t70 <= left_along_rear_elbow_down)
+    del t159
+    t168 = L1 - along_u_rear_elbow_down
+    t169 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t156 = t153 & t149 & t151 & (t65 <= t154) & (t65 <= t155)
-    del t149, t151, t153, t65
-    unreachable_4 = np.logical_not(t156)
-    del t156
-    t157 = _runtime.poison(invalid | unreachable_4)
-    t158 = t80 + np.arctan2(-t90, -out_front_elbow_down)
-    del out_front_elbow_down, t80, t90
-    below_alpha_rear_elbow_down = np.maximum(t154, t71)
-    del t154
-    above_alpha_rear_elbow_down = np.maximum(t155, t71)
-    del t155, t71
-    t159 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t160 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t161 = np.arctan2(t159, 2.0 * np.sqrt(t160))
-    del t159, t160
-    t162 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
-    del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t163 = t161 - np.arctan2(t152, 2.0 * np.sqrt(t162))
-    del t152, t162
-    t164 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
-    del wrist
-    t165 = _runtime.status(invalid, unreachable_2, t164)
-    del unreachable_2
-    t166 = _runtime.status(invalid, unreachable_3, t164)
-    del unreachable_3
-    t167 = _runtime.status(invalid, unreachable_4, t164)
-    del unreachable_4
-    t168 = h * slack
-    del slack
-    tangent = 4.0 * root * t29 - t168 * 0.00390625 <= _runtime.VANISHING * t168
+    t170 = t167 & t161 & t163 & (t70 <= t168) & (t70 <= t169)
+    del t161, t163, t167, t70
+    unreachable_4 = np.logical_not(t170)
+    del t170
+    t171 = _runtime.poison(invalid | unreachable_4)
+    t172 = t86 + np.arctan2(-t98, -out_front_elbow_down)
+    del out_front_elbow_down, t86, t98
+    below_alpha_rear_elbow_down = np.maximum(t168, t76)
     del t168
-    t169 = tangent | (h <= _runtime.VANISHING * lengths)
+    above_alpha_rear_elbow_down = np.maximum(t169, t76)
+    del t169, t76
+    t173 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t174 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
+    t176 = np.arctan2(t173 * t174, t174 * t175)
+    del t173, t174, t175
+    t177 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
+    del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
+    t178 = t176 - np.arctan2(t166, t165 * t177)
+    del t165, t166, t177
+    t179 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
+    del wrist
+    t180 = _runtime.status(invalid, unreachable_2, t179)
+    del unreachable_2
+    t181 = _runtime.status(invalid, unreachable_3, t179)
+    del unreachable_3
+    t182 = _runtime.status(invalid, unreachable_4, t179)
+    del unreachable_4
+    t183 = h * slack
+    del slack
+    tangent = 4.0 * root * t34 - t183 * 0.00390625 <= _runtime.VANISHING * t183
+    del t183
+    t184 = tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, tangent
-    t170 = t169 | (L1 * fore <= _runtime.VANISHING * t30)
-    del t169, t30
-    t171 = _runtime.VANISHING * t29
-    del t29
-    t172 = t170 | (np.abs(t31) + np.abs(root) <= t171) | (fore <= t171)
-    del fore, root, t170, t171, t31
-    t173 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    t185 = t184 | (L1 * fore <= _runtime.VANISHING * t35)
+    del t184, t35
+    t186 = _runtime.VANISHING * t34
+    del t34
+    t187 = t185 | (np.abs(t36) + np.abs(root) <= t186) | (fore <= t186)
+    del fore, root, t185, t186, t36
+    t188 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t174 = _runtime.VANISHING * play_alpha
+    t189 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t175 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t190 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t176 = _runtime.VANISHING * play_beta
+    t191 = _runtime.VANISHING * play_beta
     del play_beta
-    parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t66, v_2
-    t177 = t172 | (t173 <= t174) | (t175 <= t176) | parallel
-    del parallel, t172, t173, t175
-    t178 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    parallel = -t71 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t71, v_2
+    t192 = t187 | (t188 <= t189) | (t190 <= t191) | parallel
+    del parallel, t187, t188, t190
+    t193 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t179 = _runtime.VANISHING * play
+    t194 = _runtime.VANISHING * play
     del play
-    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t180
-    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t182
-    t184 = t177 | (t178 <= t179) | (t181 <= t174) | (t183 <= t176)
-    del t177, t178, t181, t183
-    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t195 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t196 = np.maximum(-t195, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t195
+    t197 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t198 = np.maximum(-t197, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t197
+    t199 = t192 | (t193 <= t194) | (t196 <= t189) | (t198 <= t191)
+    del t192, t193, t196, t198
+    t200 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t186 = left_along_front_elbow_down * 9.094947017729282e-13
-    t187 = np.maximum(-t186, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t186
-    t188 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t189 = np.maximum(-t188, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t188
-    t190 = t184 | (-t102 <= t185) | (t187 <= t179) | (t189 <= t174)
-    del t102, t184, t185, t187, t189
-    t191 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t191, margin_beta_rear_elbow_up) <= t176
-    del margin_beta_rear_elbow_up, t191
-    t192 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t192, left_along_rear_elbow_up) <= t179
-    del left_along_rear_elbow_up, t192
-    t193 = t190 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t190
-    t194 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t195 = np.maximum(-t194, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t194
-    t196 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t197 = np.maximum(-t196, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t196
-    t198 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t199 = np.maximum(-t198, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t198
-    t200 = t193 | (t195 <= t174) | (t197 <= t176) | (t199 <= t179)
-    del t174, t176, t179, t193, t195, t197, t199
+    t201 = left_along_front_elbow_down * 9.094947017729282e-13
+    t202 = np.maximum(-t201, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t201
+    t203 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t204 = np.maximum(-t203, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t203
+    t205 = t199 | (-t110 <= t200) | (t202 <= t194) | (t204 <= t189)
+    del t110, t199, t200, t202, t204
+    t206 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t206, margin_beta_rear_elbow_up) <= t191
+    del margin_beta_rear_elbow_up, t206
+    t207 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t207, left_along_rear_elbow_up) <= t194
+    del left_along_rear_elbow_up, t207
+    t208 = t205 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t205
+    t209 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t210 = np.maximum(-t209, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t209
+    t211 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t212 = np.maximum(-t211, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t211
+    t213 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t214 = np.maximum(-t213, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t213
+    t215 = t208 | (t210 <= t189) | (t212 <= t191) | (t214 <= t194)
+    del t189, t191, t194, t208, t210, t212, t214
     return (
-        t14 + t78,
-        _runtime.wrap(t81 - t82) + t78,
-        _runtime.wrap(t84 - t87) + t78,
-        _runtime.wrap(t81 + t82) + t78,
-        _runtime.wrap(-(t87 + t84)) + t78,
-        t88 + t78,
-        t14 + t113,
-        _runtime.wrap(t114 - t117) + t113,
-        _runtime.wrap(t118 + t120) + t113,
-        _runtime.wrap(t114 + t117) + t113,
-        _runtime.wrap(t118 - t120) + t113,
-        t88 + t113,
-        t121 + t138,
-        _runtime.wrap(t139 - t142) + t138,
-        _runtime.wrap(t118 + t144) + t138,
-        _runtime.wrap(t139 + t142) + t138,
-        _runtime.wrap(t118 - t144) + t138,
-        t88 + t138,
-        t121 + t157,
-        _runtime.wrap(t158 - t161) + t157,
-        _runtime.wrap(t163 - t87) + t157,
-        _runtime.wrap(t158 + t161) + t157,
-        _runtime.wrap(-(t87 + t163)) + t157,
-        t88 + t157,
-        _runtime.status(invalid, unreachable, t164),
-        t165,
-        t166,
-        t167,
-        t200,
+        t14 + t84,
+        _runtime.wrap(t87 - t90) + t84,
+        _runtime.wrap(t92 - t95) + t84,
+        _runtime.wrap(t87 + t90) + t84,
+        _runtime.wrap(-(t95 + t92)) + t84,
+        t96 + t84,
+        t14 + t122,
+        _runtime.wrap(t123 - t127) + t122,
+        _runtime.wrap(t128 + t130) + t122,
+        _runtime.wrap(t123 + t127) + t122,
+        _runtime.wrap(t128 - t130) + t122,
+        t96 + t122,
+        t131 + t149,
+        _runtime.wrap(t150 - t154) + t149,
+        _runtime.wrap(t128 + t156) + t149,
+        _runtime.wrap(t150 + t154) + t149,
+        _runtime.wrap(t128 - t156) + t149,
+        t96 + t149,
+        t131 + t171,
+        _runtime.wrap(t172 - t176) + t171,
+        _runtime.wrap(t178 - t95) + t171,
+        _runtime.wrap(t172 + t176) + t171,
+        _runtime.wrap(-(t95 + t178)) + t171,
+        t96 + t171,
+        _runtime.status(invalid, unreachable, t179),
+        t180,
+        t181,
+        t182,
+        t215,
     )
 
 

@@ -513,7 +513,9 @@ def test_the_commands_of_the_guide_run(
 def test_the_readme_lists_every_mechanism_with_its_picture() -> None:
     text = README.read_text("utf-8")
     for source in pipeline.sources():
-        assert f"| ![{source.name}](docs/figures/{source.name}.svg) | `{source.name}` |" in text
+        name = source.name
+        row = f"| ![{name}](docs/figures/{name}.svg) | [`{name}`](derivations/{name}.py) |"
+        assert row in text
 
 
 def test_the_commands_for_figures_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

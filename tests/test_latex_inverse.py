@@ -204,6 +204,20 @@ def test_terms_and_factors_stand_as_a_person_writes_them(value: sp.Expr, latex: 
     assert Printer({t1, t2, t3}).math(value) == latex
 
 
+def test_a_symbol_that_gets_another_name_is_printed_by_it():
+    a, b = sp.symbols("a b", real=True)
+    flag = sp.Symbol("is_straight")
+    value, cases = sp.sqrt(a) + sp.cos(a * b), sp.Piecewise((a, flag), (b, True))
+    printer = Printer(set())
+    assert printer.math(value) == r"\sqrt{a} + \cos (a b)"
+    assert "is straight" in printer.math(cases)
+    printer.rename({a: "w", flag: "f"})
+    assert printer.math(value) == r"\sqrt{w} + \cos (b w)"
+    assert "$f$" in printer.math(cases)
+    printer.rename({a: "v"})
+    assert printer.math(value) == r"\sqrt{v} + \cos (b v)"
+
+
 def test_large_powers_of_two_and_ten() -> None:
     assert integer(2**40) == "2^{40}" and integer(10**9) == "10^{9}" and integer(4095) == "4095"
 

@@ -8,7 +8,7 @@ a name.  A language is a subclass with one method per operator of
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -137,7 +137,7 @@ class Printer:
             self.text[node.id] = text
         return [[self.text[n.id].code for n in r.nodes] for r in self.lowered.results]
 
-    def schedule(self) -> list[Node]:
+    def schedule(self) -> Sequence[Node]:
         """The order in which nodes are printed, operands before operators."""
         return self.lowered.schedule()
 

@@ -298,7 +298,8 @@ def _units(derivation: Derivation) -> dict[str, str]:
         values = [e for a in function.outputs for e in a.entries]
         for statement in function.body:
             values += [getattr(statement, "value", sp.S.Zero), *getattr(statement, "values", ())]
-        angles |= {str(s) for e in values for s in _in_circular_functions(e) if s in given}
+        turned = frozenset[sp.Symbol]().union(*map(_in_circular_functions, values))
+        angles |= {str(s) for s in turned & given}
         angles |= {str(s) for e in _revolute(derivation, function) for s in e.free_symbols & given}
     for inverse in derivation.inverses:
         solver = derivation[inverse.function]

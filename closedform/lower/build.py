@@ -9,7 +9,7 @@ which for a joint that has turned a million times is far more than an ulp of the
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import reduce
+from functools import cache, reduce
 
 import sympy as sp
 
@@ -60,7 +60,7 @@ class Builder:
             return self.graph.const(expr)
         match expr:
             case sp.Add():
-                return self.graph.sum(self(t) for t in expr.as_ordered_terms())
+                return self.graph.sum(map(self, _ordered_terms(expr)))
             case sp.Mul():
                 return self._product(expr)
             case sp.Pow():
@@ -119,7 +119,7 @@ class Builder:
 
     def _product(self, expr: sp.Mul) -> Node:
         numerator, denominator = [], []
-        for factor in expr.as_ordered_factors():
+        for factor in _ordered_factors(expr):
             base, exponent = factor.as_base_exp()
             if exponent.is_Rational and exponent.is_negative and not base.is_number:
                 denominator.append(self(sp.Pow(base, -exponent)))
@@ -170,7 +170,7 @@ class Builder:
     def _sine_cosine(self, angle: sp.Expr) -> tuple[Node, Node]:
         graph = self.graph
         if isinstance(angle, sp.Add):
-            first, *rest = angle.as_ordered_terms()
+            first, *rest = _ordered_terms(angle)
             s1, c1 = self._sine_cosine(first)
             s2, c2 = self._sine_cosine(sp.Add(*rest))
             sine = graph.sum([graph.product([s1, c2]), graph.product([c1, s2])])
@@ -202,11 +202,22 @@ class Builder:
 
     def _suggest_names(self, angle: sp.Add, sine: Node, cosine: Node) -> None:
         """Suggest ``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
-        terms = [str(t) for t in angle.as_ordered_terms()]
+        terms = list(map(str, _ordered_terms(angle)))
         if all(t.startswith("theta") and t.isalnum() for t in terms):
             label = "".join(t.removeprefix("theta") for t in terms)
             self.names.setdefault(sine.id, f"s{label}")
             self.names.setdefault(cosine.id, f"c{label}")
+
+
+# Each branch of a function translates the same expressions.
+@cache
+def _ordered_terms(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    return tuple(expr.as_ordered_terms())
+
+
+@cache
+def _ordered_factors(expr: sp.Mul) -> tuple[sp.Expr, ...]:
+    return tuple(expr.as_ordered_factors())
 
 
 def angle_divisors(expressions: Iterable[sp.Basic]) -> dict[sp.Basic, int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import islice
 
 import sympy as sp
@@ -71,9 +71,13 @@ class Lowered:
     def roots(self) -> list[Node]:
         return [n for r in self.results for n in r.nodes]
 
-    def schedule(self) -> list[Node]:
+    def schedule(self) -> tuple[Node, ...]:
         """All nodes of the body, operands before operators."""
-        return list(reachable(self.roots))
+        return self._schedule
+
+    @cached_property
+    def _schedule(self) -> tuple[Node, ...]:
+        return tuple(reachable(self.roots))
 
     def used_inputs(self, *, below_angles: bool = True) -> frozenset[str]:
         """The inputs and parameters that are read; without ``below_angles``, only by the body."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations, groupby
 from typing import Any
 
@@ -106,12 +107,12 @@ class Algorithm:
             self.printed |= self.model.printed
         unneeded = self.letters.keys() & self.values.keys() - self.needed
         self.names |= {s: self.letters[s] for s in unneeded}
-        self.page.printer.names |= self.names
+        self.page.printer.rename(self.names)
         self.means = {**self.means, **self._pairs()}
         for symbol in self.values:
             if symbol in self.needed and symbol not in self.printed and symbol not in self.known:
                 self._name(symbol)
-        self.page.printer.names |= self.names
+        self.page.printer.rename(self.names)
 
     # What is needed, and its names
 
@@ -188,7 +189,7 @@ class Algorithm:
             self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
         elif shown := program_name(symbol, value) or self._shortened(symbol):
             self.names[symbol] = shown
-        self.page.printer.names |= self.names
+        self.page.printer.rename(self.names)
 
     def _free_letter(self, symbol: sp.Symbol) -> str:
         """The letter of the lemma for a name, unless something else is written so."""
@@ -199,7 +200,7 @@ class Algorithm:
             letter = base  # one leg needs no index
         return "" if letter in {*self.names.values(), *map(self.page.math, other)} else letter
 
-    @property
+    @cached_property
     def _letter(self) -> str:
         words = {str(s) for s in self.values}
         taken = {n[:1] for n in self.page.prose.names if not is_word(n) or n not in words}
@@ -493,7 +494,7 @@ class Algorithm:
         usual = {**self.usual, flag.symbol: sp.true}
         changed: dict[sp.Basic, sp.Expr] = {}
         printed = [s for s in self.values if s in self.printed]
-        whole = [(s, self.function_value(s)) for s in printed]
+        whole = [(s, self.function_values[s]) for s in printed]
         joints = self.inverse.unknowns if self.inverse else ()
         if len(joints) == len(self.entries):  # the outputs stand for the joints
             whole += zip(joints, self.entries, strict=True)
@@ -526,10 +527,10 @@ class Algorithm:
     def entries(self) -> list[sp.Expr]:
         return [e for a in self.function.outputs for e in a.entries]
 
-    def function_value(self, symbol: sp.Symbol) -> sp.Expr:
-        return next(
-            s.value for s in self.function.body if isinstance(s, Let | Bound) and s.symbol == symbol
-        )
+    @cached_property
+    def function_values(self) -> dict[sp.Symbol, sp.Expr]:
+        """The values of names as the function has them, with the flags of special cases."""
+        return {s.symbol: s.value for s in self.function.body if isinstance(s, Let | Bound)}
 
     def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
         returned = ", ".join(effect)

@@ -89,7 +89,7 @@ class Page(Sheet):
             earlier = self.algorithm(model) if model else None
             self.algorithms[function.name] = Algorithm(self, subject, means, earlier, letters)
         algorithm = self.algorithms[function.name]
-        self.printer.names |= algorithm.names
+        self.printer.rename(algorithm.names)
         return algorithm
 
     def legend(self) -> list[tuple[str, str]]:

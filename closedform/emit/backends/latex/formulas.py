@@ -35,13 +35,33 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def __init__(self, joints: set[sp.Symbol], names: Mapping[sp.Symbol, str] | None = None):
         super().__init__({"long_frac_ratio": 20, "fold_frac_powers": True})
         self.joints, self.legend = joints, dict[str, str]()
-        self.names = dict(names or {})
+        self.names: Mapping[sp.Symbol, str] = dict(names or {})
         self.parameters = frozenset[str]()
         """Names of parameters: a length ``c1`` is not the cosine of ``theta1``."""
         self.written: dict[str, str] = {}
         """What the derivation says of how symbols are written, by their names."""
+        self._texts: dict[sp.Basic, str] = {}
+        self._printed = set[sp.Symbol]()
+        """The symbols in the texts that are kept."""
+
+    def rename(self, names: Mapping[sp.Symbol, str]) -> None:
+        """Print symbols by these names from now on; texts with their former names are forgotten."""
+        changed = {s for s, name in names.items() if self.names.get(s) != name}
+        self.names = {**self.names, **names}
+        if changed & self._printed:
+            self._texts.clear()
+            self._printed.clear()
+
+    def _print(self, expr: Any, **kwargs: Any) -> str:
+        """A part of an expression; the same parts are printed again and again."""
+        if kwargs or not isinstance(expr, sp.Basic):
+            return str(super()._print(expr, **kwargs))
+        if expr not in self._texts:
+            self._texts[expr] = str(super()._print(expr))
+        return self._texts[expr]
 
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
+        self._printed.add(expr)
         if known := self.written.get(expr.name) or self.names.get(expr):
             return known
         pair = (
@@ -222,6 +242,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             word = " and " if isinstance(condition, sp.And) else " or "
             return word.join(sorted(map(self.condition, condition.args)))
         if condition.is_Symbol and condition not in self.names:
+            self._printed.add(condition)
             return str(condition.name).replace("_", " ")
         return f"${self._print(condition)}$"
 

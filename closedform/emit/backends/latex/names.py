@@ -56,7 +56,7 @@ class Quantities:
         named = isinstance(value, sp.Add) or (isinstance(value, sp.Pow) and value.base.is_Add)
         if named and measure(self.printer.math(value)) >= NARROWEST:
             symbol = real(f"{left} ")  # a space: it is nobody else's name
-            self.printer.names[symbol] = left
+            self.printer.rename({symbol: left})
             self.known[left] = value, symbol
             self.former.pop(left, None)
 

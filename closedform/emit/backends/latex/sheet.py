@@ -41,7 +41,7 @@ class Sheet:
         self.quantities = Quantities(self.printer, [upright(n) for n in inputs])
         self.symbols = {p.symbol for p in derivation.parameters}
         self.symbols |= {s for f in derivation.functions for s in f.symbols}
-        self.printer.names |= conventional_names(derivation)
+        self.printer.rename(conventional_names(derivation))
         defined = [a for i in derivation.inverses for a in i.rank.defined]
         self.prose.angles = {a.name: self.math(a) for a in defined if is_word(a.name)}
 

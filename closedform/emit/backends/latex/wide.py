@@ -15,6 +15,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.factoring import factored
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
 from closedform.emit.backends.latex.names import TUPLE, element
 from closedform.model.functions import real
@@ -136,7 +137,7 @@ class Lines:
             and len(value.free_symbols) <= FACTORED_SYMBOLS
             and all(p.exp.is_Integer for p in powers)
         ):
-            yield sp.factor(value)
+            yield factored(value)
 
     # Parts with names
 
@@ -201,7 +202,7 @@ class Lines:
             poly = value.as_poly(symbol)
             if poly is None or not 2 <= poly.degree() <= TERMS:
                 continue
-            terms = [(k, sp.factor(c)) for (k,), c in poly.terms()]
+            terms = [(k, factored(c)) for (k,), c in poly.terms()]
             if 1 < len(terms) < len(value.args):
                 found.append((sum(self.width(c) for _, c in terms), str(symbol), symbol, terms))
         return min(found, key=lambda f: f[:2])[2:] if found else None

@@ -33,7 +33,7 @@ LEAVES = frozenset({"const", "nan", "poison", "input"})
 Degree: TypeAlias = "dict[str, Fraction]"
 """A sum of the unknown degrees of inputs; the name ``""`` stands for the number 1."""
 
-ONE = Fraction(1)
+ZERO, ONE = Fraction(0), Fraction(1)
 
 
 class MixedError(ValueError):
@@ -121,13 +121,15 @@ class _System:
     """Linear equations between unknown degrees, solved one after another."""
 
     solved: dict[str, Degree] = field(default_factory=dict)
+    _values: dict[tuple[tuple[str, Fraction], ...], Fraction] = field(default_factory=dict)
+    """The values of degrees so far; most nodes share one of a few degrees."""
 
     def reduced(self, degree: Degree) -> Degree:
         """The same degree in terms of those that are still free."""
         result: Degree = {}
         for name, factor in degree.items():
             for other, f in self.solved.get(name, {name: ONE}).items():
-                result[other] = result.get(other, Fraction(0)) + factor * f
+                result[other] = result.get(other, ZERO) + factor * f
         return {name: f for name, f in result.items() if f}
 
     def equate(self, a: Degree, b: Degree) -> None:
@@ -139,6 +141,7 @@ class _System:
             if difference:
                 raise MixedError
             return
+        self._values.clear()
         factor = difference.pop(free)
         self.solved[free] = {name: -f / factor for name, f in difference.items()}
         self.solved = {name: self.reduced(value) for name, value in self.solved.items()}
@@ -150,13 +153,18 @@ class _System:
 
     def value(self, degree: Degree | None) -> Fraction:
         """The value of a degree when nothing is free any more; the degree of zero counts as 0."""
-        return self.reduced(degree or {}).get("", Fraction(0))
+        key = tuple(degree.items()) if degree else ()
+        if key not in self._values:
+            self._values[key] = self.reduced(dict(key)).get("", ZERO)
+        return self._values[key]
 
 
 def _combined(a: Degree, b: Degree, factor: int) -> Degree:
     """``a + factor * b``."""
+    if not b:
+        return a
     names = dict.fromkeys([*a, *b])
-    total = {n: a.get(n, Fraction(0)) + factor * b.get(n, Fraction(0)) for n in names}
+    total = {n: a.get(n, ZERO) + factor * b.get(n, ZERO) for n in names}
     return {name: f for name, f in total.items() if f}
 
 

@@ -202,14 +202,11 @@ def strip_sign(node: Node) -> Node:
     return node.args[0] if node.op == "neg" else node
 
 
-def operands_of(node: Node) -> tuple[Node, ...]:
-    return node.args
+Operands = Callable[[Node], tuple[Node, ...]]
 
 
 def reachable(
-    roots: Iterable[Node],
-    stop: Container[str] = (),
-    operands: Callable[[Node], tuple[Node, ...]] = operands_of,
+    roots: Iterable[Node], stop: Container[str] = (), operands: Operands | None = None
 ) -> Iterator[Node]:
     """Every node below ``roots`` once, operands before operators, without recursion.
 
@@ -217,22 +214,23 @@ def reachable(
     node.
     """
     seen: set[Node] = set()
-    waiting: set[Node] = set()  # for their operands, which are above them on the stack
-    stack = list(roots)[::-1]
-    while stack:
-        node = stack[-1]
-        if node not in seen:
+    path: list[Node] = []
+    left = [iter(roots)]  # of the operands of each node on the path
+    while left:
+        for node in left[-1]:
+            if node in seen:
+                continue
             seen.add(node)
-            if node.op not in stop:
-                below = [a for a in operands(node)[::-1] if a not in seen]
-                if below:
-                    waiting.add(node)
-                    stack += below
-                    continue
-            yield stack.pop()
-        elif stack.pop() in waiting:
-            waiting.remove(node)
+            below = node.args if operands is None else operands(node)
+            if below and node.op not in stop:
+                path.append(node)
+                left.append(iter(below))
+                break
             yield node
+        else:
+            left.pop()
+            if path:
+                yield path.pop()
 
 
 def hardly_ever(condition: Node) -> bool:
@@ -251,10 +249,11 @@ def hardly_ever(condition: Node) -> bool:
 def rebuild(
     roots: Sequence[Node],
     change: Callable[[Node, tuple[Node, ...]], Node],
-    operands: Callable[[Node], tuple[Node, ...]] = operands_of,
+    operands: Operands | None = None,
 ) -> list[Node]:
     """The images of ``roots`` after ``change`` has replaced every node, operands first."""
     image: dict[Node, Node] = {}
     for node in reachable(roots, operands=operands):
-        image[node] = change(node, tuple([image[a] for a in operands(node)]))
+        below = node.args if operands is None else operands(node)
+        image[node] = change(node, tuple([image[a] for a in below]))
     return [image[root] for root in roots]

@@ -34,6 +34,8 @@ def fewer_roots(
 
     nodes = rebuild([*roots, *followers], simpler_angles)
     products = _products_by_root(nodes[: len(roots)], ranges)
+    if not products:
+        return nodes
 
     def merged(node: Node, args: tuple[Node, ...]) -> Node:
         if node.op != "product":

@@ -35,6 +35,8 @@ def share(graph: Graph, roots: Sequence[Node], *, by_reciprocals: bool = False) 
 def _by_reciprocals(graph: Graph, roots: list[Node]) -> list[Node]:
     """Use one division for all quotients by the same value, unless that is a constant."""
     divisors = Counter(n.args[1].id for n in reachable(roots) if n.op == "div")
+    if max(divisors.values(), default=0) < 2:
+        return roots
 
     def change(node: Node, args: tuple[Node, ...]) -> Node:
         if node.op != "div" or node.args[1].op == "const" or divisors[node.args[1].id] < 2:
@@ -65,6 +67,8 @@ def _take_out(graph: Graph, roots: list[Node], op: str) -> list[Node]:
     nodes in which it occurs, not for the whole graph.
     """
     table = _Table(n for n in reachable(roots) if n.op == op)
+    if not table.heap:
+        return roots
     while pair := table.most_frequent():
         first, second = (table.node[i] for i in pair[:2])
         part = _make(graph, op, [first, second if pair[2] > 0 else graph.neg(second)])

@@ -167,6 +167,18 @@ def test_files_are_the_same_on_every_run(kind: str, suffix: str, tmp_path: Path)
     assert first == second
 
 
+def test_rounding_errors_do_not_show_in_a_drawing(tmp_path: Path) -> None:
+    for name, error in (("a", 0.0), ("b", 2.0**-48)):
+        points = np.array([[0.0, 0.0], [0.3, 0.4], [0.7, 0.0], [1.0, 1.0]]) * [1, 1 + error]
+        ax = plot.new_axes(False)
+        diagram = plot.Diagram(ax, 1.0)
+        diagram.link(points)
+        diagram.revolute(points[1])
+        diagram.clean([points])
+        plot.save(ax, tmp_path / f"{name}.svg")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

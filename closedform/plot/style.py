@@ -108,7 +108,12 @@ def save(ax: Any, target: str | Path) -> None:
 
 
 def _shortened(svg: str) -> str:
-    """The same picture with coordinates of four digits, off by a tenth of a point, no indents."""
+    """The same picture with coordinates of four digits, off by a tenth of a point, no indents.
+
+    It does not show how a processor rounds: zeros have no sign, and names that are digests of
+    numbers are counted instead.
+    """
+    names: dict[str, str] = {}
 
     def rounded(number: re.Match[str]) -> str:
         return f"{float(number[0]):.4g}"
@@ -118,7 +123,12 @@ def _shortened(svg: str) -> str:
         short = re.sub(r"[ \n]*([A-Za-z])[ \n]*", r"\1", short).strip()
         return f' d="{short}"'
 
-    return re.sub(r"\n +", "\n", re.sub(r' d="([^"]*)"', path, svg))
+    def counted(name: re.Match[str]) -> str:
+        return names.setdefault(name[0], f"{name[1]}{len(names) + 1}")
+
+    svg = re.sub(r"\n +", "\n", re.sub(r' d="([^"]*)"', path, svg))
+    svg = re.sub(r'(?<=[MLQC ("])-0(?![.0-9])', "0", svg)
+    return re.sub(r'(?<=["#])([a-z]+)[0-9a-f]{10}(?=[")])', counted, svg)
 
 
 def colour(k: int) -> str:

@@ -91,8 +91,8 @@ def page() -> str:
         "",
         "## Figures of the mechanisms",
         "",
-        "A map needs two joints and a forward map, that of a workspace also a position in the task",
-        "that no surface holds.",
+        "A map needs two joints and a forward map. A map of the workspace also needs a position in",
+        "the task that is not confined to a surface.",
         "",
         *_of_mechanisms(),
         "",
@@ -104,12 +104,12 @@ def page() -> str:
 
 
 def _of_mechanisms() -> Iterator[str]:
-    """The figures that most mechanisms have, with those that have not, and the further ones."""
+    """The figures that most mechanisms have, with exceptions, and the further ones."""
     drawn = {name: catalogue(name) for name in names()}
     usual = {f.name: f.caption for f in drawn["planar_2r"] if ("planar_2r", f.name) not in shown()}
     for figure, caption in usual.items():
         without = [n for n, figures in drawn.items() if figure not in {f.name for f in figures}]
-        listed = f" Not of {', '.join(f'`{n}`' for n in without)}." if without else ""
+        listed = f" Not for {', '.join(f'`{n}`' for n in without)}." if without else ""
         yield f"- `{figure}`: {caption}{listed}"
     for name, figures in drawn.items():
         for f in figures:

@@ -72,7 +72,7 @@ def test_a_row_of_the_wrong_length(row) -> None:
     ("row", "message"),
     [
         ((real("l3"), 0, 0, THETA1), "row 1 .* the symbol l3 is neither a parameter nor a joint"),
-        ((1, 0, 0, 0), "no row of the Denavit-Hartenberg table holds a joint"),
+        ((1, 0, 0, 0), "no row of the Denavit-Hartenberg table contains a joint"),
         ((1, 0, 0, THETA1 + THETA2), "at most one joint, not theta1, theta2"),
         ((1, 0, THETA1, 0), "the revolute joint theta1 must stand in the column theta"),
         ((0.5, 0, 0, THETA1), r"row 1 .* 0.5 is a float; write an integer or sympy.Rational"),

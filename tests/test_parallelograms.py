@@ -230,7 +230,9 @@ def test_a_hand_that_turns_has_plain_rods() -> None:
     for q in joints:
         d.joint(str(q), "prismatic")
     legs = [Slide(q, rod, (k, 0), (0, 1), on_hand=(k, 1)) for k, q in enumerate(joints)]
-    with pytest.raises(ShapeError, match="keeps the hand from turning, which is known of parallel"):
+    with pytest.raises(
+        ShapeError, match="keeps the hand from turning, which only parallel supports"
+    ):
         platform(d, legs)
 
 

@@ -120,7 +120,7 @@ def check_identifier(name: str, where: str) -> None:
     if len(name) > MAX_LENGTH:
         raise ValueError(f"{where}: {name} is longer than {MAX_LENGTH} characters")
     if name.startswith(RESERVED_PREFIXES):
-        raise ValueError(f"{where}: names like {name} belong to closedform.h; take another one")
+        raise ValueError(f"{where}: names like {name} belong to closedform.h; choose another one")
 
 
 def check_symbol(name: str, where: str) -> None:
@@ -131,8 +131,8 @@ def check_symbol(name: str, where: str) -> None:
     languages = [language for language, has_meaning in MEANINGS.items() if has_meaning(name)]
     if languages:
         raise ValueError(
-            f"{where}: {name} is a word of {' and '.join(languages)}; take another name, such as "
-            f"{name}_0"
+            f"{where}: {name} is a word of {' and '.join(languages)}; choose another name, such "
+            f"as {name}_0"
         )
 
 
@@ -142,7 +142,7 @@ def check_argument(name: str, others: Collection[str], where: str) -> None:
     base = next((name.removesuffix(s) for s in C_SUFFIXES if name.endswith(s)), "")
     taken = C_LOCALS | JAVASCRIPT_LOCALS | frozenset(others)
     if name in taken or base in taken or re.fullmatch(r"(angle|wide)_\d+", name):
-        raise ValueError(f"{where}: the name {name} is taken; take another one, such as {name}_0")
+        raise ValueError(f"{where}: the name {name} is taken; choose another one, such as {name}_0")
 
 
 def check_function(name: str, others: Collection[str], where: str) -> None:

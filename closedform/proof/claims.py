@@ -79,8 +79,8 @@ def judge(claim: Claim, errata: Sequence[Erratum]) -> ClaimResult:
         raise ProofError(f"there is no erratum {claim.erratum!r}; there are {sorted(known)}")
     if kind in FAULTS and not claim.erratum:
         raise ProofError(
-            f"the verdict is {kind} ({shown[0]}): mend the transcription, or name the erratum that "
-            f"explains it"
+            f"the verdict is {kind} ({shown[0]}): correct the transcription, or name the erratum "
+            "that explains it"
         )
     if claim.erratum and kind in (PROVED, NOT_DECIDABLE):
         raise ProofError(f"the verdict is {kind}, but the claim names the erratum {claim.erratum}")

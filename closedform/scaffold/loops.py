@@ -323,7 +323,7 @@ class Legs:
             if loop.dimensions == 2 or found:
                 raise loop.error(
                     f"the rod {rod} leads from the ground to the hand; only one may, and only in "
-                    f"space, beside two driven joints"
+                    "space, with two driven joints"
                 )
             length, place = self.bar(rod, loop.rods[rod]), self.place_on_hand(rod, joint)
             base = self.point(GROUND, joint)

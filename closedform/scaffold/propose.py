@@ -224,7 +224,7 @@ def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
         which = "first" if whole.inverted else "last"
         raise NoChainError(
             f"its {which} {wrist} axes do not meet in a point",
-            "Known are arms of up to three joints before others whose axes meet in a point.",
+            "The known chains have up to three joints before those whose axes meet in a point.",
         )
     structure = maker.solved(_met(found, [(k, 2) for k in range(start - 1)]), wrist)
     joints = f"{wrist} joints that turn" if wrist > 1 else "1 joint that turns"

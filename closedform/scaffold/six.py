@@ -116,8 +116,8 @@ class SixMaker(SubproblemMaker):
             numbers = sorted(j.number for j in arm.joints[3:])
             raise NoChainError(
                 "axes {0} and {1}, and {1} and {2}, do not meet".format(*numbers),
-                "Beside three parallel axes two neighbours have to meet; otherwise an equation of "
-                "degree 4 is left, which no known chain solves.",
+                "Besides three parallel axes, two neighbouring axes have to meet; otherwise an "
+                "equation of degree 4 remains, which no known chain solves.",
                 degree=4,
             )
         one, two, three, four, five, six = found.joints
@@ -179,7 +179,7 @@ class SixMaker(SubproblemMaker):
         if found is None:
             raise NoChainError(
                 "axes {1}, {2} and {3} do not meet in a point".format(*numbers),
-                "Three neighbours in the middle have to meet in a point.",
+                "Three neighbouring axes in the middle have to meet in a point.",
             )
         outer = "meet"
         if parallel(found.joints[4]):
@@ -301,8 +301,8 @@ class SixMaker(SubproblemMaker):
             )
             raise NoChainError(
                 f"axes {one} and {two} do not meet",
-                "Beside the three axes two neighbours have to meet; otherwise an equation of "
-                "degree 4 is left, which no known chain solves.",
+                "Besides the three axes, two neighbouring axes have to meet; otherwise an "
+                "equation of degree 4 remains, which no known chain solves.",
                 degree=4,
             )
         return found

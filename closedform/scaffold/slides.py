@@ -169,8 +169,8 @@ class Slides:
             raise NoChainError(
                 f"its slide is not normal to axis {two.number}, nor do axes {one.number} and "
                 f"{two.number} meet",
-                "A turret with a slide needs one of the two; otherwise an equation of degree 4 is "
-                "left, which no known chain solves.",
+                "A turret with a slide needs one of the two; otherwise an equation of degree 4 "
+                "remains, which no known chain solves.",
                 degree=4,
             )
         turned = [(first, one.end), (second, two.end), ("", three.end)]

@@ -137,7 +137,7 @@ class SubproblemMaker(WristMaker):
         self.require(
             not parallel(one) and not parallel(four) and two.end == three.end == sp.eye(3),
             "axes 2, 3 and 4 are not parallel, or axis 1 or 5 is parallel to them",
-            "Known are five joints of which the middle three are parallel.",
+            "The known chain of five joints has three parallel axes in the middle.",
         )
         R = self.centre(arm)
         self._see_the_last_axis(arm, R)

@@ -1,4 +1,4 @@
-"""Recognises a tripod in the file of a loop: three legs that hinges keep in upright planes."""
+"""Recognises a tripod in the file of a loop: three legs that hinges keep in vertical planes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from closedform.scaffold.source import source
 
 LEGS = 3
 HINGED = (
-    "A hand that lifts and tilts on three legs in upright planes needs three, if the joint in each "
-    "leg that keeps it in its plane is revolute with an axis, which is normal to the plane."
+    "A hand that lifts and tilts on three legs in vertical planes needs three, if the joint that "
+    "keeps each leg in its plane is revolute and has an axis, normal to the plane."
 )
 
 
@@ -42,8 +42,8 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
     assert axis is not None
     if axis[2] != 0 or not all(e.is_number for e in axis):
         raise loop.error(
-            f"{hinged.name} keeps the leg of {joint.name} in a plane, which has to be upright: its "
-            f"axis is horizontal, in numbers"
+            f"{hinged.name} keeps the leg of {joint.name} in a plane, which has to be vertical: "
+            "its axis is horizontal, in numbers"
         )
     if joint.kind == "revolute" and joint.axis is not None and any(joint.axis.cross(axis)):
         raise loop.error(f"the axes of {joint.name} and {hinged.name} have to be parallel")

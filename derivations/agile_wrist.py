@@ -29,10 +29,10 @@ d = Derivation(
     "Three equal legs join a hand to the base, and the axes of all nine joints meet in the centre "
     "O.  Neighbouring axes of a leg are at right angles.  The first axes u of the three legs are "
     "driven.  They are the axes x, y and z of the base, and the last axes v are the axes z, x and "
-    "y of the hand.  The middle axis w of the first leg is along y at 0 and along z at 90 degrees; "
-    "those of the others follow by turning x, y and z into each other.  R, the orientation of the "
-    "hand, is the identity in one assembly mode where all joints are zero; there the mechanism is "
-    "isotropic.",
+    "y of the hand.  The middle axis w of the first leg is along y at 0 and along z at 90 "
+    "degrees; for the other legs x, y and z are interchanged cyclically.  R is the orientation of "
+    "the hand.  In one of the assembly modes it is the identity where all joints are zero; there "
+    "the mechanism is isotropic.",
     task=[f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)],
     singularities=("leg 1", "leg 2", "leg 3", "all legs"),
 )
@@ -89,9 +89,9 @@ d.step(
     "Forward: three axes in three planes",
     "The three axes v are at right angles to each other, and each is in the plane of u and p of "
     "its leg, where p is the cross product of u and w.  Eight orientations satisfy this.  In four "
-    "of them every v is u or -u.  They do not depend on the joints, and every joint is free, so "
-    "that the legs turn while the hand stands still.  These four are left out.  The other four are "
-    "the assembly modes.  They exist for all values of the joints.",
+    "of them every v is u or -u.  They do not depend on the joints: every joint is free, and the "
+    "legs turn while the hand stands still.  These four are left out.  The other four are the "
+    "assembly modes.  They exist for all values of the joints.",
     {},
     uses=[stated],
 )
@@ -148,19 +148,20 @@ d.step(
     "the hand.  The rows of A are the cross products a of w and v.  B is diagonal, because each "
     "leg depends on its own joint alone; its entries are sines of the angles between u and v.  In "
     "all assembly modes the determinant of A is C - S, where C is the product of the cosines of "
-    "the joints and S that of their sines, and the entry of B of a leg is plus or minus C - S "
-    "over the sines of the angles between its middle axis and the others.  So A and B are "
-    "singular together.  If no two middle axes are parallel, every v is then u or -u: the hand is "
-    "in one of the four orientations in which the legs turn freely, and the Jacobian is finite.  "
-    "It is not where two middle axes are parallel: there the hand turns about them while the "
-    "joints stand still.",
+    "the joints and S the product of their sines.  The entry of B for a leg is plus or minus C - "
+    "S, divided by the sines of the angles between its middle axis and the other two.  So A and B "
+    "are singular together.  If no two middle axes are parallel, every v is then u or -u: the "
+    "hand is in one of the four orientations in which the legs turn freely, and the Jacobian is "
+    "finite.  Where two middle axes are parallel, the Jacobian is not finite: the hand turns "
+    "about them while the joints stand still.",
     {
         **{rf"\mathbf a_{k + 1}": rows[k] for k in range(3)},
         **{rf"B_{{{k + 1}{k + 1}}}": rates[k] for k in range(3)},
         r"\det A": Mul(*map(cos, q)) - Mul(*map(sin, q)),
     },
-    proves="A and B are the derivatives, and in each mode det A is C - S.  The Jacobian J is that "
-    "of A*J = B, and its determinant is the square of C - S over the squares of the sines.",
+    proves="A and B are the derivatives, and in each mode det A is C - S.  The Jacobian J "
+    "satisfies A*J = B, and its determinant is the square of C - S divided by the squares "
+    "of the sines.",
     equal=[
         *((rows[k].dot(omega), -w[k].dot(omega.cross(V[:, k]))) for k in range(3)),
         *((rates[k], loop[k].diff(q[k])) for k in range(3)),

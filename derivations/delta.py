@@ -12,7 +12,7 @@ d = Derivation(
     "Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the "
     "centre of the base and in the directions alpha1, alpha2 and alpha3.  A crank points outwards "
     "at 0 and down at 90 degrees.  Three parallelograms of length l carry the platform, at the "
-    "distance e from its centre P.  They keep it from turning.",
+    "distance e from its centre P, and keep it from turning.",
     task=["x", "y", "z"],
 )
 SIZES = {

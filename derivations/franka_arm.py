@@ -1,4 +1,4 @@
-"""Arms with a spherical shoulder and an offset elbow and hand, as the Franka Emika Panda."""
+"""Arms with a spherical shoulder and an offset elbow and hand, such as the Franka Emika Panda."""
 
 import sympy as sp
 from closedform.derivations.papers.seven_joints import OFFSET_ARMS
@@ -24,10 +24,11 @@ d = Derivation(
     "franka_arm",
     "Seven-joint arm with an offset elbow and hand (Franka)",
     OFFSET_ARMS,
-    "The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the "
-    "upper arm and beside the forearm.  The axes of theta5 and theta6 meet in the wrist, and the "
-    "axis of theta7 is beside it.  The table is modified (Craig's), as the maker's: at zero angles "
-    "the arm points upwards and its hand downwards.  theta7 is an input of the inverse.",
+    "The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, "
+    "is offset from the upper arm and from the forearm.  The axes of theta5 and theta6 meet in "
+    "the wrist, and the axis of theta7 is offset from it.  As in the maker's table, the "
+    "Denavit-Hartenberg parameters are modified (Craig's).  At zero angles the arm points upwards "
+    "and its hand downwards.  theta7 is an input of the inverse.",
 )
 
 
@@ -79,17 +80,17 @@ d.explain(
         "u": "the shoulder, seen from the wrist in the frame after theta6",
         "w": "the shoulder, seen from the wrist in the frame before theta6",
         "R_{03}": "rotation of the upper arm",
-        "R_{37}": "rotation of the other four joints",
+        "R_{37}": "rotation by the other four joints",
     }
 )
 d.step(
     "The shoulder from the wrist",
-    "In the frame of the forearm, before theta5 turns it, the shoulder is at v.  The elbow alone "
-    "moves it, in a plane.  The arm is singular where the axes 1 and 3 coincide (shoulder), where "
-    "it is stretched or folded (elbow), where the shoulder is on axis 5 (axis), and where axis 6 "
-    "is in the plane of the arm (wrist).",
+    "The vector v leads from the wrist to the shoulder, in the frame of the forearm before theta5 "
+    "turns it.  It depends on the elbow alone and stays in a plane.  The arm is singular where "
+    "axes 1 and 3 coincide (shoulder), where it is stretched or folded (elbow), where the "
+    "shoulder is on axis 5 (axis), and where axis 6 is in the plane of the arm (wrist).",
     {"v": v},
-    proves="The shoulder, less the wrist, turned into the frame of the forearm.",
+    proves="v is the vector from the wrist to the shoulder, turned into the frame of the forearm.",
     equal=[(frame.T * (sp.Matrix([0, 0, d1]) - to_wrist[:3, 3]), v)],
 )
 
@@ -103,7 +104,8 @@ far = ik.let("far", sqrt(u.dot(u)))
 reach = ik.let("reach", sqrt(u[0] ** 2 + u[1] ** 2))
 d.step(
     "Inverse: the shoulder",
-    "theta7 is given, so the shoulder is known in the frame of theta6, at u from the wrist.",
+    "theta7 is given, so the vector u from the wrist to the shoulder is known in the frame of "
+    "theta6.",
     {"u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0]))},
 )
 upper = ik.program.let("upper", sqrt(a4**2 + d3**2), nonnegative=True)
@@ -111,11 +113,11 @@ fore = ik.program.let("fore", sqrt(a5**2 + d5**2), nonnegative=True)
 straight = ik.direction("straight", d3 * d5 - a4 * a5, a4 * d5 + a5 * d3)
 elbow_angle = theta4 + sp.atan2(a4 * d5 + a5 * d3, d3 * d5 - a4 * a5)
 elbow = ik.angle("elbow", elbow_angle)
-d.write("elbow", r"\eta", "angle of the elbow, from where the straight links are in line")
+d.write("elbow", r"\eta", "angle of the elbow, zero where the straight links are in line")
 
 
 def seen(pair: Pair) -> sp.Matrix:
-    """The shoulder in the frame of the forearm, by the pair of the elbow."""
+    """The shoulder in the frame of the forearm, from the cosine and sine of the elbow."""
     bent = turned(-(pair - straight)) * sp.Matrix([-a4, -d3, 0])
     return sp.Matrix([bent[0] + a5, 0, bent[1] - d5])
 
@@ -130,8 +132,9 @@ bent = ik.solve(
 )
 d.step(
     "Inverse: the elbow",
-    "The distance of the shoulder from the wrist is that of the ends of two straight links.  Their "
-    "angle is theta4 plus a constant; it is 0 where they are in line.",
+    "Think of two straight links, from the shoulder to the elbow and from the elbow to the "
+    "wrist.  The angle between them is theta4 plus a constant, and it is 0 where they are in "
+    "line.  The law of cosines gives it from the distance between shoulder and wrist.",
     {
         r"\eta": elbow_angle,
         r"|u|^2": a4**2
@@ -155,8 +158,8 @@ roll = ik.solve(
 )
 d.step(
     "Inverse: the wrist",
-    "theta6 turns the shoulder to the height of v along the forearm, and theta5 then turns it to "
-    "v.  Where the shoulder is on axis 6 or on axis 5 that joint is free.",
+    "theta6 turns u until its component along the forearm is that of v, and theta5 then turns it "
+    "to v.  If the shoulder is on axis 6 or on axis 5, that joint is free.",
     {
         r"u_x\sin\theta_6 + u_y\cos\theta_6": v[2],
         "w": rotation("x", pi / 2) * (rotation("z", theta6) * u),
@@ -170,7 +173,8 @@ R = ik.matrix("R4", R * turned(bent - straight).T * rotation("x", -pi / 2))
 ik.solve(zyz, R, (theta1, theta2, theta3), {+1: "front", -1: "back"})
 d.step(
     "Inverse: the first three joints",
-    "The four others leave the rotation of the upper arm to the shoulder.",
+    "The other four joints are known, so the rotation of the upper arm is known, and its ZYZ "
+    "angles are theta1, theta2 and theta3.",
     {
         "R_{03}": R03,
         "R_{37}": R37,
@@ -181,8 +185,8 @@ d.step(
 ik.finish(
     "All eight postures of a pose at a given theta7.",
     notes=(
-        "bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda "
-        "allow; over: it is bent to the other side.",
+        "bent: the elbow is bent to the side that the joint limits of a Panda allow; over: it is "
+        "bent to the other side.",
         "ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.",
         "front: sin(theta2) >= 0; back: sin(theta2) <= 0.",
     ),

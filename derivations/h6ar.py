@@ -71,11 +71,11 @@ d = Derivation(
     "H6AR, published model",
     RAO_RAJU,
     "A waist carries two equal arms of two links, each at the distance d from the mid-plane.  "
-    "Their tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the "
-    "arms move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as "
-    "printed, the wrist hangs on a virtual arm whose angles are the averages of the real ones.  "
-    "Yaw and roll are measured against the base.  Directions of links are averaged on the shorter "
-    "arc.",
+    "Their tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as "
+    "the arms move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) "
+    "as printed, the wrist hangs on a virtual arm whose angles are the averages of the real "
+    "ones.  Yaw and roll are measured against the base.  The average of two directions is taken "
+    "on the shorter arc between them.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
         "the tip is above or below the waist axis",
@@ -130,13 +130,13 @@ d.step(
     "Yaw and roll",
     "Eqs. (3) to (5) compare the tips: d tan(psi) is half the distance by which the right tip is "
     "ahead of the left one, and d tan(phi) half the distance by which it is above.  In terms of "
-    "averages and half differences of the angles, both are linear in the sines of the half "
+    "the averages and half differences of the angles, both are linear in the sines of the half "
     "differences.",
     {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
     proves=(
-        "Half the difference of the tips is as stated, in averages and half differences of the "
-        "angles."
+        "Half the difference of the tips is as stated, in terms of the averages and half "
+        "differences of the angles."
     ),
     equal=[(apart.xreplace(halves), mean)],
 )
@@ -144,9 +144,9 @@ d.step(
     "Invariant point",
     "The paper gives this point twice: as the middle of the tips in (6), and by the averages of "
     "the angles in (7).  This model uses (7).  In (6) the links are shortened by the cosines of "
-    "the half differences.  The difference of the two points is one side of a triangle with the "
-    "other sides e_1 and e_2 (f is the length of a fore-arm).  So it is at most e_1 + e_2, which "
-    "is of second order.",
+    "the half differences.  The line between the two points is one side of a triangle, and the "
+    "other sides are e_1 and e_2 (f is the length of a fore-arm).  So the points are at most e_1 "
+    "+ e_2 apart, which is of second order in the half differences.",
     {
         "(r, h)_I": invariant,
         "(r, h)_6": ((right + left) / 2).xreplace(halves),
@@ -195,11 +195,12 @@ d.step(
 )
 d.step(
     "Length of the wrist",
-    "The wrist, a wrist link, and half the base line minus half the gears form a right triangle.  "
-    "In (8) half the base line is d / cos(psi).",
+    "The wrist and a wrist link form a right triangle; its third side is half the base line minus "
+    "half the distance of the gears.  In (8) half the base line is d / cos(psi).",
     {"l_W^2": wrist_squared(m, m.d / cos(psi))},
     published=("(8)",),
-    proves="The square of the wrist by the right triangle is the published form.",
+    proves="The square of the length of the wrist, from the right triangle, has the published "
+    "form.",
     equal=[
         (
             wrist_squared(m, m.d / cos(psi)),
@@ -218,7 +219,7 @@ d.step(
     {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},
     proves=(
         "The cosine and the sine of the yaw are these quotients, and both factors of the square "
-        "of the wrist are the same with and without the angle."
+        "of the length of the wrist are the same with and without the angle."
     ),
     equal=[
         (cos(atan2(a, m.d)), m.d / half_base),
@@ -248,7 +249,7 @@ def averages(p: Program) -> tuple[Pair, Pair]:
 
 
 def stand(p: Program) -> tuple[Posture, sp.Matrix]:
-    """The posture, and by how much the right tip is ahead of the middle and above it."""
+    """The posture, and how far the right tip is ahead of the middle and above it."""
     upper, fore = averages(p)
     gap = mean.subs(means, simultaneous=True)
     ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
@@ -352,17 +353,17 @@ factors_of, position = factors_shown(d, m, q, m.d / cos(psi), wrist)
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
-    "factor is the derivative of the task by these quantities, and the inner factor is their "
-    "derivative by the joints.",
+    "factor is the derivative of the task with respect to these quantities, and the inner factor "
+    "is their derivative with respect to the joints.",
     {
         **factors_of,
         "V": by_half[:2, 1:5],
         "W": inner[3:5, 1:5],
     },
     proves=(
-        "The first three rows of the outer factor.  The determinants of the factors: that of the "
-        "virtual arm with the wrist, that of the rates of yaw and roll, and 1/4 for averages and "
-        "half differences."
+        "The first three rows of the outer factor are as stated.  The determinant of the Jacobian "
+        "is the product of three: that of the virtual arm with the wrist, that of the rates of "
+        "yaw and roll, and 1/4 for the averages and half differences."
     ),
     equal=[
         (outer[:3, :], position),
@@ -404,7 +405,10 @@ d.function(
     program=p,
     equation="J",
     source="derivative of eqs. (1) to (9)",
-    notes=(too_wide, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
+    notes=(
+        too_wide,
+        "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.",
+    ),
 )
 p = Program()
 here, _ = stand(p)
@@ -487,7 +491,7 @@ for sine in ("alpha", "beta"):
 half = two_sines(
     p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
 )
-# sines at their limits may miss the gap by more than yaw and roll allow, near a right angle
+# near a right angle, sines at their limits may miss the gap by more than yaw and roll allow
 at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
 sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]
 missed = v[0] * sines[1] - seen[0], m.L1 * sines[0] + v[1] * sines[1] - seen[1]

@@ -21,11 +21,12 @@ from closedform import Derivation, Program, choose, real, sign_of, used_up
 
 
 class Easing(NamedTuple):
-    """A flag that an area lacks something, and what makes up for it.
+    """How small turns make an area large enough that is too small by rounding.
 
-    ``aside`` is the turn of the upper arm; what is left is a ``lack``, and the area grows by
-    ``slope`` times the free turn.  That moves the tip by ``heavy``, in units of the size;
-    ``floor`` is below any slope that counts.
+    ``spent`` says that the area has no margin left.  The upper arm turns by ``aside``, after which
+    ``lack`` is still missing.  The free turn adds ``slope`` per radian and moves the tip by
+    ``heavy`` per radian, in units of the scale of the tolerance.  ``floor`` is smaller than any
+    slope that matters.
     """
 
     spent: sp.Symbol
@@ -36,11 +37,11 @@ class Easing(NamedTuple):
     floor: sp.Expr
 
     def straight_on(self) -> sp.Expr:
-        """The turn, where an area grows with it and not with its square."""
+        """The free turn if the area is linear in it."""
         return sign_of(self.slope) * self.allowed(self.lack / (sp.Abs(self.slope) + self.floor))
 
     def allowed(self, turn: sp.Expr) -> sp.Expr:
-        """A turn if it is positive and does not move the tip by more than the tolerance, or 0."""
+        """The turn, or 0 if it is negative or moves the tip by more than the tolerance."""
         little = sp.And(turn > 0, turn * self.heavy <= Rational(1, 2**40))
         return sp.Piecewise((turn, little), (0, True))
 
@@ -49,10 +50,10 @@ class Easing(NamedTuple):
 class FreeTurn:
     """The turn of the virtual fore-arm that leaves the tip where it is.
 
-    If the virtual arm with the wrist is straight, rounding of the target decides how far it bends,
-    and real arms at their own limit may seem to be beyond it.  All postures that differ by a small
-    turn of the virtual fore-arm then reach the target equally well, and one that exists is taken.
-    In exact arithmetic the turn is zero.
+    If the virtual arm with the wrist is straight, rounding of the target decides how far it bends.
+    Real arms at their own limit may then seem to be beyond it.  All postures that differ by a small
+    turn of the virtual fore-arm reach the target equally well, so one that exists is taken.  In
+    exact arithmetic the turn is zero.
     """
 
     program: Program
@@ -62,7 +63,7 @@ class FreeTurn:
     drawn: sp.Symbol
 
     def lean(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
-        """The tangent of the turn of the upper arm that goes with that of the fore-arm."""
+        """The tangent of the turn of the upper arm that belongs to a turn of the fore-arm."""
         return turn - self.drawn * turn / self.m.L1 + aside
 
     def easing(
@@ -73,13 +74,14 @@ class FreeTurn:
         scale: sp.Expr,
         meaning: str,
     ) -> Easing:
-        """What makes up for what an area ``margin`` of a natural ``scale`` lacks.
+        """The turns that make an area ``margin`` large enough; ``scale`` is its natural size.
 
-        The area grows by ``slopes`` times the free turn, and times a turn of the upper arm aside.
-        Each takes its share, by what the tolerance of the tip lets it bring.
+        ``slopes`` are the rates of the area for the free turn and for a turn of the upper arm
+        aside.  Each turn takes a share, in proportion to what it can add within the tolerance of
+        the tip.
         """
         let, upper = self.program.let, 1 - self.drawn / self.m.L1
-        # what moves the tip: each by itself, and by its square, in units of the tolerance
+        # how far each turn moves the tip, by itself and by its square, in units of the tolerance
         squares = (self.m.L1 * upper**2 + sqrt(L_2W**2 + a_3W**2), self.m.L1)
         heavy = [
             (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
@@ -110,9 +112,9 @@ class FreeTurn:
         )
 
     def turn(self, name: str, easings: Sequence[tuple[Easing, sp.Expr]]) -> sp.Symbol:
-        """A free turn that leaves every area what it needs, as far as that can be had.
+        """A free turn that makes every area large enough, as far as possible.
 
-        Beside an easing stands what its area grows by with the square of the turn.
+        Each easing comes with the coefficient of the square of the turn in its area.
         """
         let = self.program.let
         spent = sp.Or(*(easing.spent for easing, _ in easings))
@@ -150,7 +152,7 @@ def turned_by(tangent: sp.Expr) -> Pair:
 
 
 def moved_by(tangent: sp.Expr, e: sp.Matrix) -> sp.Matrix:
-    """By how much such a turn moves a point, also if that is little."""
+    """How far such a turn moves a point, accurate for small turns too."""
     turn = turned_by(tangent)
     return sp.Matrix([-turn.s * e[1], turn.s * e[0]]) - turn.s**2 / (1 + turn.c) * e
 
@@ -175,37 +177,38 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
         "Arms at their limit while the virtual arm is straight",
         "If the virtual fore-arm turns by t and the virtual upper arm by (1 - drawn / L1) t, the "
         "tip moves by R_perp t along the upper arm.  If the virtual arm with the wrist is "
-        "straight, R_perp is zero.  An error of the target by rounding then turns the arm by as "
-        "much as the root of that error, and a real arm at its own limit may seem to be beyond it. "
-        " In that case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
+        "straight, R_perp is zero.  A rounding error of the target then turns the arm by as much "
+        "as the square root of that error, and a real arm at its own limit may seem to be beyond "
+        "it.  In that case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
         {r"R_\parallel": drawn, r"R_\perp": tilt},
-        proves="The rate of the tip, with the wrist turned along, is R_perp along the upper arm.",
+        proves="If the wrist turns with the fore-arm, the rate of the tip is R_perp along the "
+        "upper arm.",
         equal=[(rate, tilt * pair(theta2A).unit)],
     )
 
 
 def as_published(d: Derivation, m: Dimensions) -> None:
-    """Add the step with the paper's way to the elbow, and why the code takes another."""
-    d.write("theta3A", r"\theta_3^A", "angle of the virtual fore-arm against its upper arm")
-    d.write("L_3A", "L_{3A}", "square of the reach, less the squares of the links")
+    """Add the step with the paper's formula for the elbow, and why the code uses another."""
+    d.write("theta3A", r"\theta_3^A", "angle from the virtual upper arm to the virtual fore-arm")
+    d.write("L_3A", "L_{3A}", "square of the reach minus the squares of the links")
     elbow, L_3A = real("theta3A"), real("L_3A")
     end = reach(m, pair(theta2A), pair(theta23A), L_2W, a_3W)
     fore = sp.sqrt(L_2W**2 + a_3W**2)
     cosines = 2 * m.L1 * (L_2W * sp.sin(elbow) + a_3W * sp.cos(elbow))
     d.step(
         "Inverse: the law of cosines",
-        "The virtual arm is a triangle too.  Its reach, squared, less the squares of its links is "
-        "L_3A, which holds the elbow alone.  The paper solves this by two arcsines, and takes the "
-        "shoulder from a quotient, eq. (14).  An arcsine has one value where there are two "
-        "elbows, and half its digits are lost where the arm is straight; a quotient does not tell "
-        "opposite directions apart.  So the code takes the lemma of the two-link arm instead: all "
-        "signs, and arctangents.",
+        "The links of the virtual arm and its reach form a triangle.  The square of the reach "
+        "minus the squares of the links is L_3A, which depends on the elbow alone.  The paper "
+        "solves this with two arcsines, and takes the shoulder from a quotient, eq. (14).  An "
+        "arcsine has one value where there are two elbows, and it loses half its digits where the "
+        "arm is straight.  A quotient does not distinguish opposite directions.  So the code uses "
+        "the lemma of the two-link arm, which gives all signs and computes arctangents.",
         {
             "L_{3A}": cosines,
             r"\theta_3^A": sp.asin(L_3A / (2 * m.L1 * fore)) - sp.asin(a_3W / fore),
         },
         published=("(13)",),
-        proves="The square of the reach is that of the links and L_3A.",
+        proves="The square of the reach is the sum of the squares of the links and L_3A.",
         equal=[
             (
                 end.dot(end) - m.L1**2 - L_2W**2 - a_3W**2,

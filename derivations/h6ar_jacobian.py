@@ -30,17 +30,17 @@ from closedform import Derivation, real
 L_theta, l_H = real("L_theta"), real("l_H")
 LENGTHS = (L_theta, L_2W, a_3W)
 MEANINGS = {
-    "J_o": "derivative of the task by theta1, the virtual arm, yaw, roll and pitch",
-    "J_i": "derivative of these quantities by the joints",
-    "P": "derivative of the position by theta1 and the virtual arm",
-    "N": "derivative of the position by the lengths of the virtual arm with the wrist",
-    "H": "derivative of these lengths by yaw, roll and pitch",
+    "J_o": "derivative of the task with respect to theta1, the virtual arm, yaw, roll and pitch",
+    "J_i": "derivative of these quantities with respect to the joints",
+    "P": "derivative of the position with respect to theta1 and the virtual arm",
+    "N": "derivative of the position with respect to the lengths of the virtual arm with the wrist",
+    "H": "derivative of these lengths with respect to yaw, roll and pitch",
     "H_0": "the same for a wrist of constant length",
-    r"\mathbf w": "derivative of these lengths by that of the wrist",
-    r"\mathbf g": "derivative of the length of the wrist by yaw, roll and pitch",
+    r"\mathbf w": "derivative of these lengths with respect to that of the wrist",
+    r"\mathbf g": "derivative of the length of the wrist with respect to yaw, roll and pitch",
     r"L_\theta": "distance of the tip from the mid-plane",
-    "V": "derivative of the virtual arm by the joints of the arms",
-    "W": "derivative of yaw and roll by the joints of the arms",
+    "V": "derivative of the virtual arm with respect to the joints of the arms",
+    "W": "derivative of yaw and roll with respect to the joints of the arms",
 }
 
 
@@ -90,11 +90,11 @@ def _with_hand(length: sp.Expr, whole: sp.Expr) -> sp.Expr:
 
 
 LOOP_MEANINGS = {
-    "K": "derivative of the end of the virtual arm by its angles",
-    "A_R": "derivative of the right tip by the joints of its arm, in the mid-plane",
-    "A_L": "derivative of the left tip by the joints of its arm, in the mid-plane",
-    "E": "derivative of yaw and roll by the base line",
-    "S": "derivative of the base line, seen from the virtual fore-arm, by the tips",
+    "K": "derivative of the end of the virtual arm with respect to its angles",
+    "A_R": "derivative of the right tip with respect to the joints of its arm, in the mid-plane",
+    "A_L": "derivative of the left tip with respect to the joints of its arm, in the mid-plane",
+    "E": "derivative of yaw and roll with respect to the base line",
+    "S": "derivative of the base line, seen from the virtual fore-arm, with respect to the tips",
 }
 
 

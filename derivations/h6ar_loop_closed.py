@@ -103,13 +103,13 @@ midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half
 d.step(
     "Middle and distance of the tips",
     "Both are written in half sums A and half differences of the angles of both arms (alpha for "
-    "the upper arms, beta for the fore-arms).  This form keeps the digits of the distance of the "
-    "tips if the tips are close together.",
+    "the upper arms, beta for the fore-arms).  In this form no digits of the distance of the tips "
+    "cancel if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
     published=("(6)",),
     proves=(
-        "The middle and half the difference of the tips are as stated, in half sums and half "
-        "differences of the angles."
+        "The middle and half the difference of the tips are as stated, in terms of the half sums "
+        "and half differences of the angles."
     ),
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
 )
@@ -184,8 +184,8 @@ d.step(
     "How far the virtual arm is bent",
     "The square of the reach R of the virtual arm is the mean of the squares for both arms, minus "
     "the square of half the distance of the tips.  So N = (L1 + f)^2 - R^2 of the virtual arm, "
-    "where f is the length of a fore-arm, is a sum of terms that are not negative.  It keeps its "
-    "digits if the arms are straight.",
+    "where f is the length of a fore-arm, is a sum of terms that are not negative.  No digits "
+    "cancel if the arms are straight.",
     {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
     proves="The square of the reach is the stated mean, and N of each real arm is the stated sum.",
     equal=[
@@ -227,7 +227,7 @@ d.step(
 
 
 def stand(p: Program) -> Posture:
-    """The posture of the joints, from the middle of the tips and the virtual arm."""
+    """The posture, from the middle of the tips and the virtual arm."""
     second = p.let("fore", forearm_length, nonnegative=True)
     squares, bent = {}, {}
     for name, angle in (("right", theta3R), ("left", theta3L)):
@@ -367,7 +367,7 @@ d.step(
 
 
 def bend_of(p: Posture) -> tuple[sp.Expr, sp.Expr]:
-    """Distance of the tip from the waist axis, and bend of the virtual arm with the wrist."""
+    """Distance of the tip from the waist axis, and the bend of the virtual arm with the wrist."""
     _, along, across = extended(m, p)
     return reach(m, p.upper, p.fore, along, across)[0], straight(along, across, p.upper, p.fore)
 
@@ -408,7 +408,10 @@ d.function(
     program=p,
     equation="J",
     source="derivative of the forward map",
-    notes=(*notes, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
+    notes=(
+        *notes,
+        "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.",
+    ),
 )
 p = Program()
 here = stand(p)
@@ -475,7 +478,7 @@ for name, sign in (("right", 1), ("left", -1)):
     farther = p.let(f"farther_{name}", folding)
     squares[name] = nearer, farther
     margin = p.let(f"margin_{name}", sp.Min(nearer, farther))
-    # the square of the reach changes; near full stretch that is to the other side
+    # the free turn changes the square of the reach, and the two margins in opposite directions
     sense = sp.Piecewise((1, nearer <= farther), (-1, True))
     across = h * upper.c - r * upper.s
     slopes = (
@@ -526,7 +529,8 @@ for name, sigma, unknowns in (
             rest=upper,
         )
     )
-# an arm at its limit may be bent otherwise than the virtual arm, and the wrist points elsewhere
+# an arm at its limit may bend to the other side than the virtual arm, and then the wrist points
+# elsewhere
 kept = [real(f"{k}_{name}", nonnegative=True) for k in "NM" for name in ("right", "left")]
 N, M = (kept[0] + kept[1]) / 2 + gap, (kept[2] + kept[3]) / 2 - gap
 bends = 2 * m.L1 * bent - side * sqrt(sp.Max(0, N)) * sqrt(sp.Max(0, M))
@@ -559,12 +563,13 @@ d.function(
         "SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a "
         "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
         "the distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and "
-        "near stretched wrist links (l_W is less than 2^-10 al).  An arm at its limit that "
-        "rounding bends otherwise than the virtual arm is SINGULAR too.",
+        "where the wrist links are nearly stretched (l_W is less than 2^-10 al).  A posture is "
+        "SINGULAR too if an arm is at its limit and rounding bends it to the other side than the "
+        "virtual arm.",
         ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
-        "A straight right arm is returned bent by a few units in the last place, so that fk can "
-        "tell the side.",
+        "If the right arm is straight, it is returned bent by a few units in the last place, so "
+        "that fk can tell the side.",
     ),
 )
 half_row = Rational(1, 2)

@@ -278,9 +278,10 @@ def wrist_length(m: Dimensions, level: sp.Expr) -> sp.Expr:
 def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
     """Define l_W and half the base line, d / level; ``level`` is the cosine of its tilt.
 
-    The scale of the bounds is at most ``level / 2`` times that in ``wrist_let``, so a posture that
-    is within reach here is also within reach there; and what eight units in the last place of yaw
-    and roll change, because near a right angle a posture with a stretched wrist has no better ones.
+    The scale of the bounds is the sum of two parts.  One is at most ``level / 2`` times the scale
+    in ``wrist_let``, so that a posture within reach here is also within reach there.  The other is
+    the change by eight units in the last place of yaw and roll: near a right angle, no posture with
+    a stretched wrist can be more accurate.
     """
     tilt = sum(sp.Abs(level.diff(a)) for a in sorted(level.free_symbols, key=str))
     size = (m.al + m.gs) * (level * Rational(65, 64) + tilt / 512)
@@ -295,24 +296,25 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
 
 ACCURACY = (
     "OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12: "
-    "yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it."
+    "yaw and roll follow from displacements of the tips divided by d, so rounding errors are "
+    "divided by d too."
 )
 
 
 def condition(m: Dimensions) -> sp.Expr:
-    """By how much roundings are amplified: yaw and roll compare the tips over the distance d."""
+    """The amplification of rounding errors: yaw and roll compare the tips over the distance d."""
     return sum(m) / m.d
 
 
 def allowances(
     program: Program, m: Dimensions, wrist: sp.Symbol, apart: sp.Expr, gap: Iterable[sp.Expr] = ()
 ) -> tuple[sp.Symbol, sp.Symbol]:
-    """Scales of what a target may be missed by: at the tip, and at the tips of the real arms.
+    """The scales of the errors that are allowed at the tip and at the tips of the real arms.
 
-    They are a quarter of what an answer may miss, because several limits may be missed at once.
-    Yaw and roll are given to some units in the last place, and so is what is ``apart`` by as many.
-    Where the links of the ``wrist`` are stretched, and the status says so, its length is known only
-    to the root of such a unit.
+    They are a quarter of the error that an answer may have, because several limits may be missed at
+    once.  Yaw and roll are only known to some units in the last place; ``apart`` says how far the
+    tips move by such an error.  Such an error changes the length of a ``wrist`` whose links are
+    stretched by its root; there the status is SINGULAR.
     """
     base = m.al + m.gs + apart
     by_root = m.al * base / (2**9 * wrist + base / 2**14)
@@ -331,14 +333,14 @@ def along_gap(
     fore: tuple[sp.Expr, sp.Expr],
     height: sp.Expr,
 ) -> tuple[Preferred, ...]:
-    """How far the tip may be from the waist axis if the gap of the tips is across the longer link.
+    """Distances of the tip from the waist axis with the longer link across the gap of the tips.
 
     The ``fore`` link, along and across, ends at the tip, at a ``height`` above the shoulder.  At
-    the limit of the waist, rounding of the target leaves the distance open.  The gap determines it,
-    if the other link is much shorter: other postures do not have that gap.  The longer link may
-    point to either end of the gap, and the other one to either side.  Such a posture exists if the
-    longer link spans the gap; and if the other link is too short for the height that is left, the
-    turn of the longer one that makes up for it must leave the gap within reach of both.
+    the limit of the waist, a rounding error of the target hides this distance.  If the other link
+    is much shorter, the gap determines it, because other postures do not have that gap.  The longer
+    link may point to either end of the gap, and the other one to either side.  Such a posture
+    exists if the longer link spans the gap.  If the other link is too short for the remaining
+    height, the longer one has to turn, and both must still reach the gap after that.
     """
     let = program.let
     along, across = fore
@@ -352,7 +354,7 @@ def along_gap(
     long_r, long_h = let("long_r", x * gap[0] - y * gap[1]), let("long_h", x * gap[1] + y * gap[0])
     shorter = let("shorter", sp.Piecewise((m.L1, by_fore), (whole, True)))
     spans = gap_size <= sp.Max(second, m.L1)
-    # upright, the shorter link has this much to say across the longer one
+    # an upright shorter link has this component across the longer one
     across_long = m.L1 * sp.Abs(gap[1]) / size
     margin = let("across_long", sp.Piecewise((across_long, by_fore), (second, True)))
     roots = []
@@ -376,7 +378,7 @@ class MidPlane(NamedTuple):
     upper: Pair
     fore: Pair
     elbow: Pair
-    """The pair of the angle from the upper arm to the fore-arm."""
+    """Cosine and sine of the angle from the upper arm to the fore-arm."""
 
 
 def solve_mid_plane(
@@ -401,8 +403,7 @@ def solve_mid_plane(
     slack
         the scale of the error that is allowed
     gap
-        how far the right tip is ahead of the middle of the tips and above it, if that does not
-        depend on the virtual arm
+        how far the right tip is ahead of the middle and above it, if known before the virtual arm
     """
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
@@ -420,7 +421,7 @@ def solve_mid_plane(
     virtual = LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1)
     if gap:
         roots = along_gap(program, m, gap, (along, across), z - m.d1)
-        # as much as a clamped bound may be missed by: eight units in the last place of yaw and roll
+        # the error that a clamped bound may have: eight units in the last place of yaw and roll
         virtual = replace(virtual, preferred=roots, rounding=Rational(1, 2**40))
     turn = sine_cosine(
         program,

@@ -121,12 +121,12 @@ h, e = real("h", nonnegative=True), real("e", nonnegative=True)
 to_p = sp.Matrix([meeting[u].subs({chord.distance: 2 * h, height: e}) for u in CP])
 d.step(
     "Forward: P from two circles",
-    "In the plane of the linkage, P is an intersection of the circles of radius L2 about C and D.  "
-    "It is to the left or to the right of CD: these are the two assembly modes.  Let n be the unit "
-    "vector from C to D and h half of their distance.  P is at the distance e from the middle of "
-    "CD, at right angles to n, on either side.  The loop cannot close if CD is longer than 2*L2.  "
-    "If C and D coincide, P is free on a circle; we return the limit for C and D that part along "
-    "the y axis.",
+    "In the plane of the linkage, P is an intersection of the circles of radius L2 about C and "
+    "D.  It is to the left or to the right of CD: these are the two assembly modes.  Let n be the "
+    "unit vector from C to D and h half of their distance.  P is at the distance e from the "
+    "middle of CD, at right angles to n, on either side.  The loop cannot close if CD is longer "
+    "than 2*L2.  If C and D coincide, P is free on a circle; we return the limit for C and D that "
+    "approach each other along the y axis.",
     {
         "h": sqrt(CD[0] ** 2 + CD[1] ** 2) / 2,
         "e": sqrt(L2 - h) * sqrt(L2 + h),
@@ -187,13 +187,13 @@ for name, meaning in (
     ("CD_r", "component of CD away from AB"),
     ("n_1", "component of n away from AB"),
     ("n_2", "component of n along AB"),
-    ("L3", "length of the driven bar over D, where it differs"),
-    ("L4", "length of the passive bar over D, where it differs"),
+    ("L3", "length of the driven bar BD, if it differs from AC"),
+    ("L4", "length of the passive bar DP, if it differs from CP"),
     ("psi", "angle from CP to DP"),
     ("kappa", "condition number of A"),
     ("w", "by how much L0 exceeds 2*L1"),
-    ("s", "slack of the lower limit of L0 in a regime"),
-    ("t", "slack of the upper limit of L0 in a regime"),
+    ("s", "how far L0 is above its lower limit in a regime"),
+    ("t", "how far L0 is below its upper limit in a regime"),
     ("M", "the larger of L1 and L2"),
     ("m", "the smaller of L1 and L2"),
     ("R", "L1 + L2, the outer radius of the hollow spheres"),
@@ -258,7 +258,7 @@ at_p = dict(zip(p, in_space(real("P_y"), P_r), strict=True))
 
 
 def on_the_loop(M: sp.Matrix) -> sp.Matrix:
-    """The matrix with P replaced in its rows: by its plane, by the leg over C, by that over D."""
+    """The matrix with P replaced in its rows: by its plane, the leg over C, the leg over D."""
     rows = [M[i, :].subs(place, simultaneous=True) for i, place in enumerate((at_p, on_c, on_d))]
     return sp.Matrix.vstack(*rows).applyfunc(normal)
 

@@ -302,7 +302,7 @@ class Regime(NamedTuple):
 
 
 def regimes() -> dict[str, Regime]:
-    """The lens of the outer balls, minus the inner balls in it, plus the part these share."""
+    """The lens of the outer balls, minus the inner balls in it, plus the part that these share."""
     ball = sp.Rational(4, 3) * pi * r**3
     outer, mixed, inner = lens(R, R, L0), lens(r, R, L0), lens(r, r, L0)
     cut = pi * (L0 + 4 * r) * (L0 - 2 * r) ** 2 / 12
@@ -334,7 +334,7 @@ SEAMS = (
 
 
 def decrease(found: dict[str, Regime]) -> list[tuple[sp.Expr, sp.Expr]]:
-    """For each regime, minus the derivative by L0, and the same with positive coefficients."""
+    """For each regime, minus the derivative for L0, and the same with positive coefficients."""
     s, t = real("s", positive=True), real("t", positive=True)
     slack = {
         "inner balls inside, overlapping": [(M, m + t), (m, (L0 + s) / 2)],
@@ -373,9 +373,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
             r"V_{lens}(r, R)": lens(inner, reach, L0),
             r"V_{lens}(r, r)": lens(inner, inner, L0),
         },
-        proves=(
-            "The volume in each regime is the sum and difference of the lenses that it consists of."
-        ),
+        proves=("The volume in each regime is the sum of its lenses, with their signs."),
         equal=[(g.volume, g.pieces) for g in found.values()],
         rows=[
             ("inner balls", "range", "volume"),
@@ -391,8 +389,8 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     )
     d.step(
         "Workspace: the regimes meet",
-        "At each seam the volumes of both regimes agree, and so do their derivatives by L0.  So "
-        "the formula holds for all lengths, including the limits.",
+        "At each seam the volumes of both regimes agree, and so do their derivatives with respect "
+        "to L0.  So the formula holds for all lengths, including the limits.",
         {"L_0": [seam for _, _, seam in SEAMS]},
         proves="The volumes of neighbouring regimes, and their derivatives, agree at each seam.",
         equal=[
@@ -404,14 +402,14 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
         "Workspace: where it is largest",
-        "The lengths are written in L0 and the slacks s and t of the inequalities of each regime "
-        "(in the order above, without the last).  Then minus the derivative by L0 has positive "
-        "coefficients, so the volume falls as L0 grows and is largest at L0 = 0.  For a given "
-        "reach L1 + L2 the volume at L0 = 0 grows as the inner radius |L1 - L2| shrinks; it is "
-        "largest at L1 = L2, the whole ball.  Without such a bound on the lengths there is no "
-        "largest workspace.",
+        "In each regime (in the order above, without the last) the lengths are written in terms "
+        "of L0 and the distances s and t of L0 from its limits.  Then all coefficients of minus "
+        "the derivative with respect to L0 are positive, so the volume falls as L0 grows and is "
+        "largest at L0 = 0.  For a given reach L1 + L2 the volume at L0 = 0 grows as the inner "
+        "radius |L1 - L2| shrinks; it is largest at L1 = L2, the whole ball.  Without such a "
+        "bound on the lengths there is no largest workspace.",
         {"V(L_0 = 0)": whole, r"-V'(L_0)": sp.Matrix([form for _, form in decrease(found)])},
-        proves="The volume at L0 = 0, and for each regime minus the derivative in the slacks.",
+        proves="The volume at L0 = 0 is as stated, and so is minus the derivative for each regime.",
         equal=[
             (found["inner balls inside, overlapping"].volume.subs(L0, 0), whole),
             *decrease(found),

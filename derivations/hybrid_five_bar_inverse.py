@@ -172,7 +172,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
         "sides.  Each has two mirror images, which differ in the sign of the angle between the "
         "bars.  So the three signs are those of the diagonal of B.  If P is on the axis, theta1 "
         "is free and we return 0.  P can be at A or at B only if L1 = L2; then theta2 or theta3 "
-        "is free as well.",
+        "is free too.",
         {
             "r_P": sqrt(x**2 + z**2),
             r"\theta_1": turn[theta1],
@@ -199,8 +199,8 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
             r"|\overrightarrow{CP}\times\overrightarrow{DP}|": L2**2 * sp.Abs(sin(theta5 - theta4)),
         },
         proves=(
-            "The cross product of CP and DP from the products with AP and BP, and each of these "
-            "products as stated."
+            "The cross product of CP and DP follows from the products with AP and BP, and each of "
+            "these products is as stated."
         ),
         equal=[
             (

@@ -1,4 +1,4 @@
-"""A six-axis arm whose forearm is driven through a parallelogram, as that of the IRB 2400."""
+"""A six-axis arm whose forearm is driven through a parallelogram, such as the IRB 2400."""
 
 import sympy as sp
 from closedform.derivations.papers.textbook import TEXTBOOK
@@ -23,8 +23,8 @@ d = Derivation(
     TEXTBOOK,
     "theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, "
     "and a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper "
-    "arm is upright, the forearm level along x, and the tool points along x.  Motor 3 stands on "
-    "the turret beside motor 2; a parallelogram takes its turn to the forearm.",
+    "arm is upright, the forearm level along x, and the tool points along x.  Motor 3 is on the "
+    "turret beside motor 2, and a parallelogram transmits its rotation to the forearm.",
 )
 
 
@@ -83,9 +83,10 @@ centre = sp.Matrix([X * cos(theta1), X * sin(theta1), Z])
 forward = arm.export(d, {"shoulder": X, "elbow": elbow, "wrist": sin(theta5)})
 d.step(
     "Centre of the wrist",
-    "In the plane of the arm it is at X forward and Z up; the wrist does not move it.",
+    "In the plane of the arm, the centre of the wrist is X forward and Z up. The joints of the "
+    "wrist do not move it.",
     {"X": X, "Z": Z, "w": centre},
-    proves="The position of the tool is d6 before this point, along the last axis.",
+    proves="The tool is at the distance d6 from this point, along the last axis.",
     equal=[(arm.position, centre + d6 * arm.pose[:3, 2])],
 )
 at_wrist = centre.jacobian(q[:3])
@@ -93,11 +94,11 @@ det = a2 * X * elbow * sin(theta5)
 d.step(
     "Factors",
     "The velocity of the centre of the wrist depends on the first three joints alone, so the "
-    "determinant is that of the arm times that of the wrist.  It vanishes, for an upper arm that "
-    "has a length, where X = 0 (shoulder: the centre of the wrist is on the base axis), where the "
-    "arm is stretched or folded (elbow), and where the axes 4 and 6 coincide (wrist).",
+    "determinant is that of the arm times that of the wrist.  If the upper arm has a length, the "
+    "determinant vanishes where X = 0 (shoulder: the centre of the wrist is on the base axis), "
+    "where the arm is stretched or folded (elbow), and where axes 4 and 6 coincide (wrist).",
     {r"|\det J|": sp.Abs(det)},
-    proves="The product of both determinants is that of J, but for its sign.",
+    proves="The product of both determinants is the determinant of J up to the sign.",
     equal=[((at_wrist.det() * arm.geometric[3:, 3:].det()) ** 2, det**2)],
 )
 
@@ -115,9 +116,9 @@ facing = {-1: "facing", +1: "backward"}
 shoulder = ik.solve(turn, theta1, (wx, -wy, 0), facing)
 d.step(
     "Inverse: the turret",
-    "The centre of the wrist, which is d6 behind the tool, is in the plane of the arm.  Two turns "
-    "of the turret put it there: facing (X >= 0) and backward (X <= 0).  On the base axis theta1 "
-    "is free and we return 0.",
+    "The centre of the wrist, which is d6 behind the tool, is in the plane of the arm.  Two "
+    "angles of the turret put it there: facing (X >= 0) and backward (X <= 0).  If it is on the "
+    "base axis, theta1 is free and we return 0.",
     {"w": centre, r"w_x \sin\theta_1 - w_y \cos\theta_1": sp.S.Zero},
 )
 angle = ik.angle("elbow", theta3 + atan2(d4, a3))
@@ -129,8 +130,8 @@ lift, bend = ik.solve(
 )
 d.step(
     "Inverse: the elbow",
-    "The upper arm a2, the forearm f and the line from the shoulder to the wrist are a triangle, "
-    "whose angle at the elbow is theta3 plus that of the forearm against its frame.",
+    "The upper arm a2, the forearm f and the line from the shoulder to the wrist form a triangle. "
+    "Its angle at the elbow is theta3 plus the constant angle between the forearm and its frame.",
     {"f": sqrt(a3**2 + d4**2), r"\theta_3": angle - atan2(d4, a3)},
 )
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
@@ -148,9 +149,9 @@ aligned_wrist(ik, R03, theta4)
 ik.finish(
     "All eight postures of a pose, as angles of the joints.",
     notes=(
-        "motors_from_joints takes them to the motors.",
+        "motors_from_joints converts them to angles of the motors.",
         "facing: X >= 0; backward: X <= 0.  up: the elbow is above the line from the shoulder to "
-        "the wrist; down: below; the other way round where X is between 0 and a1.",
+        "the wrist; down: it is below.  Where X is between 0 and a1, up and down are interchanged.",
         "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
     ),

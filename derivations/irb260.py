@@ -154,8 +154,8 @@ d.step(
     },
     published=("(10)",),
     proves=(
-        "The derivative of the formula by the angle is the twist times the formula, and at zero "
-        "it is the identity."
+        "The derivative of the formula with respect to the angle is the twist times the formula, "
+        "and at zero the formula is the identity."
     ),
     equal=[(e.diff(theta), twist_matrix(sp.Matrix([*v, *w])) * e), (e.subs(theta, 0), sp.eye(4))],
 )
@@ -223,7 +223,7 @@ d.step(
     "distance of the hand from the base axis; it is negative if the arm reaches over this axis.",
     {r"\rho": rho, r"\psi": turn},
     proves=(
-        "The hand stays level, its x axis has the direction psi, and its place is at the "
+        "The hand stays level, its x axis has the direction psi, and its origin is at the "
         "distance rho from the base axis in the direction of theta1."
     ),
     equal=[
@@ -245,12 +245,12 @@ d.function("pose", "Pose of the hand in the base frame.", {"q": q}, {"T": pose},
 
 # What to draw
 
-rod = l3 / 4  # the paper gives no distance of the rods; it drops out of all equations
+rod = l3 / 4  # the paper does not give the distance of the rods; it drops out of all equations
 before = [d.couple(T) for T in accumulate([sp.eye(4), *moves[:4]], lambda A, B: A * B)]
 
 
 def moved_by(joints: int, home: sp.Matrix) -> sp.Matrix:
-    """A point that the first joints move, from its place at home."""
+    """A point moved by the first joints, from its position at home."""
     return simplest((before[joints] * sp.Matrix([*home, 1]))[:3, 0])
 
 
@@ -311,7 +311,8 @@ d.step(
         r"J^s_{st} = [\xi_1', \xi_2' - \xi_4', \xi_3' - \xi_4', \xi_5']": J_space,
     },
     published=("(16)", "(17)", "(18)", "(20)", "(21)"),
-    proves="Each column is the twist of the derivative of the pose by its joint.",
+    proves="Each column is the twist that belongs to the derivative of the pose with respect to "
+    "its joint.",
     equal=[
         (J_space[:, i], twist_of(pose.diff(angle) * inverse(pose))) for i, angle in enumerate(q)
     ],
@@ -323,9 +324,9 @@ d.step(
     "hand, v + omega × p.",
     {"J_b": J_body, "J": J},
     proves=(
-        "Each column of the body Jacobian is the twist of the derivative of the pose in the "
-        "frame of the hand; the rows of the task Jacobian are v + omega × p and the rate of the "
-        "yaw."
+        "Each column of the body Jacobian is the twist that belongs to the derivative of the "
+        "pose, in the frame of the hand; the rows of the task Jacobian are v + omega × p and the "
+        "rate of the yaw."
     ),
     equal=[(J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)]
     + [(J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)]

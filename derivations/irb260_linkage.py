@@ -29,13 +29,13 @@ def double_parallelogram(
     d.step(
         "The lower loop and its assemblies",
         "Angles are in the plane of the arm and measured from the vertical.  The lower arm and a "
-        "rod of the same length join the turret to a plate at the elbow.  On the turret and on the "
-        "plate their ends are at the distance a1 in the direction gamma1.  The loop equations have "
-        "two solutions for the turn phi1 of the plate and the angle beta1 of the rod.  In the "
-        "parallelogram the plate does not turn, for any a1 and gamma1.  In the crossed assembly, "
-        "an antiparallelogram, it turns.  The assemblies meet if phi1 = 0 in both, that is, "
-        "exactly if the loop is flat: sin(theta2 - gamma1) = 0.  The plate is free to turn only if "
-        "a1 = l3 and the links lie on each other, theta2 = gamma1.",
+        "rod of the same length join the turret to a plate at the elbow.  On the turret and on "
+        "the plate their ends are at the distance a1 in the direction gamma1.  The loop equations "
+        "have two solutions for the turn phi1 of the plate and the angle beta1 of the rod.  In "
+        "the parallelogram the plate does not turn, for any a1 and gamma1.  In the crossed "
+        "assembly, an antiparallelogram, it turns.  The assemblies meet if phi1 = 0 in both, that "
+        "is, exactly if the loop is flat: sin(theta2 - gamma1) = 0.  The plate is free to turn "
+        "only if a1 = l3 and the links coincide, theta2 = gamma1.",
         {
             "0": sp.Matrix(lower.equations),
             r"(\phi_1, \beta_1)_{\text{parallelogram}}": (sp.Integer(0), theta2),
@@ -44,8 +44,8 @@ def double_parallelogram(
             r"1 - \cos\phi_{1,\text{crossed}}": meet,
         },
         proves=(
-            "Both assemblies close the loop, the crossed one has the stated turn and rod, and "
-            "where the links lie on each other the turn is free."
+            "Both assemblies close the loop, the crossed one has the stated turn and rod angle, "
+            "and the turn is free where the links coincide."
         ),
         equal=[
             *((rest, sp.zeros(2, 1)) for rest in closed),

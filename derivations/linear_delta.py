@@ -9,8 +9,8 @@ d = Derivation(
     "linear_delta",
     "Delta robot with linear drives",
     TEXTBOOK_LOOPS,
-    "Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the "
-    "first is on the x axis.  Parallelograms of length l lead from them to the platform, at the "
+    "Three sliders move up columns at the distance f from the z axis, a third of a turn apart; "
+    "the first is on the x axis.  Parallelograms of length l connect them to the platform, at the "
     "distance e from its centre P, and keep it from turning.",
     task=["x", "y", "z"],
 )

@@ -21,7 +21,7 @@ from closedform import (
 
 d = Derivation(
     "opw_arm",
-    "Six-axis arm of industry (OPW)",
+    "Industrial six-axis arm (OPW)",
     ORTHO_PARALLEL,
     "theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, "
     "and a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper "
@@ -74,7 +74,7 @@ for axis in "xyz":
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.  The lengths "
-    "that the paper calls c with an index are an l here, because such a c is a cosine.",
+    "c_1 to c_4 of the paper are written with an l here, because c_1 is also a cosine.",
     {},
     rows=[
         ("Link", "a_i", "alpha_i", "d_i", "theta_i"),
@@ -90,10 +90,10 @@ centre = rotation("z", theta1) * sp.Matrix([X, b, Z])
 forward = arm.export(d, {"shoulder": X, "elbow": elbow, "wrist": sin(theta5)})
 d.step(
     "Centre of the wrist",
-    "In the plane of the arm, which is b to the left of the first axis, it is at X forward and Z "
-    "up; the wrist does not move it.",
+    "The plane of the arm is b to the left of the first axis. In this plane, the centre of the "
+    "wrist is X forward and Z up. The joints of the wrist do not move it.",
     {"X": X, "Z": Z, "w": centre},
-    proves="The position of the tool is c4 before this point, along the last axis.",
+    proves="The tool is at the distance c4 from this point, along the last axis.",
     equal=[(arm.position, centre + c4 * arm.pose[:3, 2])],
 )
 at_wrist = centre.jacobian(q[:3])
@@ -101,12 +101,12 @@ det = c2 * X * elbow * sin(theta5)
 d.step(
     "Factors",
     "The velocity of the centre of the wrist depends on the first three joints alone, so the "
-    "determinant is that of the arm times that of the wrist.  It vanishes, for an upper arm that "
-    "has a length, where X = 0 (shoulder: the centre of the wrist is as near to the first axis as "
-    "b allows), where the arm is stretched or folded (elbow), and where the axes 4 and 6 coincide "
-    "(wrist).",
+    "determinant is that of the arm times that of the wrist.  If the upper arm has a length, the "
+    "determinant vanishes where X = 0 (shoulder: the centre of the wrist is as near to the first "
+    "axis as b allows), where the arm is stretched or folded (elbow), and where axes 4 and 6 "
+    "coincide (wrist).",
     {r"|\det J|": sp.Abs(det)},
-    proves="The product of both determinants is that of J, but for its sign.",
+    proves="The product of both determinants is the determinant of J up to the sign.",
     equal=[((at_wrist.det() * arm.geometric[3:, 3:].det()) ** 2, det**2)],
 )
 
@@ -128,9 +128,10 @@ links = Links(from_shoulder, c2, f)
 shoulder = ik.solve(turn, theta1, (wx, -wy, -b), facing, toward=links)
 d.step(
     "Inverse: the turret",
-    "The centre of the wrist, which is c4 behind the tool, is in the plane of the arm.  Two turns "
-    "of the turret put it there: facing (X >= 0) and backward (X <= 0).  Nearer to the first axis "
-    "than b there is none; on the axis itself, with b = 0, theta1 is free and we return 0.",
+    "The centre of the wrist, which is c4 behind the tool, is in the plane of the arm.  Two "
+    "angles of the turret put it there: facing (X >= 0) and backward (X <= 0).  There is no "
+    "solution if it is nearer to the first axis than b.  If it is on the axis, with b = 0, theta1 "
+    "is free and we return 0.",
     {"w": centre, r"w_x \sin\theta_1 - w_y \cos\theta_1": -b},
 )
 angle = ik.angle("elbow", theta3 + atan2(a2, c3))
@@ -142,8 +143,8 @@ lift, bend = ik.solve(
 )
 d.step(
     "Inverse: the elbow",
-    "The upper arm c2, the forearm f and the line from the shoulder to the wrist are a triangle, "
-    "whose angle at the elbow is theta3 plus that of the forearm against its frame.",
+    "The upper arm c2, the forearm f and the line from the shoulder to the wrist form a triangle. "
+    "Its angle at the elbow is theta3 plus the constant angle between the forearm and its frame.",
     {"f": sqrt(a2**2 + c3**2), r"\theta_3": angle - atan2(a2, c3)},
 )
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
@@ -162,11 +163,11 @@ ik.finish(
     "All eight postures of a pose.",
     notes=(
         "facing: X >= 0; backward: X <= 0.  up: the elbow is above the line from the shoulder to "
-        "the wrist; down: below; the other way round where X is between 0 and a1.",
+        "the wrist; down: it is below.  Where X is between 0 and a1, up and down are interchanged.",
         "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
-        "Ill-conditioned near the shoulder and elbow singularities, where the angles lose half "
-        "the digits, the pose does not.",
+        "Ill-conditioned near the shoulder and elbow singularities: the angles lose half their "
+        "digits, the pose does not.",
         "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),
     singular=(

@@ -8,9 +8,9 @@ d = Derivation(
     "orthoglide",
     "Orthoglide",
     TEXTBOOK_LOOPS,
-    "Three sliders move along the axes x, y and z.  Parallelograms of length L lead from them to "
-    "the hand P, which they keep from turning.  Where all sliders are at L, P is at the origin and "
-    "the legs are at right angles: there the mechanism is isotropic.",
+    "Three sliders move along the axes x, y and z.  Parallelograms of length L connect them to "
+    "the hand P and keep it from turning.  If all sliders are at L, P is at the origin and the "
+    "legs are at right angles to each other: there the mechanism is isotropic.",
     task=["x", "y", "z"],
 )
 L = d.parameter("L", value=1, unit="m", meaning="length of the legs", source="the unit of length")

@@ -136,7 +136,7 @@ manipulability = l1 * l2 * sp.Abs(sin(theta2))
 d.step(
     "Jacobian and its determinant",
     "The rows are the rates of x, y and phi.  The determinant of the rows of x and y does not "
-    "depend on theta1, because turning the whole arm changes nothing inside it.",
+    "depend on theta1, because it does not change if the whole arm turns about its base.",
     {"J": J, r"\det J_{xy}": det},
     proves="The determinant of the first two rows of J is the stated product.",
     equal=[(J[:2, :].det(), det)],
@@ -233,11 +233,11 @@ outer, inner = (l1 + l2) ** 2 - r**2, r**2 - (l1 - l2) ** 2
 with_names = Triangle(l1, l2, sigma, N, M)
 d.step(
     "Inverse: the elbow",
-    "The code takes another way, because near a boundary of the workspace D is nearly 1 or -1: "
-    "then 1 - D^2 has lost half the digits of the sine, or is negative by a rounding error.  N and "
-    "M measure how far the hand is from both boundaries.  They are 1 - D and 1 + D up to a common "
-    "factor, so the ratio of their roots is the tangent of half the angle, and it keeps the hand "
-    "in place up to rounding.",
+    "The code computes the angle differently.  Near a boundary of the workspace D is nearly 1 or "
+    "-1.  Then 1 - D^2 has lost half the digits of the sine, or is negative by a rounding error.  "
+    "N and M measure how far the hand is from both boundaries.  They are 1 - D and 1 + D up to a "
+    "common factor, so the ratio of their roots is the tangent of half the angle.  With this "
+    "angle the hand reaches its position up to rounding.",
     {"N": outer, "M": inner, r"\theta_2": with_names.elbow, r"\alpha": with_names.base},
     proves="N and M are 1 - D and 1 + D, each times twice the product of the lengths.",
     equal=[(outer, 2 * l1 * l2 * (1 - cosine)), (inner, 2 * l1 * l2 * (1 + cosine))],

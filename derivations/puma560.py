@@ -87,7 +87,8 @@ det = a2 * X * elbow * sin(theta5)
 forward = arm.export(d, {"shoulder": X, "elbow": elbow, "wrist": sin(theta5)})
 d.step(
     "Centre of the wrist",
-    "In the plane of the arm it is at X forward and Z up; the wrist does not move it.",
+    "In the plane of the arm, the centre of the wrist is X forward and Z up. The joints of the "
+    "wrist do not move it.",
     {"X": X, "Z": Z, "p": arm.position},
     proves="The position of the pose is this vector, turned by theta1.",
     equal=[(arm.position, rotation("z", theta1) * sp.Matrix([X, -d3, Z]))],
@@ -95,9 +96,9 @@ d.step(
 d.step(
     "Factors",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
-    "wrist.  It vanishes, for an upper arm that has a length, where X = 0 (shoulder: the centre of "
-    "the wrist is as near to the base axis as d3 allows), where the arm is stretched or folded "
-    "(elbow), and where the axes 4 and 6 coincide (wrist).",
+    "wrist.  If the upper arm has a length, the determinant vanishes where X = 0 (shoulder: the "
+    "centre of the wrist is as near to the base axis as d3 allows), where the arm is stretched or "
+    "folded (elbow), and where axes 4 and 6 coincide (wrist).",
     {r"\det J": det},
     proves=(
         "The last three joints do not move the centre of the wrist, and the product of both "
@@ -120,9 +121,9 @@ shoulder = ik.solve(turn, theta1, (px, -py, d3), facing, toward=LinksAtHeight(a2
 d.step(
     "Inverse: the shoulder",
     "The third row of A_1^{-1} T says that the wrist is d3 beside the plane of the arm.  The two "
-    "solutions face the wrist (right, X >= 0) and turn their back to it (left, X <= 0).  Nearer to "
-    "the base axis than d3 there is none; on the axis itself, with d3 = 0, theta1 is free and we "
-    "return 0.",
+    "solutions face the wrist (right, X >= 0) and turn their back to it (left, X <= 0).  There is "
+    "no solution if the wrist is nearer to the base axis than d3.  If it is on the axis, with d3 "
+    "= 0, theta1 is free and we return 0.",
     {
         r"p_x \sin\theta_1 - p_y \cos\theta_1": d3,
         "X": -shoulder.side * sqrt(px**2 + py**2 - d3**2),
@@ -140,9 +141,9 @@ lift, bend = ik.solve(
 )
 d.step(
     "Inverse: the elbow",
-    "The upper arm a2, the forearm f and the line from the shoulder to the wrist are a triangle, "
-    "whose angle at the elbow is theta3 plus that of the forearm against its frame.  up: the elbow "
-    "is above the line from the shoulder to the wrist; down: below.",
+    "The upper arm a2, the forearm f and the line from the shoulder to the wrist form a "
+    "triangle.  Its angle at the elbow is theta3 plus the constant angle between the forearm and "
+    "its frame.  up: the elbow is above the line from the shoulder to the wrist; down: below.",
     {
         "f": sqrt(a3**2 + d4**2),
         "r": sqrt(X**2 + pz**2),
@@ -173,8 +174,8 @@ ik.finish(
         "from the shoulder to the wrist; down: below.",
         "X is how far the centre of the wrist is ahead of the base axis.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
-        "Ill-conditioned near the shoulder and elbow singularities, where the angles lose half "
-        "the digits, the pose does not.",
+        "Ill-conditioned near the shoulder and elbow singularities: the angles lose half their "
+        "digits, the pose does not.",
         "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),
     singular=(

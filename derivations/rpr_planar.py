@@ -8,7 +8,7 @@ d = Derivation(
     "rpr_planar",
     "Planar parallel mechanism (two RPR legs)",
     TEXTBOOK_LOOPS,
-    "Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by "
+    "Two legs turn freely about A1 at the origin and A2 at b on the x axis.  Their lengths are "
     "rho1 and rho2, and both carry the point P.  The slides are driven; the angles theta1 and "
     "theta2 of the legs follow.",
     task=["x", "y"],

@@ -9,7 +9,8 @@ d = Derivation(
     "Slider-crank",
     TEXTBOOK_LOOPS,
     "The crank of length r turns about the origin.  The slider moves along a line parallel to the "
-    "x axis, at the height e.  The connecting rod of length l joins the end of the crank to it.",
+    "x axis, at the height e.  The connecting rod of length l joins the end of the crank to the "
+    "slider.",
     task=["x"],
 )
 r = d.parameter("r", value=1, unit="m", meaning="length of the crank", source="the unit of length")

@@ -10,11 +10,11 @@ d = Derivation(
     "Spherical five-bar linkage",
     SPHERICAL_LOOPS,
     "All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius "
-    "r about it.  The first crank turns about the x axis, the second about the axis in the plane "
-    "of x and y at the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods "
-    "beta1 and beta2; the rods carry the point P.  At 0 a crank lies in the plane of "
-    "x and y, on the side that leads from the first axis to the second; at 90 degrees it rises "
-    "along z.",
+    "r about it.  The first crank turns about the x axis, the second about an axis in the plane "
+    "of x and y at the angle gamma from it.  The arcs of the cranks are alpha1 and alpha2, those "
+    "of the rods beta1 and beta2.  The rods carry the point P.  At 0 a crank lies in the plane of "
+    "x and y and points in the direction from the first axis to the second; at 90 degrees it "
+    "points up along z.",
     task=["x", "y", "z"],
 )
 MEANINGS = {

@@ -50,7 +50,7 @@ q = (theta4, theta5, theta6)
 # Orientation by Euler angles
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
-d.write("flip", r"\varepsilon", "pi in the second branch, else 0")
+d.write("flip", r"\varepsilon", "pi in the second branch, 0 in the first")
 d.explain(
     {
         "A_4": "motion from link to link",
@@ -122,9 +122,9 @@ d.step(
 )
 d.step(
     "Determinant and singular set",
-    "Both determinants are the same, because the frames differ by a rotation.  They vanish exactly "
-    "if theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
-    "the normal of the axes.",
+    "Both determinants are the same, because the frames differ by a rotation.  They vanish "
+    "exactly if theta5 is 0 or pi: then the first and the last axis coincide, and the hand cannot "
+    "turn about the normal to axes 4 and 5.",
     {r"\det J": det},
     proves="Both determinants are the stated one.",
     equal=[(space.det(), det), (body.det(), det)],
@@ -164,8 +164,8 @@ d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1
 d.step(
     "Inverse orientation",
     "The third column of R gives theta4, up to the sign of sin(theta5), and then theta5.  theta6 "
-    "follows from the rotation that remains after theta4.  Eq. (16) takes it from the third row "
-    "instead, which hardly depends on theta6 if theta5 is small.",
+    "follows from the rotation that remains after theta4 is undone.  Eq. (16) takes theta6 from "
+    "the third row instead, which hardly depends on it if theta5 is small.",
     {
         r"\theta_4": sp.atan2(sigma * given[1, 2], sigma * given[0, 2]),
         r"\theta_5": sp.atan2(remaining[0, 2], given[2, 2]),

@@ -1,4 +1,4 @@
-"""Arms with a spherical shoulder, an elbow and a spherical wrist, as the KUKA LBR iiwa."""
+"""Arms with a spherical shoulder, an elbow and a spherical wrist, such as the KUKA LBR iiwa."""
 
 import sympy as sp
 from closedform.derivations.papers.seven_joints import ARM_ANGLE
@@ -70,9 +70,9 @@ d.explain(
         "w": "the wrist, seen from the shoulder",
         "L": "distance of the wrist from the shoulder",
         "r": "distance of the wrist from the line through the shoulder along z",
-        "e": "height of a unit vector against the axis of the elbow",
-        "f": "L times the height of a unit vector across the line to the wrist, in the plane of "
-        "the arm",
+        "e": "vertical component of a unit vector along the axis of the elbow",
+        "f": "L times the vertical component of a unit vector in the plane of the arm, across the "
+        "line to the wrist",
         "R_{03}": "rotation of the upper arm",
     }
 )
@@ -86,7 +86,8 @@ d.step(
         "L": sqrt(w_squared),
         "r": sqrt(real("w_x") ** 2 + real("w_y") ** 2),
     },
-    proves="The flange is d_bs above the shoulder, w and d_wf along the last axis, together.",
+    proves="The position of the flange is the sum of d_bs upwards, w, and d_wf along the last "
+    "axis.",
     equal=[
         (arm.position, sp.Matrix([0, 0, d_bs]) + w + d_wf * arm.pose[:3, 2]),
         (w.dot(w), w_squared),
@@ -114,10 +115,10 @@ minors = [determinant(arm.middle[:, columns]) for columns in others]
 d.explain({r"\dot q": "joint rates that do not move the hand"})
 d.step(
     "Self-motion",
-    "One motion of the joints leaves the hand where it is.  Its rates are the determinants of J "
-    "without one column each, with alternating signs and without their common factor.  J has a "
-    "smaller rank, so that the hand loses a direction, exactly where all these determinants "
-    "vanish, for links that have a length: where sin(theta4) = 0, and where sin(theta2) and "
+    "One motion of the joints leaves the hand where it is.  Leave out one column of J at a time: "
+    "the seven determinants, with alternating signs and divided by their common factor, are the "
+    "rates of this motion.  The hand loses a direction exactly where all determinants vanish.  If "
+    "the links have a length, that is where sin(theta4) = 0, and where sin(theta2) and "
     "sin(theta6), or sin(theta2) and cos(theta3), or sin(theta6) and cos(theta5) vanish together.",
     {r"\dot q": self_motion},
     proves="J times these rates is zero, and d_se d_ew sin(theta4) times them are the minors.",
@@ -140,10 +141,10 @@ det = -d_se * d_ew * distance * s2 * s4 * s6
 d.step(
     "Determinant and singular set",
     "The arm angle psi is that of the vector (f, L e), where f and e are the coordinates below.  "
-    "With its derivative as the last row J is square.  The arm is singular where the axes 1 and 3 "
-    "coincide (shoulder), where it is stretched or folded (elbow), and where the axes 5 and 7 "
-    "coincide (wrist).  Where the wrist is above or below the shoulder (upright), r = 0, and psi "
-    "has no plane from which it is counted.",
+    "With its derivative as the last row, J is square.  The determinant vanishes where axes 1 and "
+    "3 coincide (shoulder), where the arm is stretched or folded (elbow), and where axes 5 and 7 "
+    "coincide (wrist).  If the wrist is above or below the shoulder (upright), r = 0, and psi is "
+    "not defined.",
     {
         "e": level,
         "f": across,
@@ -189,8 +190,8 @@ bent = ik.vector("v", sp.Matrix([0, d_se, 0]) + turned(elbow) * sp.Matrix([0, d_
 M = ik.solve(arm_plane, psi, to_elbow, bent[:2, 0], p, because={theta4: 1}, sense=-1)
 d.step(
     "Inverse: the shoulder",
-    "The arm angle and w determine the rotation of the upper arm: it takes the line to the wrist "
-    "to w, and the axis of the elbow to the direction that the arm angle says.  The branches front "
+    "The arm angle and w determine the rotation of the upper arm.  It turns the line to the wrist "
+    "to w, and the axis of the elbow to the direction given by the arm angle.  The front branches "
     "have sin(theta2) >= 0.",
     {"R_{03}": rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)},
 )
@@ -201,8 +202,8 @@ ik.solve(zyz, right, (theta5, theta6, theta7), {+1: "noflip", -1: "flip"})
 ik.finish(
     "All eight postures of a pose at an arm angle.",
     notes=(
-        "up: sin(theta4) <= 0; down: sin(theta4) >= 0.  At arm angles within a right angle of 0, "
-        "the elbow of the branches up is above the line from the shoulder to the wrist.",
+        "up: sin(theta4) <= 0; down: sin(theta4) >= 0.  If the arm angle is between -90 and 90 "
+        "degrees, the elbow of the up branches is above the line from the shoulder to the wrist.",
         "front: sin(theta2) >= 0; back: sin(theta2) <= 0.",
         "noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.",
     ),

@@ -58,8 +58,8 @@ forward = arm.export(d, {"shoulder": sin(theta2), "boom": d3, "wrist": sin(theta
 d.step(
     "Factors",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
-    "wrist.  It vanishes where the boom is vertical (shoulder), where it is drawn in so that the "
-    "wrist is on the axis of the shoulder (boom), and where the axes 4 and 6 coincide (wrist).",
+    "wrist.  It vanishes where the boom is vertical (shoulder), where it is drawn in so far that "
+    "the wrist is on the axis of the shoulder (boom), and where axes 4 and 6 coincide (wrist).",
     {
         r"\det J_{11}": determinant(arm.geometric[:3, :3]),
         r"\det J_{22}": determinant(arm.geometric[3:, 3:]),
@@ -79,9 +79,10 @@ shoulder = ik.solve(turn, theta1, (-px, py, d2), {+1: "right", -1: "left"}, scal
 lift, _ = ik.solve(polar, theta2, d3, (pz, -shoulder.ahead), {+1: "out", -1: "back"}, name="boom")
 d.step(
     "Inverse: the shoulder and the boom",
-    "The wrist is d2 beside the plane of the boom: X forward and p_z up.  The arm faces the wrist "
-    "(right, X >= 0) or turns its back to it (left); the boom is drawn out to the wrist (out, d3 "
-    ">= 0) or, turned by pi, through the shoulder (back, d3 <= 0; no real boom can).",
+    "The boom moves in a plane at the distance d2 from the base axis.  In this plane the centre "
+    "of the wrist is X forward and p_z up.  The arm faces the wrist (right, X >= 0) or turns its "
+    "back to it (left, X <= 0).  The boom slides out to the wrist (out, d3 >= 0) or, turned by "
+    "pi, back through the shoulder (back, d3 <= 0), which a real boom cannot do.",
     {
         "X": shoulder.side * sqrt(px**2 + py**2 - d2**2),
         "d_3": real("sigma_boom") * sqrt(real("X") ** 2 + pz**2),

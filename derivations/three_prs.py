@@ -9,10 +9,11 @@ d = Derivation(
     "three_prs",
     "3-PRS mechanism",
     TRIPODS,
-    "Three sliders move along columns.  A rod leads from each of them to a corner of the hand: a "
-    "hinge at the slider keeps it in an upright plane, and a ball joint holds the hand.  The "
-    "planes meet in the z axis, at 120 degrees to each other.  The hand lifts and tilts; it also "
-    "twists and moves sideways a little, which follows from its height and its tilts.",
+    "Three sliders move along columns.  A rod leads from each of them to a corner of the hand.  A "
+    "hinge at the slider keeps the rod in a vertical plane, and a ball joint connects it to the "
+    "hand.  The planes meet in the z axis, at 120 degrees to each other.  The hand lifts and "
+    "tilts.  It also turns about z and moves sideways a little, as its height and its tilts "
+    "determine.",
 )
 b, a, l = (
     d.parameter(name, value=Rational(value), unit="m", meaning=meaning, source="an example")

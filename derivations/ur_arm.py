@@ -21,8 +21,8 @@ d = Derivation(
     "UR-type arm (three parallel axes)",
     TEXTBOOK,
     "theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and "
-    "parallel; that of theta5 is normal to them and that of theta6 to the one of theta5.  No three "
-    "axes meet in a point, so there is no spherical wrist.",
+    "parallel; the axis of theta5 is normal to them, and the axis of theta6 is normal to that of "
+    "theta5.  No three axes meet in a point, so there is no spherical wrist.",
     singularities=("shoulder", "elbow", "wrist"),
 )
 
@@ -72,14 +72,14 @@ beside = {+1: "left", -1: "right"}
 shoulder = ik.solve(turn, theta1, (wrist[0], -wrist[1], d4), beside, toward=toward)
 for axis in "xyz":
     d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
-d.write("phi", meaning="what the three parallel axes turn together")
-d.write("ex", "e_x", "horizontal component of what the two links have to reach")
-d.write("ey", "e_y", "vertical component of what the two links have to reach")
+d.write("phi", meaning="sum of the turns about the three parallel axes")
+d.write("ex", "e_x", "horizontal component of the vector that the two links span")
+d.write("ey", "e_y", "vertical component of the vector that the two links span")
 d.explain({"w": "centre of the wrist"})
 d.step(
     "Inverse: the shoulder",
-    "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulders put "
-    "it there; nearer to the first axis than d4 there is none.",
+    "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulder "
+    "angles put it there, and there is none if the wrist is nearer to the first axis than d4.",
     {"w": ik.p - d6 * ik.R[:, 2], r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
 )
 first = in_plane(shoulder)
@@ -95,9 +95,10 @@ lifted = ik.solve(zyz, M, (lift, beta, theta6), {+1: "noflip", -1: "flip"}, reac
 d.step(
     "Inverse: the wrist",
     "Seen from the plane of the arm, the tool is turned about z, y and z, by phi, -theta5 and "
-    "theta6, where phi = theta2 + theta3 + theta4 is what the parallel axes turn together.  Where "
-    "sin(theta5) vanishes, four axes are parallel, and phi is free within the reach of the elbow: "
-    "we return one that puts the wrist in the middle of this reach, so that no pose is lost.",
+    "theta6, where phi = theta2 + theta3 + theta4 is the sum of the turns about the parallel "
+    "axes.  Where sin(theta5) vanishes, four axes are parallel, and phi is free within the reach "
+    "of the elbow.  We return the phi that puts the wrist in the middle of this reach, so that no "
+    "pose is lost.",
     {"R_z(\\phi) R_y(-\\theta_5) R_z(\\theta_6)": first * ik.R},
 )
 ex = ik.let("ex", d5 * lifted.s - across)
@@ -105,7 +106,8 @@ ey = ik.let("ey", -d5 * lifted.c - upward)
 ik.solve(two_links, (theta2, theta3), (ex, ey), (L2, L3), {+1: "up", -1: "down"})
 d.step(
     "Inverse: the elbow",
-    "What is left is a planar two-link arm of the lengths L2 and L3, and theta4 from the sum phi.",
+    "The rest is a planar two-link arm with the lengths L2 and L3; theta4 then follows from the "
+    "sum phi.",
     {
         "e_x": L2 * cos(theta2) + L3 * cos(theta2 + theta3),
         "e_y": L2 * sin(theta2) + L3 * sin(theta2 + theta3),

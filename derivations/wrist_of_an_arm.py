@@ -14,14 +14,14 @@ def wrist_step(
     turned_back = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
     d.step(
         "Inverse: the wrist",
-        "The arm leaves the rotation R_03^T R to the wrist, whose third column gives theta4 and "
-        "theta5.  The branches with noflip in their names have sin(theta5) >= 0; those with flip "
-        "have theta4 and theta6 turned by pi and theta5 negated.  Where sin(theta5) = 0 only "
-        "theta4 + theta6 or theta4 - theta6 is determined and we return theta4 = 0.",
+        "The rotation of the wrist is R_03^T R, and its third column gives theta4 and theta5.  "
+        "The branches with noflip in their names have sin(theta5) >= 0.  In those with flip, "
+        "theta5 has the opposite sign, and theta4 and theta6 are turned by pi.  If sin(theta5) = "
+        "0, only theta4 + theta6 or theta4 - theta6 is determined, and we return theta4 = 0.",
         {"R_{03}": R03, "R_{36}": R36},
         proves=(
-            "The rotation of the pose is R_03 R_36, and R_36 is the same if theta4 and theta6 "
-            "turn by pi and theta5 changes its sign."
+            "The rotation of the pose is R_03 R_36, and R_36 is the same if theta4 and theta6 are "
+            "turned by pi and theta5 changes its sign."
         ),
         equal=[
             (pose[:3, :3], R03 * R36),
@@ -32,7 +32,7 @@ def wrist_step(
 
 
 def aligned_wrist(ik: Chain, R03: sp.Matrix, theta4: sp.Symbol) -> None:
-    """State where the outer axes of the wrist coincide, and what their angles then keep."""
+    """State where the outer axes of the wrist coincide, and what stays fixed there."""
     for middle, relation in (
         (sp.eye(3), r"\theta_4 + \theta_6"),
         (rotation("y", pi), r"\theta_4 - \theta_6"),

@@ -215,11 +215,11 @@ def test_a_lemma_on_an_equation_of_another_shape() -> None:
 
 
 def test_a_lemma_before_its_time() -> None:
-    """A coefficient holds a joint that is still unknown, or one is solved twice."""
+    """A coefficient contains a joint that is still unknown, or one is solved twice."""
     d = derivation()
     ik = Chain(d, planar(d))
     x, y = ik.x
-    with pytest.raises(ShapeError, match="theta2 stands in its coefficients, which no lemma has"):
+    with pytest.raises(ShapeError, match="its coefficients contain theta2, which no lemma has"):
         ik.solve(turn, THETA1, (x, y, d.parameters[1].symbol * sp.cos(THETA2)), {1: "a", -1: "b"})
     d = derivation()
     ik = Chain(d, planar(d))

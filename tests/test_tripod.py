@@ -248,7 +248,7 @@ def test_nearest_and_pictures(sprint: ModuleType) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("(0, 1), (0, a)", "(0, 1), (0, -b)", "uneven: the corners do not say which way"),
+        ("(0, 1), (0, a)", "(0, 1), (0, -b)", "uneven: the corners do not determine how"),
         ("away = Rational(-3, 5), Rational(-4, 5)", "away = (-1, 0)", "two legs are in the same"),
         ("away = Rational(-3, 5), Rational(-4, 5)", "away = (-1, -1)", "a unit vector"),
         ("Stretch(q3, (b, 0))", "Stretch(q3, (b, 0, 0))", "vectors have 2"),

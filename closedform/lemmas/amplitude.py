@@ -94,9 +94,9 @@ class Amplitude:
 
 
 def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
-    """A flag for a turn whose ``lever`` is so short that rounding may decide what is in reach.
+    """A flag for a joint whose ``lever`` is so short that rounding may decide what is within reach.
 
-    It is raised below 2^-8 of the ``scale``; for a longer lever the tolerance of a reach covers the
-    rounding.
+    It is true if the lever is less than 2^-8 of the ``scale``.  With a longer lever, the tolerance
+    of the reach covers the rounding.
     """
     return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")

@@ -15,7 +15,7 @@ from closedform.model.pair import Pair
 
 @dataclass(frozen=True)
 class Applied:
-    """A lemma that was applied: its result, and the meanings of the names that it made."""
+    """A lemma that was applied: its result, and the meanings of the names that it added."""
 
     lemma: Lemma
     result: Any
@@ -23,5 +23,5 @@ class Applied:
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     degenerate: tuple[Degenerate, ...] = ()
     halves: Mapping[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
-    """Angles as the angle of a pair, the same in every branch, plus zero or half a turn."""
+    """Angles as that of a pair, which all branches share, plus zero or half a turn."""
     relations: tuple[Relation, ...] = ()

@@ -21,7 +21,7 @@ KEPT = (
     "OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the "
     "distance of the wrist from the vertical line through the shoulder."
 )
-UNDEFINED = f"{UPRIGHT}; the arm angle is counted from the plane of x and z."
+UNDEFINED = f"{UPRIGHT}; the arm angle is measured from the plane of x and z."
 
 theorem(
     "arm plane",
@@ -35,12 +35,13 @@ $\sigma e_3$ are orthonormal, and so are $f_3 = w/r$ and $-\sin\psi\,f_1 + \cos\
 rotation takes the first two to the last two: it takes their cross product, $\sigma\,(\sin\beta,
 -\cos\beta, 0)$, to $-\cos\psi\,f_1 - \sin\psi\,f_2$.""",
     exception=r"""If $\rho = 0$, the plane of $w$ and the third unit vector is undefined, and so is
-$\psi$.  If $r = 0$, every rotation that takes $\sigma e_3$ to the right vector is a solution.""",
+$\psi$.  If $r = 0$, every rotation that takes $\sigma e_3$ to the vector on the right side is a
+solution.""",
 )
 
 
 def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense: int = 1) -> Pair:
-    """Take the arm angle as an input of the inverse, beside the pose; returns its pair.
+    """Take the arm angle as an input of the inverse, besides the pose; return its pair.
 
     ``shoulder`` is the rotation to a frame whose third axis is that of the elbow, and ``v`` is the
     line from the shoulder to the centre of the wrist in this frame; both depend on the joints, and
@@ -62,7 +63,8 @@ def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense:
     none = p.vanishes("upright", size, chain.sum_of_lengths(), UPRIGHT)
     d.function(
         "arm_angle",
-        "The arm angle: of the plane of the arm, about the line from the shoulder to the wrist.",
+        "The arm angle: the turn of the plane of the arm about the line from the shoulder to the "
+        "wrist.",
         {"q": list(chain.joints)},
         {"arm_angle": direction(y, x, size, none).angle},
         program=p,
@@ -84,7 +86,7 @@ def arm_plane(
 ) -> Applied:
     """``M v = w`` for the rotation M of a shoulder, at the arm angle whose pair is ``psi``.
 
-    If w is along z, the plane of x and z takes the place of that of w and z.
+    If w is along z, the plane of x and z replaces the plane of w and z.
 
     Parameters
     ----------
@@ -147,8 +149,8 @@ def arm_plane(
             (r"\sigma", sp.sympify(sense, strict=True)),
         ),
         vectors=(
-            r"The algorithm has the polar coordinates of $w$ and $v$, and the vectors $f_i$ by the "
-            r"sines and cosines of these."
+            "The algorithm uses polar coordinates of $w$ and $v$, and forms the vectors $f_i$ "
+            "from the sines and cosines of their angles."
         ),
         matrix="M",
     )

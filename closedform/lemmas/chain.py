@@ -56,9 +56,9 @@ AMPLIFIED = (
 class Chain:
     """Collects the links of an inverse.
 
-    ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those
-    named in ``angles`` count modulo a turn.  Tolerances are relative to the ``size`` of the arm,
-    the sum of its lengths unless another is set before the first lemma.
+    ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those named
+    in ``angles`` are compared up to full turns.  Tolerances are relative to the ``size`` of the
+    arm, the sum of its lengths unless another is set before the first lemma.
     """
 
     d: Derivation
@@ -120,7 +120,7 @@ class Chain:
         return sp.Add(*sized) + max(map(lengths_in_numbers, places))
 
     def given(self, joint: sp.Symbol) -> Any:
-        """Take a joint as an input of the inverse, beside the pose.
+        """Take a joint as an input of the inverse, besides the pose.
 
         Returns its pair, or its value if it slides.
         """
@@ -135,10 +135,10 @@ class Chain:
         return self.solve(given)
 
     def given_angle(self, name: str, image: sp.Expr, weight: sp.Expr = sp.S.One) -> sp.Symbol:
-        """Take an angle of the posture as an input of the inverse, beside the pose.
+        """Take an angle of the posture as an input of the inverse, besides the pose.
 
-        ``image`` is the angle as a function of the joints.  It may be undefined at some postures;
-        near them, answers keep it only as well as the ``weight`` allows, which vanishes there.
+        ``image`` is the angle as a function of the joints.  It may be undefined at some postures.
+        ``weight`` vanishes there, and the error that is allowed in the angle is divided by it.
         """
         symbol = self._given(name, image)
         self.angles = (*self.angles, name)
@@ -148,7 +148,9 @@ class Chain:
 
     def _given(self, name: str, image: sp.Expr) -> sp.Symbol:
         if not self.is_pose:
-            raise ShapeError(f"{self.d.name}: a joint or an angle can only be given beside a pose")
+            raise ShapeError(
+                f"{self.d.name}: a joint or an angle can only be given in addition to a pose"
+            )
         symbol = real(f"x_{name}")
         self.inputs[name] = symbol
         self.targets, self.images = (*self.targets, symbol), (*self.images, image)
@@ -157,10 +159,10 @@ class Chain:
     def reached(self, rest: sp.Matrix | None = None) -> None:
         """Compare the pose of the joints with the target, for arms that do not reach every pose.
 
-        With fewer than six joints the lemmas use only a part of the target.  What rounding makes
-        them miss of the rest is corrected; the status is UNREACHABLE if the rest does not match.
-        If a lemma has used the whole rotation, ``rest`` is what the joints leave of the position,
-        which must be zero.
+        With fewer than six joints the lemmas use only a part of the target.  Rounding errors in the
+        rest are corrected; the status is UNREACHABLE if the rest does not match.  If a lemma has
+        used the whole rotation, ``rest`` is what remains of the position after all joints, and it
+        must be zero.
         """
         meaning, place = "the pose is one of the arm's", self.forward
         if rest is not None:
@@ -178,7 +180,7 @@ class Chain:
             pairs=pairs, slides=slides, size=size,
         ).applied()  # fmt: skip
         for entry, scale in zip(self.corrected.missed, scales, strict=True):
-            # half: the size counts a length once for each term of a coordinate that holds it
+            # half: the size counts a length once for each term of a coordinate that contains it
             self.program.match(entry, scale / 2, meaning)
 
     def _solved_pair(self, total: sp.Expr) -> Pair:
@@ -252,7 +254,7 @@ class Chain:
         return symbol
 
     def amplified_over(self, length: sp.Expr | int) -> sp.Expr:
-        """Declare that rounding of the size of the arm is divided by a ``length``, as by a lever.
+        """Declare that rounding errors of the size of the arm are divided by a ``length``, a lever.
 
         Returns the error that is allowed in an answer, on the scale of the tolerances: half the
         size of the arm or more.  If a length of parameters vanishes, the status is INVALID.
@@ -319,7 +321,7 @@ class Chain:
         return applied.result
 
     def _written_out(self, relation: Relation) -> Relation:
-        """A relation with the names replaced that the program does not keep."""
+        """A relation in which the names that the program does not keep are replaced."""
         made = {s.symbol: s.value for s in self.program.body if isinstance(s, (Let, Bound))}
         made |= self.meaning
         known: dict[sp.Basic, sp.Basic] = {}
@@ -360,8 +362,8 @@ class Chain:
             unknowns = ", ".join(map(str, lemma.solution))
             raise ShapeError(
                 f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} cannot be applied here: "
-                f"{early[0]} stands in its coefficients, which no lemma has solved yet; solve for "
-                f"{early[0]} before, or take an equation without it"
+                f"its coefficients contain {early[0]}, which no lemma has solved yet; solve for "
+                f"{early[0]} first, or use an equation without it"
             )
 
     def pair_of(self, total: sp.Expr, known: Mapping[sp.Expr, Pair] | None = None) -> Pair | None:
@@ -431,7 +433,7 @@ class Chain:
         return pair.angle + sp.Add(*(flip for _, flip in half))
 
     def _answers(self) -> list[sp.Expr]:
-        """The values of the joints, moved together where the lemmas miss some of the target."""
+        """The values of the joints, corrected where the lemmas miss a part of the target."""
         values = [self.values[j] for j in self.joints]
         if self.corrected is None:
             return values
@@ -468,7 +470,7 @@ class Chain:
     def continuum(self, free: sp.Symbol, locus: Mapping[sp.Symbol, Any], relation: str) -> None:
         """State where a joint is free: values of the target and the parameters, and a relation.
 
-        The locus may be written in joints that were solved before.  The relation between the other
+        The values may contain joints that were solved before.  The relation between the other
         joints is LaTeX.
         """
         flags = [s.symbol for s in self.program.body if isinstance(s, Vanishes) and free in s.free]
@@ -487,7 +489,7 @@ class Chain:
     ) -> Inverse:
         """Export the inverse.
 
-        ``singular`` says where which joint is free, in place of the words of the lemmas.
+        ``singular`` says which joint is free and where, instead of the sentences of the lemmas.
         """
         d = self.d
         self._solve_sums()

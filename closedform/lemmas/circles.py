@@ -24,17 +24,17 @@ h = \frac{\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}}{2 d}, \qquad \sigma =
 with $\mathcal S = r_1 + r_2 + d$, $\mathcal A = r_1 + r_2 - d$, $\mathcal B = d + r_1 - r_2$ and
 $\mathcal C = d - r_1 + r_2$.  They exist if and only if $\mathcal A$, $\mathcal B$ and $\mathcal C$
 are not negative, and coincide if and only if one of these is zero.  Since $\mathcal B + \mathcal C
-= 2 d$ and $(\mathcal B - \mathcal C)(\mathcal A + d) = 2(r_1^2 - r_2^2)$, the share of $\mathbf n$
-is also
+= 2 d$ and $(\mathcal B - \mathcal C)(\mathcal A + d) = 2(r_1^2 - r_2^2)$, the coefficient of
+$\mathbf n$ is also
 $$\frac{1}{2}\Bigl(d + \frac{(\mathcal B - \mathcal C)(\mathcal A + d)}{\mathcal B + \mathcal C}
 \Bigr),$$
-which loses no digits where the centres are close to each other.""",
-    proof=r"""Write $\mathbf x = s\,\mathbf n + t\,\mathbf n^\perp$.  The distances say $s^2 + t^2
-= r_1^2$ and $(s - d)^2 + t^2 = r_2^2$.  Their difference is linear in $s$ and gives $2 d s = d^2
-+ r_1^2 - r_2^2$.  Then $4 d^2 t^2 = (2 d r_1 - 2 d s)(2 d r_1 + 2 d s) = \bigl(r_2^2 - (d -
-r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = \mathcal A\mathcal C\,\mathcal B\mathcal S$.  Of
-$\mathcal A$, $\mathcal B$ and $\mathcal C$ at most one is negative, because the sum of any two is
-twice a length.  So the product is not negative if and only if none of them is.""",
+in which no digits cancel where the centres are close to each other.""",
+    proof=r"""Write $\mathbf x = s\,\mathbf n + t\,\mathbf n^\perp$.  The distances give $s^2 +
+t^2 = r_1^2$ and $(s - d)^2 + t^2 = r_2^2$.  Their difference is linear in $s$ and gives $2 d s
+= d^2 + r_1^2 - r_2^2$.  Then $4 d^2 t^2 = (2 d r_1 - 2 d s)(2 d r_1 + 2 d s) = \bigl(r_2^2 - (d
+- r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = \mathcal A\mathcal C\,\mathcal B\mathcal S$.  Of
+$\mathcal A$, $\mathcal B$ and $\mathcal C$ at most one is negative, because the sum of any two
+is twice a length.  So the product is not negative if and only if none of them is.""",
     exception=r"""If $d = 0$ and $r_1 = r_2$, the circles are the same and $\mathbf x$ is free on
 it; if $d = 0$ and $r_1 \ne r_2$, there is no such point.""",
 )
@@ -71,8 +71,8 @@ def circle_intersection(
 
     With the factors of Heron's formula the height of the triangle is ``sqrt(S*A*B*C)/(2*d)``.  If
     the radii are equal and the centres coincide, the point is free on a circle.  By convention, the
-    answer is then that for centres that differ along the first axis if both radii are one symbol,
-    and otherwise the point on this axis.  Circles that touch meet in one point.
+    answer is then the point on the first axis.  If both radii are the same symbol, it is the limit
+    for centres that approach each other along this axis.  Circles that touch meet in one point.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def circle_intersection(
         f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
     )
     S = first + second + distance
-    # of a gap between the circles, the point misses each by half
+    # if there is a gap between the circles, the point misses each of them by half of it
     tolerated = 2 * share * scale
     A = program.bound(f"slack{suffix}", first + second - distance, tolerated, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")

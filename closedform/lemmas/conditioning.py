@@ -15,8 +15,8 @@ def conditioning(
 ) -> tuple[str, dict[str, Any], tuple[str, ...]]:
     """The condition number of A: what the function returns, its outputs and its notes.
 
-    ``size`` is that of the determinant of the ``rods``.  If the hand is ``on_sphere``, the first of
-    them is the strut, and the others count as far as they move the hand on the sphere.
+    ``size`` is that of the determinant of the ``rods``.  If the hand is ``on_sphere``, the first
+    rod is the strut.  Only the components of the others that move the hand on the sphere count.
     """
     note = "Infinite at a parallel singularity."
     seen = "of A"
@@ -29,7 +29,7 @@ def conditioning(
             off = v.let(f"off{k}", rod.dot(n))
             across = zip("xyz", rod - off * n, strict=True)
             rods.append(sp.Matrix([v.let(f"t{k}_{i}", e) for i, e in across]))
-        seen = "of the rods of the driven legs, as they are seen along the strut"
+        seen = "of the rods of the driven legs, as seen along the strut"
     squares = [v.let(f"square{k}", r.dot(r)) for k, r in enumerate(rods, 1)]
     if len(rods) == 2:
         gap = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)

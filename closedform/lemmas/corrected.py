@@ -1,9 +1,9 @@
 """A correction of all joints at once, for arms that do not reach every pose.
 
-Each lemma uses a part of the target.  Near a singularity of the joints that it solves for, rounding
-turns them far, and with fewer than six joints the others cannot make up for it: the rest of the
-target is missed, although it determines the joints well.  Then all joints are moved together by a
-step of least squares, as Gauss and Newton do.  In exact arithmetic nothing is missed.
+Each lemma uses a part of the target.  Near a singularity of the joints that it solves for, a
+rounding error turns them far.  With fewer than six joints, the other joints cannot compensate for
+it: the rest of the target is missed, although it determines the joints well.  Then all joints are
+moved together by one Gauss-Newton step of least squares.  In exact arithmetic nothing is missed.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from closedform.model.pair import Pair
 LOOSE = sp.Rational(1, 2**46)
 """How much of the target may be missed before it counts as more than rounding of the answer."""
 FAR = sp.Rational(1, 2**10)
-"""The largest step; what it leaves is of the order of its square."""
+"""The largest step; the error that remains is of the order of its square."""
 DAMPING = sp.Rational(1, 2**50)
 """Added to the squares of least squares, of the order of their rounding."""
 
 
 @dataclass(frozen=True)
 class Corrected:
-    """What is left of the target after the correction, and how far each joint was moved."""
+    """The error of the target after the correction, and how far each joint was moved."""
 
     loose: sp.Symbol
     missed: tuple[sp.Expr, ...]
@@ -61,7 +61,9 @@ class Correction:
             for k, (e, c) in enumerate(zip(missed, self.scales, strict=True))
         ]
         most = let("most_missed", sp.Max(*map(sp.Abs, relative)))
-        meaning = "the joints are moved together to what the lemmas have left of the target"
+        meaning = (
+            "the joints are moved together to reach the part of the target that the lemmas miss"
+        )
         loose = self.program.vanishes("loose", LOOSE - most, sp.S.One, meaning)
         step = self._step(relative)
         pairs = {
@@ -100,7 +102,7 @@ class Correction:
         ]
 
     def _step(self, missed: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
-        """How far each joint moves: a step of damped least squares, none if it is far."""
+        """How far each joint moves: a step of damped least squares, or none if the step is long."""
         let, known = self.program.let, self._known(self.pairs, self.slides)
         units = {j: self.size if j in self.slides else sp.S.One for j in self.joints}
         columns = []

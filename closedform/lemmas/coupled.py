@@ -219,11 +219,11 @@ def _inverse(loop: _Loop) -> None:
     d.branches = working.labels
     d.step(
         "Inverse: the driver",
-        "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  Its "
-        "two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
-        "joints do not determine the follower, however they are computed.  It moves by the "
-        "rounding of the lengths times the length of the rod over A.  The status is SINGULAR if A "
-        f"is less than 2^-10 of {least}.",
+        "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  "
+        "Its two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
+        "joints do not determine the follower, however they are computed.  A rounding error of "
+        "the lengths moves it by this error times the length of the rod over A.  The status is "
+        f"SINGULAR if A is less than 2^-10 of {least}.",
         {},
         uses=[loop.stated],
     )
@@ -245,7 +245,7 @@ def _inverse(loop: _Loop) -> None:
     )
     d.function(
         "workspace_contains",
-        "Whether the follower can be there.",
+        "Whether the follower can reach the target.",
         {"p": (x,)},
         {"inside": sp.true},
         program=inside,

@@ -1,4 +1,4 @@
-"""Joints that a parallelogram drives: motor and crank stand beside the motor of the link before."""
+"""Joints driven through a parallelogram, whose motor is beside the motor of the link before."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def parallelogram_drive(
     through: Mapping[sp.Symbol, tuple[sp.Symbol, Any]],
     motors: Sequence[str] = (),
 ) -> sp.Matrix:
-    """Derive the joints from the motors of an arm, some of whose links parallelograms drive.
+    """Derive the joints of an arm from its motors, if parallelograms drive some of its links.
 
     Exports ``joints_from_motors`` and ``motors_from_joints``, and returns the matrix that takes the
     motors to the joints.
@@ -51,16 +51,16 @@ def parallelogram_drive(
         _state(d, q, before, link, turned[q])
     d.step(
         "Motors",
-        "M takes the angles of the motors to those of the joints.  The other motors turn their "
+        "M converts angles of the motors to angles of the joints.  The other motors turn their "
         "joints directly.",
         {
             rf"M = \partial({', '.join(map(sp.latex, joints))}) / \partial m": M,
             "M^{-1}": M.inv(),
         },
-        proves="M takes the motors to the joints.",
+        proves="M is the derivative of the joints with respect to the motors.",
         equal=[(M * angles, sp.Matrix(rows))],
     )
-    d.explain({"M": "derivative of the joints by the motors"})
+    d.explain({"M": "derivative of the joints with respect to the motors"})
     coupled = ", ".join(f"{q} = {turned[q]} - {turned[through[q][0]]}" for q in through)
     back = ", ".join(f"{turned[q]} = {through[q][0]} + {q}" for q in through)
     for name, summary, given, found in (
@@ -98,18 +98,18 @@ def _state(d: Derivation, q: sp.Symbol, before: sp.Symbol, link: Any, motor: sp.
     closed = sp.Matrix(loop.equations).subs(loop.solution)
     d.step(
         "The parallelogram and its motor",
-        f"The motor of {q} stands on the same body as that of {before}.  It turns a crank of "
-        f"length {r}.  A rod as long as the link between both axes, {link}, leads from it to the "
-        f"driven link, {r} from its axis.  The loop equations have two solutions for the turn of "
-        f"the driven link against the crank.  In the parallelogram it is 0, so the motor gives "
-        f"{before} + {q}, the turn of the driven link against the body of the motors, whatever the "
-        f"crank.  The crossed one, an antiparallelogram, is left out: the two meet only where "
-        f"crank and link are in line.",
+        f"The motor of {q} is on the same body as that of {before}.  It turns a crank of length "
+        f"{r}.  A rod as long as the link between both axes, {link}, leads from it to the driven "
+        f"link, {r} from its axis.  The loop equations have two solutions for the turn of the "
+        "driven link against the crank.  In the parallelogram it is 0, so the angle of the motor "
+        f"is {before} + {q}, the turn of the driven link against the body of the motors, whatever "
+        "the crank.  The crossed one, an antiparallelogram, is left out: the two meet only where "
+        "crank and link are in line.",
         {
             "0": sp.Matrix(loop.equations),
             sp.latex(before + q - motor, order="none"): loop[phi].subs(sigma, 1),
         },
-        proves="Both solutions close the loop, and in the first one the link turns as the crank.",
+        proves="Both solutions close the loop, and in the first one the link turns with the crank.",
         equal=[
             *((closed.subs(sigma, sign), sp.zeros(2, 1)) for sign in (1, -1)),
             (loop[phi].subs(sigma, 1), sp.S.Zero),

@@ -1,4 +1,4 @@
-"""A joint that is an input of the inverse, beside the pose."""
+"""A joint that is an input of the inverse, besides the pose."""
 
 from __future__ import annotations
 

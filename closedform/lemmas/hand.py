@@ -126,7 +126,7 @@ class Hand:
 
     @cached_property
     def centres(self) -> list[sp.Matrix]:
-        """The near ends of the rods, less the places of their far ends on the hand."""
+        """The near ends of the rods, minus the places of their far ends on the hand."""
         return [leg.end() - self.place(leg) for leg in self.legs]
 
     @cached_property
@@ -146,7 +146,7 @@ class Hand:
         return [leg.normal if isinstance(leg, Rail) else span for leg, span in legs]
 
     def told(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
-        """What is shown of legs by their numbers: of alike legs, that of leg i alone."""
+        """The formulas of the legs, by their numbers; of alike legs, only those of leg i."""
         if self.alike:
             first, value = numbered[0]
             return [(INDEX, renamed(value, self.alike.names(first - 1)))]
@@ -181,14 +181,14 @@ class Hand:
                 shown,
             )
         on_hand = any(leg.on_hand for leg in self.legs)
-        less = ", less the place of its far end on the hand," if on_hand else ""
+        less = ", minus the place of its far end on the hand," if on_hand else ""
         same = f"  The legs are alike: {INDEX} is any of 1 to {len(self.legs)}." * bool(self.alike)
         strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
-            f"the joint of its leg determines.  The hand is at the length of the rod from it."
-            f"{strut}{same}",
+            "the joint of its leg determines.  Its distance from the hand is the length of the "
+            f"rod.{strut}{same}",
             shown,
         )
 
@@ -217,12 +217,12 @@ def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
 
 
 def check_plain(d: Derivation, legs: Sequence[Leg | Crank | Slide]) -> None:
-    """Refuse parallelograms, of a mechanism whose parts turn."""
+    """Refuse parallelograms in a mechanism whose hand can turn."""
     parts = [part for leg in legs for part in (leg.rod, getattr(leg, "length", None))]
     if any(isinstance(part, Parallelogram) for part in parts):
         raise ShapeError(
-            f"{d.name}: a Parallelogram keeps the hand from turning, which is known of parallel "
-            f"alone; take plain rods"
+            f"{d.name}: a Parallelogram keeps the hand from turning, which only parallel "
+            "supports; use plain rods here"
         )
 
 

@@ -23,7 +23,7 @@ LEFT_OUT = (
 
 @dataclass(frozen=True)
 class Bars:
-    """A pair of bars of a leg: their parallelogram, and the points between which they are."""
+    """A pair of bars of a leg: their parallelogram, and the points that they connect."""
 
     given: Parallelogram
     near: str
@@ -135,9 +135,9 @@ def _in_space(m: Hand, loop: Step) -> None:
             rf"\mathbf n_{one}": rf"\mathbf u_{one}\times\mathbf r_{one}",
             rf"\boldsymbol\omega\cdot\mathbf n_{one}": sp.S.Zero,
         },
-        proves="The rods fit if and only if the first two equations hold.  At v = u, the rate of "
-        "the first gives the last one.  The bars are unit vectors, and that on a crank is along "
-        "its axis.",
+        proves="The rods fit if and only if the first two equations hold.  At v = u, the "
+        "derivative of the first equation gives the last one.  The bars are unit vectors, "
+        "and that on a crank is along its axis.",
         equal=[
             (square(rods[0]) - square(rods[1]), 4 * h * r.dot(difference)),
             (square(rods[0]) + square(rods[1]), 2 * (square(r) + h**2 * square(difference))),

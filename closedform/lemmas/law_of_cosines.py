@@ -1,4 +1,4 @@
-"""The elbow of two links whose ends have a known distance, without loss of digits."""
+"""The elbow of two links whose ends have a known distance, without cancellation."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def law_of_cosines(
         chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate(lengths, 1)
     )
     r = chain.named(f"r_{name}", r, nonnegative=True)
-    # half: what is clamped stays well within the round trip that is promised
+    # half, so that a clamped bound stays well within the promised accuracy
     triangle = Triangle.from_reach(p, (l1, l2), r, sigma, scale=chain.size / 2, suffix=f"_{name}")
     flag: Any = sp.false
     if not differs_from_zero(chain, l1 * l2, (l1 + l2) ** 2):

@@ -1,10 +1,10 @@
 """Keeps the last axis of an arm within the limits of its wrist, near singular joints.
 
 A wrist whose neighbouring axes are not at right angles does not reach every direction.  Where the
-joints that carry it are singular, a rounding of the target turns them by a multiple of it, or a
-joint is free, and the direction that they leave to the wrist may lie beyond its limit although the
-target is the image of a posture.  Of the turns that the target does not distinguish, one is taken
-that brings the direction within the limits.
+joints that carry it are singular, a joint is free, or a rounding error of the target turns the
+joints by a multiple of that error.  The direction that remains for the wrist may then lie beyond
+its limit, although a posture reaches the target.  The target does not distinguish some turns of
+these joints; of these, one is taken that brings the direction within the limits.
 """
 
 from __future__ import annotations
@@ -24,8 +24,10 @@ from closedform.model.lemma import label
 from closedform.model.pair import Pair
 
 SHORT = sp.Rational(1, 2**8)
-"""Below this fraction of its scale a lever is short: a longer one divides rounding by too little to
-matter for the tolerance of the wrist."""
+"""A lever below this fraction of its scale is short.
+
+A longer one amplifies rounding errors too little to matter for the tolerance of the wrist.
+"""
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,9 @@ def within_tilt(
 ) -> list[Pair]:
     """The pairs of joints that carry a wrist to ``p``, turned so that it can point its last axis.
 
-    They are turned only as far as the position does not tell.  First, all of them turn together, in
-    the direction that moves the wrist least; then one alone, whose axis is nearest to it.
+    They are turned only so far that the position changes by no more than rounding.  First, all of
+    them turn together, in the direction that moves the wrist least; then one alone, whose axis is
+    nearest to it.
 
     Parameters
     ----------
@@ -76,11 +79,11 @@ def within_tilt(
         "loose",
         sp.Max(seen.margin, sp.Min(*map(sp.Abs, levers)) - SHORT),
         sp.S.One,
-        "the joints before the wrist are loose, and it does not tilt as far",
+        "the joints before the wrist are nearly free, and it does not tilt as far",
     )
     chain.notes.append(
-        "SINGULAR: if the wrist does not tilt as far with the value that a free joint before it "
-        "gets, the nearest value with which it does is returned."
+        "SINGULAR: a free joint before the wrist gets its usual value, or the nearest one with "
+        "which the wrist tilts as far as the target requires."
     )
     near = seen.turned(seen.together(), "tilt1")
     near = near.turned(near.alone(), "tilt2")
@@ -97,7 +100,7 @@ def within_tilt(
 
 @dataclass(frozen=True)
 class _Posture:
-    """The joints at some angles, with what they make of the axes.  Names end in ``name``."""
+    """The joints at some angles, and the axes as these angles turn them.  Names end in ``name``."""
 
     chain: Chain
     joints: tuple[Carrying, ...]

@@ -1,4 +1,4 @@
-"""The inverse of a hand on legs, each of which is solved alone, and what loops share beside it."""
+"""The inverse of a hand on legs, each of which is solved alone, and what else all loops share."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ class LegByLeg:
         """Rows with the determinant of A: the ``straight`` ones and the rods of the solved legs.
 
         A determinant does not change if a row is subtracted from the others.  With ``subtract``
-        this is done if the entries have no more values over all branches then: the hand may cancel,
-        but a difference has two signs.
+        this is done if it does not increase the number of values that the entries have over all
+        branches: the hand may cancel, but a difference has two signs.
         """
         rows = [*straight, *(s.rod for s in self.found)]
         if not subtract:
@@ -124,7 +124,7 @@ class LegByLeg:
         if inside.body:
             d.function(
                 "workspace_contains",
-                "Whether the hand can be reached.",
+                "Whether the hand can reach the target.",
                 contained,
                 {"inside": sp.true},
                 program=inside,
@@ -173,7 +173,7 @@ def _either(names: Sequence[str]) -> str:
 
 
 def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:
-    """The sum of the lengths of a mechanism, and of what its slides have moved."""
+    """The sum of the lengths of a mechanism and of the travel of its slides."""
     lengths = [p for p in d.parameters if p.unit != "rad"]
     sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
     return sp.Add(*sized, *map(sp.Abs, moved))

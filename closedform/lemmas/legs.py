@@ -1,4 +1,4 @@
-"""Legs of a closed loop: a joint moves one end of a rod, and the other end is where it should be.
+"""Legs of a closed loop: a joint moves one end of a rod, and the other end is at a given point.
 
 Each kind of leg knows where its joint brings the near end of the rod, and which values of the joint
 bring this end to the distance of the rod from a given point:
@@ -80,7 +80,7 @@ class Solution:
 
 
 class Leg(Protocol):
-    """What a loop asks of a leg.  Vectors have as many entries as the space has dimensions."""
+    """What a loop needs from a leg.  Vectors have as many entries as the space has dimensions."""
 
     joint: sp.Symbol
     rod: Any
@@ -122,7 +122,7 @@ def cross_in_plane(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
 class Naming:
     """Names the quantities of one leg in a program; ``size`` is the sum of all lengths.
 
-    The rod may be missed by a ``share`` of it.
+    The end of the rod may be off by a ``share`` of it.
     """
 
     program: Program

@@ -1,4 +1,4 @@
-"""The lemmas of :mod:`closedform.lemmas` as links of a chain: each hands its joint on as a pair.
+"""The lemmas of :mod:`closedform.lemmas` as links of a chain: each returns its joint as a pair.
 
 The first argument is the :class:`~closedform.lemmas.chain.Chain`.  A coefficient is a symbol or a
 number; any other expression gets a name, so that the lemma is proved for all its values.  Boundary
@@ -42,9 +42,9 @@ def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Sym
 
 
 def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
-    """Whether a value is a number that no tolerance takes for zero on its scale, also a number.
+    """Whether a value is a number that is not zero within the tolerance of its scale.
 
-    If the scale contains a parameter, a number may be arbitrarily small beside it.
+    If the scale contains a parameter, any number may be tiny compared with it.
     """
     numbers = {
         s.symbol: s.value for s in chain.program.body if isinstance(s, Let) and s.value.is_number
@@ -101,7 +101,8 @@ def turn(
 ) -> Applied:
     """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
 
-    Where both solutions nearly meet, a rounding of the target turns x by a multiple of it.
+    Where both solutions nearly meet, a rounding error of the target turns x by a multiple of that
+    error.
 
     Parameters
     ----------
@@ -294,7 +295,7 @@ def two_links(
 def _folded(
     x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
 ) -> dict[sp.Symbol, sp.Expr] | None:
-    """The case of equal links that end where they begin; None where numbers make them unequal."""
+    """The case of equal links that end where they begin; None for different numbers."""
     end = {x: sp.S.Zero, y: sp.S.Zero}
     if l1 == l2:
         return end
@@ -383,7 +384,7 @@ def polar(
 
 theorem(
     "slide",
-    statement=r"""The equation $d = z$ has the one solution $d = z$.""",
+    statement="The equation $d = z$ has exactly one solution, $d = z$.",
     proof=r"""A prismatic joint along the direction of a coordinate moves the hand by as much as
 it is extended; nothing has to be solved.""",
 )
@@ -410,9 +411,9 @@ $(-\pi, \pi]$.""",
 
 @chain_lemma("x = value", "the angle")
 def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
-    """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
+    """``joint = total``, an angle: what remains of an angle of the target after the earlier joints.
 
-    It is read from the sine and the cosine of the sum, so that it needs no reduction.
+    It is computed from the sine and the cosine of the sum, so it needs no reduction.
     """
     total = chain.by_angles(total)
     pair = chain.pair_of(total)

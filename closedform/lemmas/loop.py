@@ -459,7 +459,9 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     if not m.rails:  # a normal is a unit vector, and a rod has a length
         functions.append(("condition_number", *conditioning(v, along, size, on_sphere=bool(still))))
     if factors := constraint(m, along):
-        summary = "What vanishes where the parallelograms do not keep the hand from turning."
+        summary = (
+            "The factors that vanish where the parallelograms do not keep the hand from turning."
+        )
         how = (
             "The determinant of the normals of the parallelograms (a unit vector along the bars "
             "times the vector along the rods)."
@@ -529,7 +531,7 @@ def _inverse(m: Hand, loop: Step) -> None:
     first, *others = along
     across = others[0].cross(others[1]) if len(others) == 2 else None
     volume = g.let("Delta", first.dot(across) if across else sp.Matrix.hstack(*along).det())
-    # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
+    # lengths that are not part of the sum of all lengths, such as those of an arc, are rounded too
     given = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
     links = [sp.sympify(e, strict=True) for e in given]
     beyond = sp.Add(*(e for e in links if not e.is_Atom)) / solved.size
@@ -537,12 +539,11 @@ def _inverse(m: Hand, loop: Step) -> None:
     g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {solved.on_modes}"
-        "Rounded joints miss the lengths of the rods by a few units in the last place.  The "
-        "error of the hand is this error times up to the product of the lengths of the rods over "
-        "the determinant of A.  So near a parallel singularity the joints do not determine the "
-        "hand, however they are computed.  The status is SINGULAR if the determinant is less than "
-        "2^-10 of the product.",
+        f"Each leg is solved alone.  {solved.on_modes}Rounded joints miss the lengths of the rods "
+        "by a few units in the last place.  The error of the hand can be this error times the "
+        "product of the lengths of the rods over the determinant of A.  So near a parallel "
+        "singularity the joints do not determine the hand, however they are computed.  The "
+        "status is SINGULAR if the determinant is less than 2^-10 of the product.",
         {},
         uses=[loop],
     )

@@ -1,7 +1,7 @@
-"""Turns near a tangent, before and in a wrist whose axes meet at any angles.
+"""Turns near a tangent, before and in a wrist whose axes meet at any angle.
 
-Two links have to reach a point less an offset, which the wrist turns about their axis; and the
-wrist has to tilt as far as the target says.  See :mod:`closedform.lemmas.tangent`.
+Two links have to reach a point minus an offset, and the wrist turns this offset about their axis.
+The wrist also has to tilt as far as the target requires.  See :mod:`closedform.lemmas.tangent`.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from closedform.model.lemma import label
 from closedform.model.pair import Pair
 
 STEPS = 3
-"""How often a turn is improved: each step leaves what is of the order of its square."""
+"""The number of steps that improve a turn; the error after a step is of the order of its square."""
 
 
 @dataclass(frozen=True)
 class LinksAndObliqueWrist(Links):
     """Two links that reach q minus an ``offset``, which a wrist turns about their common axis z.
 
-    The wrist turns by z, then follows ``onward``, a turn about z again, and the constant vector
-    ``last``, which has to point along ``axis``.  All but it may be linear in the pair.  ``middle``
-    is the angle of the second turn; ``sense`` is -1 if it is zero where the axes are opposite.
+    The wrist turns about z, then follow the rotation ``onward``, another turn about z, and the
+    constant vector ``last``, which has to point along ``axis``.  Only ``last`` is constant; the
+    others may be linear in the pair.  ``middle`` is the angle of the second turn; ``sense`` is -1
+    if it is zero where the axes are opposite.
     """
 
     axis: Callable[[Pair], sp.Matrix]
@@ -50,7 +51,7 @@ class LinksAndObliqueWrist(Links):
 
 @dataclass(frozen=True)
 class _Wrist:
-    """A wrist, and the links before it, where a turn has brought them."""
+    """A wrist and the links before it, as a turn has moved them."""
 
     goal: LinksAndObliqueWrist
     turn: Turn
@@ -59,7 +60,7 @@ class _Wrist:
         return _Wrist(self.goal, turn)
 
     def unless(self, other: _Wrist, name: str) -> _Wrist:
-        """This, or the other if less is missed there."""
+        """This wrist, or the other one if it misses less."""
         better = other.miss < self.miss
         s, c = (
             sp.Piecewise((there, better), (here, True))
@@ -74,7 +75,7 @@ class _Wrist:
     def along(
         self, name: str, value: Callable[[Pair], sp.Matrix]
     ) -> tuple[list[sp.Expr], list[sp.Expr]]:
-        """The coordinates of what is linear in the pair, and their rates."""
+        """The coordinates of a vector that is linear in the pair, and their rates."""
         s, c = sp.Dummy("s"), sp.Dummy("c")
         pair = self.turn.pair
         here = {s: pair.s, c: pair.c}
@@ -185,7 +186,7 @@ class LinksPastTurn(Links):
         return turn.pair
 
     def _as_far(self, turn: Turn, across: sp.Symbol) -> Pair:
-        """Turned so that the component across the first axis of the wrist is as wanted."""
+        """Turned so that the component across the first axis of the wrist has the wanted value."""
         size = turn.chain.size
         x, y = turn.linear("far", lambda pair: size * self.last(pair))
         goal = turn.let("goal", size * across)

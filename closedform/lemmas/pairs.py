@@ -1,9 +1,9 @@
-"""An angle by its direction, as a sine and a cosine.
+"""An angle as a direction, by its sine and cosine.
 
-A joint after the first is found in a frame that the earlier joints have turned.  For this only
-their sines and cosines are needed; the angles themselves are computed once, for the output.  Every
-pair is normalised by its own numbers.  So it lies on the unit circle up to rounding, even where a
-bound was clamped, and rotations that are built from it stay rotations.
+A joint after the first is found in a frame that the earlier joints have turned.  This needs only
+their sines and cosines; the angles themselves are computed once, for the output.  Every pair is
+normalised by its own numbers.  So it lies on the unit circle up to rounding, even where a bound was
+clamped, and rotations that are built from it stay rotations.
 """
 
 from __future__ import annotations
@@ -20,6 +20,6 @@ def direction(y: sp.Expr, x: sp.Expr, length: sp.Expr, undefined: sp.Basic = sp.
 
 
 def any_pair(name: str) -> Pair:
-    """The pair of any angle but a half turn, in a free symbol."""
+    """The pair of any angle except a half turn, as a function of a free symbol."""
     t = real(name)
     return Pair(2 * t / (1 + t**2), (1 - t**2) / (1 + t**2))

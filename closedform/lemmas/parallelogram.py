@@ -21,15 +21,15 @@ $$\tan\frac{\varphi}{2} = \frac{l\sin(\theta - \gamma)}{l\cos(\theta - \gamma) -
 \beta = 2\gamma + \varphi - \theta.$$
 They coincide if and only if the linkage is flat: $\sin(\theta - \gamma) = 0$.""",
     proof=r"""Either side is the point $P$ in which the coupler meets the rod.  It is at the
-distance $a$ from $L = l e^{i\theta}$ and $l$ from $F = a e^{i\gamma}$.  Two circles have two
-points in common, mirror images of each other in the line $LF$.  One is $L + F$: there the sides
-are parallel, $\varphi = 0$ and $\beta = \theta$.  Let $\delta$ be the direction of $L - F$.  The
-mirror image turns the direction $\gamma$ from $L$ to $P$ into $2\delta - \gamma$, and the
-direction $\theta$ from $F$ to $P$ into $2\delta - \theta$.  So $\varphi = 2(\delta - \gamma)$ and
-$\beta = 2\delta - \theta = 2\gamma + \varphi - \theta$.  The vector $(L - F) e^{-i\gamma} = l
-e^{i(\theta - \gamma)} - a$ has the direction $\delta - \gamma = \varphi/2$, which gives the
-tangent.  Both points are the same if $L + F$ is on the line $LF$, that is, if $L$ and $F$ are in
-line with the origin.""",
+distance $a$ from $L = l e^{i\theta}$ and $l$ from $F = a e^{i\gamma}$.  Two circles about these
+points have two points in common, mirror images of each other in the line $LF$.  One is $L + F$:
+there the sides are parallel, $\varphi = 0$ and $\beta = \theta$.  Let $\delta$ be the direction
+of $L - F$.  The mirror image turns the direction $\gamma$ from $L$ to $P$ into $2\delta -
+\gamma$, and the direction $\theta$ from $F$ to $P$ into $2\delta - \theta$.  So $\varphi =
+2(\delta - \gamma)$ and $\beta = 2\delta - \theta = 2\gamma + \varphi - \theta$.  The vector $(L
+- F) e^{-i\gamma} = l e^{i(\theta - \gamma)} - a$ has the direction $\delta - \gamma =
+\varphi/2$, which gives the tangent.  Both points are the same if $L + F$ is on the line $LF$,
+that is, if $L$ and $F$ are in line with the origin.""",
     exception=r"""If $l = a$ and $\theta = \gamma$, the points $L$ and $F$ are the same, and
 $\varphi$ is free.""",
     rests_on=("circle intersection",),
@@ -42,18 +42,18 @@ joints.  The bars have the directions $\mathbf u$ and $\mathbf v$, both unit vec
 r$ leads from the middle of the first to the middle of the second.  The rods fit if and only if
 $$\mathbf r\cdot(\mathbf v - \mathbf u) = 0 \quad\text{and}\quad |\mathbf r|^2 + h^2 |\mathbf v -
 \mathbf u|^2 = l^2.$$ If $\mathbf v = \mathbf u$, this is a parallelogram, and $|\mathbf r| = l$.
-Let three of them join a hand to bars whose directions $\mathbf u_k$ do not turn, and let $\mathbf
-v_k = R\,\mathbf u_k$, if the hand is turned by $R$.  Where the normals $\mathbf n_k = \mathbf
-u_k\times\mathbf r_k$ of the parallelograms are not in one plane, no motion leads out of $R =
-I$.""",
+Let three of them join a hand to bars whose directions $\mathbf u_k$ do not turn, and let
+$\mathbf v_k = R\,\mathbf u_k$, where $R$ is the rotation of the hand.  If the normals $\mathbf
+n_k = \mathbf u_k\times\mathbf r_k$ of the parallelograms are not in one plane, no continuous
+motion leads away from $R = I$.""",
     proof=r"""The rods are $\mathbf r\pm h(\mathbf v - \mathbf u)$.  Half of the sum of their
 squares is $|\mathbf r|^2 + h^2|\mathbf v - \mathbf u|^2$, and the difference is $4h\,\mathbf
 r\cdot(\mathbf v - \mathbf u)$.  The equations $f_k = \mathbf r_k\cdot(R\,\mathbf u_k - \mathbf
 u_k) = 0$ hold if $R = I$, wherever the hand is.  There the derivative of $f_k$, while the hand
 turns with the rate $\boldsymbol\omega$ and moves in any way, is $\mathbf
 r_k\cdot(\boldsymbol\omega\times\mathbf u_k) = \boldsymbol\omega\cdot\mathbf n_k$.  If the normals
-are not in one plane, these three are zero for $\boldsymbol\omega = 0$ alone.  Then $R = I$ is the
-only solution in a neighbourhood, by the theorem of implicit functions.""",
+are not in one plane, these three are zero only for $\boldsymbol\omega = 0$.  Then $R = I$ is
+the only solution in a neighbourhood, by the implicit function theorem.""",
     exception=r"""If the normals are in one plane, the hand can begin to turn: a constraint
 singularity.  The other solutions, $\mathbf v\ne\mathbf u$, are crossed or twisted.""",
 )
@@ -61,11 +61,11 @@ singularity.  The other solutions, $\mathbf v\ne\mathbf u$, are crossed or twist
 
 @dataclass(frozen=True)
 class Parallelogram:
-    """Two equal rods between two equal bars, instead of one rod: what it carries does not turn.
+    """Two equal rods between two equal bars, instead of one rod: they keep a body from turning.
 
-    It takes the place of the ``rod`` of a leg or of the ``length`` of a crank, and stands for that
-    ``length``.  ``bar`` is the direction of the bars, a unit vector, and ``width`` is their length.
-    It drops out of all equations, so it matters for the drawing alone.
+    It replaces the ``rod`` of a leg or the ``length`` of a crank.  ``bar`` is the direction of the
+    bars, a unit vector, and ``width`` is their length.  The width drops out of all equations and
+    matters only for the drawing.
 
     The crossed linkage with the same rods and bars, the antiparallelogram, is left out, and so are
     twisted ones in space.

@@ -107,7 +107,7 @@ class Platform:
     def meet(self) -> str:
         """What the rods do where A is singular."""
         if self.dimensions == 3:
-            return "the rods belong to one linear complex"
+            return "the lines of the rods belong to one linear complex"
         return "the rods pass through one point or are parallel"
 
     @property
@@ -195,10 +195,10 @@ def _forward(m: Platform, loop: Step) -> int:
         found = "It was counted with a Groebner basis, at lengths and joints drawn at random."
     m.d.step(
         f"Forward: an equation of degree {degree}",
-        "If the joints are given, the equations of the loop are to be solved for the pose.  All "
-        "legs move it together, so that no coordinate follows from fewer of them.  The number of "
-        f"complex solutions is the degree of the equation that remains.  {found}  No formula is "
-        "derived for it.",
+        "If the joints are given, the equations of the loop determine the pose.  They have to be "
+        "solved together: no coordinate follows from a part of them.  The number of complex "
+        f"solutions is the degree of the equation that remains.  {found}  No formula is derived "
+        "for it.",
         {},
         uses=[loop],
     )
@@ -260,9 +260,9 @@ def _velocity(m: Platform, loop: Step) -> None:
         f"{m.meet} (parallel: the hand can move while the joints stand still).",
         shown,
         proves="The derivative of each loop equation along a twist and a joint rate is twice the "
-        "row of A times the twist, less twice the entry of B times the rate.  The determinant that "
-        "is computed is that of any matrix"
-        f"{', and the adjugate gives J with A*J = B' if m.dimensions == 2 else ''}.",
+        "row of A times the twist, minus twice the entry of B times the rate.  The "
+        "formula for the determinant holds for any "
+        f"matrix{', and the adjugate gives J with A*J = B' if m.dimensions == 2 else ''}.",
         equal=[
             *_of_any_matrix(len(m.legs)),
             *(
@@ -340,7 +340,7 @@ def _export(m: Platform) -> None:
 
 
 def _of_any_matrix(n: int) -> list[tuple[Any, Any]]:
-    """That the determinant is the one it should be, and for three rows the adjugate as well."""
+    """That the determinant is correct, and for three rows the adjugate too."""
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     p = Program()
     value = p.explicit(determinant(p, [a.row(i) for i in range(n)]))

@@ -64,7 +64,7 @@ class OnCircle:
     """The equation says that a point is on a circle around the origin of its plane.
 
     The point is linear in the pair of the angle.  If it is far from the origin for most angles, the
-    coefficients of the equation tell less than the point itself.
+    point itself is more accurate than the coefficients of the equation.
     """
 
     point: Callable[[Pair], sp.Matrix]
@@ -128,7 +128,8 @@ def quartic(
     cosine, m, at_a = _part(program, A, (upper, rest_a), u, f"a_{tag}")
     sine, d, at_b = _part(program, B, (lower, rest_b), -u, f"b_{tag}")
     n = program.let(f"n_{tag}", (m - tau * d) / 2)
-    # much more than what e is rounded to, which small parts amplify: in the end the circle decides
+    # much more than the rounding error of e, which small terms amplify: the circle decides in the
+    # end
     terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2)
     missed = program.let(f"missed_{tag}", 2**16 * terms / size / (2 + sp.Abs(m + tau * d)))
     meaning = "the line meets the unit circle"
@@ -220,10 +221,10 @@ def _polished(
     equation: tuple[tuple[sp.Symbol, ...], OnCircle],
     tag: str,
 ) -> Pair:
-    """The pair after a step that removes the rounding of a root, if it brings the point closer.
+    """The pair after a step against the rounding error of a root, if the point comes closer.
 
-    The step solves the equation up to second order, which is also right where two roots nearly
-    meet: ``falls`` is 1 for the one of them at which the point comes from outside.
+    The step solves the equation up to second order, so it works also where two roots nearly meet:
+    ``falls`` is 1 for the root at which the point enters the circle.
     """
     program, ((p, q, a, b), means) = chain.program, equation
     s, c = found.s, found.c

@@ -53,7 +53,7 @@ def root(
         chain.coefficient(f"{n}_root{tag}", value, nonnegative=True)
         for n, value in zip("rh", lengths, strict=True)
     )
-    # half: what is clamped stays well within the round trip that is promised
+    # half, so that a clamped bound stays well within the promised accuracy
     below = p.bound(f"below{tag}", r - h, chain.size / 2, "the distance is not too short")
     value = p.let(f"{d.name}_{tag}", sigma * sp.sqrt(below) * sp.sqrt(r + h) - e)
     lemma = Lemma(

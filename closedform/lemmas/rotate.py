@@ -17,7 +17,7 @@ from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma, label
 
 Because = Mapping[sp.Symbol, sp.Expr | Sequence[sp.Expr]]
-"""Why coefficients depend on each other: unknowns, and the factors of their equations."""
+"""Why two vectors are equally long: unknowns, and the factors of their equations."""
 
 theorem(
     "rotation of a vector",

@@ -41,7 +41,7 @@ then $\mathbf x$ is free on this circle.  If all three are the same, $\mathbf x$
 
 @dataclass(frozen=True)
 class Meeting:
-    """The point that circles or spheres share.
+    """A point that circles or spheres share.
 
     ``first`` leads to it from the first centre.  ``rows`` are the vectors from the centres to the
     point, in the frame of the lemma; their determinant is ``side`` times ``size``, a sign and a
@@ -124,7 +124,7 @@ def three_spheres(
     nu = p.let("nu", n.dot(n), nonnegative=True)
     line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
     equal = r1 == r2 == r3
-    # of a mechanism without size, only equal spheres are seen to touch
+    # in a mechanism without size, only equal spheres are recognised as touching
     beside, length = _beside(p, a, scale if equal else choose(point, 1, scale))
     w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
     if equal:
@@ -199,7 +199,7 @@ def _met_by_equal(
     left = p.let("left", left)
     p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")
     Y = p.let("Y", choose(line, 0, left * mu * part / 2))
-    # the radius of the circle of the centres is longer by what the spheres may be missed by
+    # the error that is allowed for the spheres makes the radius of the circle larger
     missed = 2 * share * scale * r
     square = choose(point, 0, mu / 4 + nu * Y**2)
     slack = p.bound("slack", r**2 - square, missed, "the spheres meet")
@@ -227,7 +227,8 @@ def _met_by_unequal(
     third sphere contains it.
     """
     (r1, near, far), (mu, nu, beyond), (point, line) = radii, squares, flags
-    # the third sphere may miss a circle that the first two just share: less for each of both
+    # if the first two spheres just touch, their errors add to that of the third, so each gets a
+    # third
     tolerated = 2 * share * scale / 3
     unit = p.let("length_a", sp.sqrt(mu), nonnegative=True)
     rest = p.let("length_n", sp.sqrt(beyond), nonnegative=True)
@@ -243,7 +244,7 @@ def _met_by_unequal(
     over = p.let("over_a", rest * part, nonnegative=True)
     left = p.let("left", nu + (dot * over - along) ** 2 + radius**2 - far**2)
     meaning = "the third sphere meets the circle of the others"
-    # a radius of zero may be missed by as much as the others, and this by its own square
+    # for a radius of zero the allowed error is the same, and its square is what appears here
     missed = 2 * tolerated * (far + scale / 2**42)
     upper = p.bound("upper", 2 * j * radius + left, missed, meaning)
     lower = p.bound("lower", 2 * j * radius - left, missed, meaning)

@@ -1,8 +1,8 @@
 """Turns whose two solutions nearly meet, within the reach of the joints that follow.
 
-There a rounding of the target turns the joint by a multiple of it, and the rest may seem to be out
-of reach of the later joints although the target is the image of a posture.  Of the turns that the
-target does not distinguish, one is taken for which the rest is within reach.
+There a rounding error of the target turns the joint by a multiple of that error.  The rest may then
+seem to be out of reach of the later joints, although a posture reaches the target.  The target does
+not distinguish some turns of the joint; of these, one is taken for which the rest is within reach.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ LAST = sp.Rational(1, 2**50)
 class Turned(Pair):
     """The pair of a joint, and the ``lever`` by which it moves the target across its plane.
 
-    A rounding of the target turns the joint by that rounding over the lever.
+    A rounding error of the target turns the joint by that error over the lever.
     """
 
     lever: sp.Expr
@@ -43,8 +43,8 @@ class Turned(Pair):
 class Within:
     """A point whose distance from the origin must be between ``low`` and ``high``.
 
-    A turn moves the point by ``rate`` times its angle.  ``bend`` times the square of the angle is
-    what that adds to the square of the distance, beside the linear part.
+    A turn moves the point by ``rate`` times its angle.  The square of the distance then changes by
+    a part linear in the angle, and by ``bend`` times the square of the angle.
     """
 
     point: tuple[sp.Expr, sp.Expr]
@@ -93,7 +93,7 @@ class Turn:
     def linear(
         self, name: str, value: Callable[[Pair], sp.Matrix]
     ) -> tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]:
-        """The first two coordinates of what is linear in the pair, and their rates."""
+        """The first two coordinates of a vector that is linear in the pair, and their rates."""
         s, c = sp.Dummy("s"), sp.Dummy("c")
         x, y = value(Pair(s, c))[:2]
         here = {s: self.pair.s, c: self.pair.c}
@@ -144,14 +144,14 @@ class Turn:
 
 @dataclass(frozen=True)
 class Tangency:
-    """A turn that is solved up to the choice that its goal makes near a tangent."""
+    """A turn that is solved, except for the choice that its goal makes near a tangent."""
 
     chain: Chain
     at: Amplitude
     root: sp.Symbol
     width: sp.Symbol
     allowance: sp.Expr
-    """What rounding may change the right side of the equation by."""
+    """By how much rounding may change the right side of the equation."""
     suffix: str
     free: Any
     """The flag that the turn is free, or false; then its angle is 0."""
@@ -198,7 +198,7 @@ ANYWHERE = Goal()
 
 
 class Preferred(NamedTuple):
-    """A root that more than the reach of two links speaks for, and when it exists."""
+    """A root that is preferred for a reason besides the reach of two links, and when it exists."""
 
     root: sp.Symbol
     exists: sp.Basic
@@ -208,9 +208,9 @@ class Preferred(NamedTuple):
 class LinksAtHeight(Goal):
     """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
 
-    That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
-    links much shorter than the amplitude might seem too short.  Of the ``preferred`` roots that
-    rounding does not tell from the computed one, the nearest is taken.
+    That coordinate is the root of the turn.  A small root is sensitive to rounding, and links much
+    shorter than the amplitude might seem too short.  The nearest of the ``preferred`` roots is
+    taken if it differs from the computed one by no more than rounding.
     """
 
     l1: sp.Expr
@@ -218,7 +218,7 @@ class LinksAtHeight(Goal):
     height: sp.Expr
     preferred: Sequence[Preferred] = ()
     rounding: sp.Expr = ROUNDING
-    """What rounding changes the right side of the equation by, in units of its scale."""
+    """By how much rounding may change the right side of the equation, in units of its scale."""
 
     def square_in_reach(
         self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
@@ -254,8 +254,9 @@ class LinksAtHeight(Goal):
 class LinkAtHeight(Goal):
     """One link that ends at a ``height``; its other coordinate is the root of a turn.
 
-    So the square of the root is known twice.  Near a tangent that one is taken which rounding
-    changes less: by the ``length`` of the link if it is shorter than the amplitude of the turn.
+    So the square of the root is known in two ways.  Near a tangent, the one that is less sensitive
+    to rounding is taken: the one from the ``length`` of the link if it is shorter than the
+    amplitude of the turn.
     """
 
     length: sp.Expr
@@ -384,8 +385,9 @@ class LinksAndWrist(Links):
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with the rest within reach.
 
-        Steps that keep the direction of the axis, or nearly so, do not get there where a small turn
-        reverses it; then detours lead first to where it points.  Of all ends the nearest counts.
+        Steps that nearly keep the direction of the axis fail where a small turn reverses the axis.
+        So there are also detours, which first move to where the axis has another direction.  Of all
+        results the one that misses least is taken.
         """
         numbers = itertools.count(2)
 
@@ -408,7 +410,7 @@ class LinksAndWrist(Links):
 
 @dataclass(frozen=True)
 class _Place:
-    """Two links and a wrist, where a turn has brought them."""
+    """Two links and a wrist, as a turn has moved them."""
 
     goal: LinksAndWrist
     turn: Turn
@@ -487,7 +489,7 @@ class _Place:
         return self.across(sp.S.Zero)
 
     def across(self, wanted: sp.Expr) -> Pair:
-        """Turned so that the first coordinate of the axis, the one that changes, is as wanted."""
+        """Turned so that the first coordinate of the axis, which changes, has the wanted value."""
         turn = self.turn
         (ax, _), (dax, _) = self.axis
         margin = turn.let("margin", sp.Max(0, (self.most - wanted) * (self.most + wanted)))
@@ -506,8 +508,8 @@ class _Place:
     def directed(self) -> Pair:
         """Turned so that the axis of the wrist has the nearest direction that is within reach.
 
-        A turn changes one coordinate of the axis alone; where the other is zero as well as rounding
-        goes, the wrist is aligned.
+        A turn changes only one coordinate of the axis; where the other is zero up to rounding, the
+        wrist is aligned.
         """
         goal, turn, chain = self.goal, self.turn, self.turn.chain
         (qx, qy), _ = self.q
@@ -565,10 +567,10 @@ class Offset:
     def leaving(
         self, chain: Chain, reach: sp.Expr, side: sp.Expr, name: str
     ) -> tuple[Pair, tuple[sp.Expr, ...]]:
-        """The direction u for which the point less ``offset`` times u is ``reach`` away.
+        """The direction u for which the point minus ``offset`` times u is ``reach`` away.
 
-        It follows from the cosine rule in half angles, to one ``side`` of the point; what it is
-        made of is returned too.
+        It follows from the law of cosines in half angles, to one ``side`` of the point; the
+        intermediate results are returned too.
         """
         p, r, e, (x, y) = chain.program, self.r, self.offset, self.point
         cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)

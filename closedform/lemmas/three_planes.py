@@ -30,11 +30,11 @@ s_{k+1}^2c_{k+2}^2 = c_{k+1}^2 + s_{k+1}^2s_{k+2}^2 = s_{k+2}^2 + c_{k+2}^2c_{k+
 ic_{k+1}c_k)/\rho_{k+2}$, two numbers of absolute value 1.  In the first four $y_k = 0$, in the
 others $y_k \ne 0$, because $C \ne S$.  So all eight differ.  There are no others: a triple is a
 rotation, so a unit quaternion up to its sign, and the three conditions are homogeneous and
-quadratic in it.  By the theorem of Bézout three quadrics have eight common points at most, unless
-they share a curve; the degrees of curves and isolated points together do not exceed eight either.
-A solution is isolated if the vectors $\mathbf w_k\times\mathbf v_k$ are independent.  Their
-determinant is $S - C$ times $\tau_1\tau_2\tau_3$ in the first four and $C - S$ in the others, so
-all eight are isolated, and nothing is left for a curve.""",
+quadratic in it.  By Bézout's theorem three quadrics have at most eight common points, unless
+they share a curve; then the degrees of the curves and the number of isolated points still add
+up to at most eight.  A solution is isolated if the vectors $\mathbf w_k\times\mathbf v_k$ are
+independent.  Their determinant is $S - C$ times $\tau_1\tau_2\tau_3$ in the first four and $C -
+S$ in the others, so all eight are isolated, and nothing is left for a curve.""",
     exception=r"""If $C = S$ and all $\rho_k > 0$, each of the last four is one of the first four.
 If $\rho_k = 0$, then $\mathbf w_{k+1}$ and $\mathbf w_{k+2}$ are $\mathbf u_k$ or $-\mathbf u_k$.
 Every triple with $\mathbf v_k = \pm\mathbf u_k$ is a solution, so the other two axes can turn about

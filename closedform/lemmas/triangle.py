@@ -40,7 +40,7 @@ law of cosines for the angle at the base, $2 R l_1\cos\alpha = R^2 + l_1^2 - l_2
 $\tan^2(\alpha/2) = (1 - \cos\alpha)/(1 + \cos\alpha) = \mathcal A\mathcal C/(\mathcal S\mathcal
 B)$ in the same way; $\alpha$ has the sign of $\theta$, because $R\sin\alpha = l_2\sin\theta$.""",
     exception=r"""If a link has no length, $N + M = 0$ and $\theta$ is free.  If $R = 0$, which
-needs $l_1 = l_2$, the links lie on each other and $\alpha$ is free.""",
+needs $l_1 = l_2$, the links coincide and $\alpha$ is free.""",
 )
 
 
@@ -134,9 +134,9 @@ class Triangle:
     ) -> Triangle:
         """The triangle with the ``square`` of the distance of the ends, and its two bounds.
 
-        Both angles rest on the same N and M, whose rounding counts as some of R.  So the links end
-        where they should even where their angles are ill-conditioned.  A fold closer than 2^-44 of
-        the links does not count as one: there M may be missed by its own square.
+        Both angles follow from the same N and M, whose rounding errors are equivalent to one of R.
+        So the links end where they should even if their angles are ill-conditioned.  A fold closer
+        than 2^-44 of the links does not count as one: there M may be missed by its own square.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ class Triangle:
 
     @property
     def letters(self) -> dict[sp.Symbol, str]:
-        """The letters of the factors, which stand for nothing else."""
+        """The letters of the factors, which have no other meaning."""
         return {
             s: indexed(rf"\mathcal {n}", str(s)[1:])
             for s, n in zip(self.factors, "SABC", strict=False)

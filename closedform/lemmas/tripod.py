@@ -1,4 +1,4 @@
-"""A tripod: three legs in upright planes carry a hand that lifts and tilts, as in the 3-PRS.
+"""A tripod: three legs in vertical planes carry a hand that lifts and tilts, as in the 3-PRS.
 
 The planes share a vertical axis.  A leg is hinged, so that it stays in its plane, and a ball joint
 carries the hand at its end.  The hand has three freedoms: it lifts and tilts in two directions.
@@ -43,7 +43,7 @@ TOGETHER = "The target and the joints have to belong together, as ik gives them.
 
 
 def tripod(d: Derivation, legs: Sequence[Upright]) -> None:
-    """Derive and export a hand that three legs in upright planes lift and tilt.
+    """Derive and export a hand that three legs in vertical planes lift and tilt.
 
     Its task is the height z of the point of the hand, and the tilts: the hand is first twisted
     about its own z axis, then turned by ``tilt_x`` about the x axis of the base, and by ``tilt_y``
@@ -85,13 +85,14 @@ def _place(m: Tripod) -> Step:
     step = d.step(
         "The place of the hand",
         "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and the "
-        "corner of leg i is e in its frame, so it is at p + R*e.  It has to be in the plane of its "
-        "leg, whose normal is n: three equations.  The sum of the normals, each times a weight, "
-        "is zero.  So the sum of the equations with these weights does not contain p.  It is "
-        "f*cos(psi) + g*sin(psi) = 0, and gives the twist.  Then two of the equations are "
-        "linear in the x and y of p.  The other solution, half a turn on, is left out: it is that "
-        "of a hand whose corners are on the other side of its centre.  If f and g both vanish, "
-        "the twist is free; on three equal legs, the hand is upside down there.",
+        "corner of leg i is e in its frame, so it is at p + R*e.  It has to be in the plane of "
+        "its leg, whose normal is n.  This gives three equations.  The sum of the normals, each "
+        "times a weight, is zero.  So the sum of the equations with these weights does not "
+        "contain p.  It is f*cos(psi) + g*sin(psi) = 0, and gives the twist.  Then two of the "
+        "equations are linear in the x and y of p.  The other solution for the twist differs by "
+        "half a turn and is left out: there the corners are on the other side of the centre of "
+        "the hand.  If f and g both vanish, the twist is free.  If the three legs are equal, this "
+        "is where the hand is upside down.",
         {
             r"R\,R_z(\psi)^{-1}": m.tilted,
             "f": f,
@@ -142,10 +143,10 @@ def _close(m: Tripod, placed: Step) -> Step:
     )
     m.d.step(
         f"Forward: an equation of degree {DEGREE}",
-        "If the joints are given, each corner of the hand is on a circle in the plane of its leg, "
-        "and the corners keep their distances.  Three equations in three angles remain, and all "
-        f"of them at once decide.  They lead to an equation of degree {DEGREE} in general.  No "
-        "formula is derived for it.",
+        "If the joints are given, each corner of the hand is on a circle in the plane of its "
+        "leg, and the corners keep their distances.  Three equations in three angles remain, "
+        f"which have to be solved together.  They lead to an equation of degree {DEGREE} in "
+        "general.  No formula is derived for it.",
         {},
         uses=[loop],
     )
@@ -178,20 +179,20 @@ def _velocity(m: Tripod, loop: Step) -> None:
         "target and of the joints.  Row i of A is the vector r_i along the rod times the "
         "derivatives of its far end, the corner.  Entry k of the target, k = 2 or 3, tilts the "
         "hand about the axis a_k, and the twist turns it about a_psi.  The twist follows the "
-        "tilts: F_k is the derivative of f*cos(psi) + g*sin(psi) with respect to entry k; that "
-        "with respect to psi is delta.  So the corner of leg i moves by v_ik, seen from the "
-        "point of the hand.  The point itself moves by p_k, which is horizontal and keeps the "
-        "corners in their planes.  B is diagonal, because each leg depends on its own joint "
-        "alone.  B is singular if the joint moves the near end of a rod at right angles to it "
-        "(serial: the joint moves and the hand stands still).  A is singular if the rods do not "
-        "hold the hand (parallel), and where tilt_x is a right angle: there tilt_y turns the "
+        "tilts: F_k is the derivative of f*cos(psi) + g*sin(psi) with respect to entry k, and "
+        "delta is the derivative with respect to psi.  So the corner of leg i moves by v_ik, seen "
+        "from the point of the hand.  The point itself moves by p_k, which is horizontal and "
+        "keeps the corners in their planes.  B is diagonal, because each leg depends on its own "
+        "joint alone.  B is singular if the joint moves the near end of a rod at right angles to "
+        "it (serial: the joint moves and the hand stands still).  A is singular if the rods do "
+        "not hold the hand (parallel), and where tilt_x is a right angle: there tilt_y turns the "
         "hand about its own axis, as the twist does.  Where delta, the root of f^2 + g^2, "
         "vanishes, the planes do not hold the twist (constraint).",
         _velocities(m),
         proves="The derivative of f*cos(psi) + g*sin(psi) with respect to psi is g*cos(psi) - "
-        "f*sin(psi), which is delta.  The derivative of each loop equation is twice the row of A "
-        "with respect to the target, and less twice the entry of B with respect to the joint.  "
-        "The far end of each rod moves by p_k + v_ik.",
+        "f*sin(psi), which is delta.  The derivative of each loop equation with respect to "
+        "the target is twice the row of A, and with respect to the joint it is minus twice "
+        "the entry of B.  The far end of each rod moves by p_k + v_ik.",
         equal=[
             (
                 turning,
@@ -414,9 +415,9 @@ def _inverse(m: Tripod, loop: Step) -> None:
         [
             f"SINGULAR also near a parallel or a constraint singularity, where {meet}: the loop "
             "closes, but the joints do not determine the hand.",
-            "Where the twist of the hand is free (on three equal legs, upside down) it is taken as "
-            "0.  A rod that does not reach then might with another twist.",
-            "Left out: the postures in which the hand is twisted half a turn more.",
+            "Where the twist of the hand is free (on three equal legs, upside down) it is taken "
+            "as 0.  A rod may then be too short, although it would reach with another twist.",
+            "Left out: the postures in which the hand is twisted by another half turn.",
             f"fk is not derived: the forward problem is an equation of degree {DEGREE}.",
         ],
     )

@@ -22,7 +22,7 @@ TASK = ("z", "tilt_x", "tilt_y")
 
 @dataclass(frozen=True)
 class Upright:
-    """A leg that stays in an upright plane through the z axis, and carries a corner of the hand.
+    """A leg that stays in a vertical plane through the z axis, and carries a corner of the hand.
 
     The plane contains the z axis and ``heading``, a horizontal unit vector in numbers.  In this
     plane the ``leg`` is seen with two coordinates: the distance from the z axis along ``heading``,
@@ -97,8 +97,8 @@ class Tripod:
             raise ShapeError(f"{name}: the task of a tripod is {', '.join(TASK)}")
         if not self.side:
             raise ShapeError(
-                f"{name}: the corners do not say which way the hand is turned at rest; their "
-                f"coordinates need parameters that are positive"
+                f"{name}: the corners do not determine how the hand is turned at rest; write "
+                "their coordinates with positive parameters"
             )
         self.d.task = list(TASK)
 
@@ -130,7 +130,7 @@ class Tripod:
         return rotation("y", self.target[2]) * x, y, self.tilted * z
 
     def balance(self, turned: bool) -> sp.Expr:
-        """The sum over the legs of weight*n*e, for the corners e as they are, or a right angle on.
+        """The sum over the legs of weight*n*e, for the corners e and for e turned by 90 degrees.
 
         With the twist psi, the first times cos(psi) plus the second times sin(psi) vanishes.
         """
@@ -152,9 +152,9 @@ class Tripod:
         return [*enumerate(self.legs, 1)]
 
     def placed(self, p: Program, *, guarded: bool = False) -> Placed:
-        """Name in a program what the target says of the hand; ``guarded`` where the twist is free.
+        """Name the hand at a target in a program; ``guarded`` where the twist is free.
 
-        There the hand is not twisted, instead of being nowhere.
+        There the twist is taken as zero, instead of being undefined.
         """
         side = sp.Integer(self.side)
         f = p.let("f", side * self.balance(turned=False))
@@ -209,7 +209,7 @@ class Tripod:
 
     @property
     def twisting(self) -> sp.Expr:
-        """What vanishes for the right twist psi."""
+        """An expression that vanishes for the correct twist psi."""
         c, s = self.posture.turn
         f, g = (self.side * self.balance(turned) for turned in (False, True))
         return f * c + g * s

@@ -1,4 +1,4 @@
-"""The planar arm of two links with an offset at the forearm: alone, and beside another arm."""
+"""The planar arm of two links with an offset at the forearm: alone, and next to another arm."""
 
 from __future__ import annotations
 
@@ -81,11 +81,11 @@ def two_link_arm_beside(
     free: Sequence[sp.Symbol] = (),
     rest: Pair = LEVEL,
 ) -> Lemma:
-    """The two-link arm, where another arm knows better than the target how far it is bent.
+    """The two-link arm whose bend another arm gives more accurately than the target.
 
-    Taken from the target, the N of its triangle has lost all its digits where the arm is straight,
-    and the elbow half of them.  An arm nearby gives N and M without a difference of nearly equal
-    lengths.
+    If the arm is straight, the N of its triangle, computed from the target, has lost all its
+    digits, and the elbow half of them.  An arm nearby gives N and M without a difference of nearly
+    equal lengths.
 
     Parameters
     ----------

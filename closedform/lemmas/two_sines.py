@@ -37,13 +37,13 @@ def two_sines(
 ) -> Lemma:
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
 
-    The part of the equation across u gives sin y; what is left along u gives sin x, so that an
-    error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
-    digits, and one is taken that leaves u no more than its length.  Where they are parallel a
+    The component of the equation across u gives sin y; the rest along u gives sin x, so that an
+    error of y does no harm where u and v are nearly parallel.  There only a few digits of sin y are
+    known, and a value is taken for which the rest is not longer than u.  Where they are parallel a
     combination of the sines is free; the convention is that both are equally large, which exists
-    whenever any answer does.  The directions of u and v are known to a few units in the last
-    place, so that a multiple of the usual tolerance counts as parallel.  Cosines are kept from
-    zero, so that their sign can be read from the answer.
+    whenever any answer does.  The directions of u and v are known to a few units in the last place,
+    so that a multiple of the usual tolerance counts as parallel.  Cosines are kept from zero, so
+    that their sign can be read from the answer.
 
     Parameters
     ----------

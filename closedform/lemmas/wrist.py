@@ -1,4 +1,4 @@
-"""Two joints of a wrist whose axes have any angle: how far it tilts, and the last rotation."""
+"""Two joints of a wrist whose axes meet at any angle: how far it tilts, and the last rotation."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ other angle in $(-\pi, \pi]$ has the same sine and cosine.""",
 def spin(
     chain: Chain, x: sp.Symbol, N: sp.Matrix, because: Sequence[Because], *, name: str = ""
 ) -> Applied:
-    """``Rz(x) = N`` for a rotation that the earlier joints leave.
+    """``Rz(x) = N`` for the rotation that remains after the earlier joints.
 
     N is a rotation about z by the equations that were solved for the unknowns in ``because``: the
     first two entries of its third column are sums of these equations, each times the factor given.

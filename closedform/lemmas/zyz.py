@@ -25,7 +25,7 @@ _ROUNDINGS = 16
 
 This covers the rounding that an arm adds to the rotation of its wrist, and it turns the hand by
 3e-14 at most.  Of random postures of a Puma whose wrist is exactly aligned, 98 of 100 are
-recognised; in the others the returned angles are right as well.
+recognised; in the others the returned angles are correct too.
 """
 
 theorem(
@@ -119,7 +119,7 @@ def zyz_lemma(
     ``side`` is the sign of sin(middle), and ``flip`` a turn that is added to both outer angles.
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
-    the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
+    the textbooks do: near ``middle = 0`` that row hardly depends on it.  It follows from the
     rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
     is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
     """
@@ -151,8 +151,8 @@ def zyz_lemma(
 class Reaching:
     """Directions u for which ``(x, y) - offset u`` is within reach of two links.
 
-    If the target does not determine u, or only up to rounding, the reach decides.  Otherwise a pose
-    at a singular wrist could come back without a solution although it has one.
+    If the target does not determine u, or only up to rounding, the reach decides.  Otherwise no
+    solution might be found for a pose at a singular wrist, although there is one.
     """
 
     chain: Chain
@@ -165,7 +165,7 @@ class Reaching:
     ahead: Pair
     """How far u is turned ahead of the angle that is solved for."""
     lever: sp.Expr
-    """The lever of the turn before, over which a rounding of the target turns the wrist."""
+    """The lever of the turn before: a rounding error of the target over it turns the wrist."""
 
     def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
         def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
@@ -195,7 +195,7 @@ class Reaching:
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
     def moved(self, u: Pair, gain: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
-        """Flags: u may be in doubt, the nearest direction in reach is u within rounding, it is u.
+        """Flags: u may be inaccurate, the nearest direction in reach is u up to rounding, it is u.
 
         That direction is returned too.  ``gain`` is what multiplies an error of u in the target.
         """
@@ -211,7 +211,7 @@ class Reaching:
         v = self._at(reach, p.let("side", side), "near")
         inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
-        doubt = gain * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
+        doubt = gain * change - sp.Rational(1, 2**42)  # which single precision cannot resolve
         near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
         return close, near, inside, v
 

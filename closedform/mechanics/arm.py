@@ -158,11 +158,11 @@ class Serial:
     ) -> Any:
         """Record pose, Jacobians and determinant as proved steps, and export them as functions.
 
-        ``singular`` names the factors of the determinant that depend on a joint, in the form in
-        which they shall be printed; by default it is factored.  Of seven joints one may be
-        ``given``: the determinant is that of the columns of the others.  Returns the forward map
-        that an inverse must solve: the task coordinates in the joints where the arm has as many
-        (see :meth:`coordinates`), else the pose.
+        ``singular`` names the factors of the determinant that depend on a joint, as they should be
+        printed; by default the determinant is factored. Of seven joints one may be ``given``: the
+        determinant is that of the columns of the others. Returns the forward map that an inverse
+        must solve: the task coordinates in the joints where the arm has as many (see
+        :meth:`coordinates`), else the pose.
         """
         q, task, links = self.joints, self.coordinates(), self.links
         if not d.task:
@@ -201,9 +201,10 @@ class Serial:
             (long.jacobian if long else {"J": self.geometric})
             | ({"J_s": self.space, "J_b": self.body} if spelled else {"J_s": SHIFT, "J_b": TURN}),
             proves=(
-                "J is the derivative of the position with the axes below it; the derivative of T "
-                "by each joint is its column of J_s, as a matrix, times T, and T times its "
-                "column of J_b." + ("" if spelled else "  Both follow from J as stated.")
+                "J is the derivative of the position, with the axes below it. The derivative of T "
+                "with respect to each joint is its column of J_s, as a matrix, times T; it is "
+                "also T times its column of J_b."
+                + ("" if spelled else "  Both follow from J as stated.")
             ),
             equal=[
                 *twists,
@@ -249,7 +250,7 @@ class Serial:
         others = [k for k, joint in enumerate(self.joints) if joint != given]
         if len(others) != 6:
             return
-        # a change of frame does not change it, so it is taken where the twists are shortest
+        # the determinant is the same in every frame, so it is taken where the twists are shortest
         det, name, without = factored_determinant(self.middle[:, others]), "J", ""
         if given is not None:
             name = rf"J_{{\hat{{{self.joints.index(given) + 1}}}}}"
@@ -317,13 +318,14 @@ class Serial:
             equal, det = [*equal, (det, rest * sp.prod(factors))], rest * sp.prod(factors)
         d.step(
             "Determinant and singular set",
-            "The arm is singular exactly where a factor that holds a joint vanishes (for links "
-            f"that have a length): the joints{without and ', but that which is given,'} then "
-            "cannot move the tool in some direction.",
+            "If the links have a length, the arm is singular exactly where a factor that "
+            "contains a joint vanishes: the "
+            f"joints{without and ', except the one that is given,'} then cannot move the tool in "
+            "some direction.",
             {**dict(others), name: det},
             proves=(
-                "The determinant is the stated product, and what it holds besides the factors "
-                "depends on no joint."
+                "The determinant is the stated product, and its remaining factor does not depend "
+                "on the joints."
             ),
             equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
         )
@@ -417,7 +419,7 @@ def from_dh(
         if not modified:
             lead = _followed(lead, links, step)
     if not links:
-        raise RowError(f"{d.name}: no row of the Denavit-Hartenberg table holds a joint")
+        raise RowError(f"{d.name}: no row of the Denavit-Hartenberg table contains a joint")
     last = sp.eye(4) if tool is None else rigid(d, tool, "the tool")
     rest = () if tool is None else (last,)
     turned = sp.eye(3)
@@ -451,7 +453,7 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
     if not held:
         return None
     if len(held) > 1:
-        raise RowError(f"{where} must hold at most one joint, not {', '.join(map(str, held))}")
+        raise RowError(f"{where} must contain at most one joint, not {', '.join(map(str, held))}")
     (joint,) = held
     column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
     place = entries[column]

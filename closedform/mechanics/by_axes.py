@@ -1,4 +1,4 @@
-"""A pose and a Jacobian that are too long to be written out, as articles tell of them."""
+"""How articles show a pose and a Jacobian that are too long to be written out."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.model.derivation import Derivation
 
 ENTRIES = 1000
-"""The most operations of a pose whose entries are written out; of a longer one, its factors."""
+"""The most operations of a pose whose entries are written out; of a longer one, the factors are."""
 AXES = "  Here w_i is the axis of joint i, o_i a point on it, and p the position in T."
 MEANINGS = {"w_i": "axis of joint i", "o_i": "point on the axis of joint i"}
 AXIS = r"\begin{bmatrix} \ast & \ast & \mathbf{w}_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"

@@ -22,7 +22,7 @@ def constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
     joints = {j.symbol for j in d.joints}
     for symbol in sorted(matrix.free_symbols - {p.symbol for p in d.parameters}, key=str):
         if symbol in joints:
-            raise RowError(f"{where}: the joint {symbol} stands in it; at home all joints are zero")
+            raise RowError(f"{where}: it contains the joint {symbol}; at home all joints are zero")
         raise RowError(
             f"{where}: the symbol {symbol} is not a parameter; declare it with d.parameter"
         )
@@ -89,8 +89,8 @@ def exact(value: Any, where: str) -> sp.Expr:
     expr = sp.sympify(value, strict=True)
     if expr.atoms(sp.Float):
         raise TypeError(
-            f"{where}: the float {sorted(expr.atoms(sp.Float), key=str)[0]} stands in {expr}; "
-            f"write an integer or sympy.Rational instead"
+            f"{where}: the float {sorted(expr.atoms(sp.Float), key=str)[0]} occurs in {expr}; "
+            "write an integer or sympy.Rational instead"
         )
     return expr
 

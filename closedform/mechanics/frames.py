@@ -143,7 +143,7 @@ def reduce_circle(value: sp.Matrix) -> sp.Matrix:
 def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     """Reduced by ``s^2 + c^2 = 1``, with the angles of parallel axes added, then factored.
 
-    Of these forms and the given one, entry by entry, the shortest.
+    Of these forms and the given one, the shortest is taken for each entry.
     """
     if isinstance(value, sp.MatrixBase):
         return value.applyfunc(simplest)
@@ -294,7 +294,7 @@ def _terms(expr: sp.Expr) -> int:
 
 @cache
 def _operations(term: sp.Expr) -> tuple[int, bool]:
-    """Those of a term without its minus sign, which makes a sum a difference; and if it has one."""
+    """The operations of a term without its minus sign, and whether it has one."""
     coefficient, _ = term.as_coeff_Mul()
     minus = bool(coefficient.is_negative)
     return int(sp.count_ops(-term if minus else term, visual=False)), minus

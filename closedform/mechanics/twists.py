@@ -7,7 +7,7 @@ import sympy as sp
 from closedform.mechanics.frames import hat
 
 SPELLED = 120
-"""The most operations of a Jacobian that is written out; a longer one is told by the geometric."""
+"""The most operations of a Jacobian that is written out, not expressed by the geometric one."""
 SHIFT = r"\begin{bmatrix} 1 & [p]_\times \\ 0 & 1 \end{bmatrix} J"
 TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
 TURNED = (

@@ -63,7 +63,7 @@ def routes(start: str, end: str, seen: tuple[str, ...] = ()) -> Iterator[tuple[s
 
 
 def in_loop() -> list[str]:
-    """The joints whose bodies are connected in another way too; the others are in series."""
+    """The joints whose bodies are also connected in another way; the other joints are in series."""
     return [joint for joint, (a, b) in JOINTS.items() if len(list(routes(a, b))) > 1]
 
 
@@ -123,7 +123,7 @@ class FiveBar(NamedTuple):
         return len(angles) - gap.jacobian(list(angles)).subs(posture).rank()
 
     def postures(self, at: Mapping[sp.Symbol, sp.Expr] | None = None) -> list[Point]:
-        """Those of ``CLOSED`` in which angles have the given values, up to full turns."""
+        """The postures of ``CLOSED`` in which angles have the given values, up to full turns."""
         names = (*self.lengths, *self.angles[1:])
         found = []
         for several in CLOSED:
@@ -141,7 +141,7 @@ class FiveBar(NamedTuple):
         return normal(self.k.dot(bar.cross(other)))
 
     def serial_cases(self) -> list[str]:
-        """What the vanishing of each entry of B means: which points are in line?"""
+        """Which points are in line where an entry of B vanishes."""
         AC, BD, CP, DP = self.bars
         L2 = self.lengths[2]
         named = {

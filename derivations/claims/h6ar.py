@@ -88,7 +88,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "plane}.”",
         lambda n, plane: Every(
             {
-                "the freedoms are as many": Enumeration(
+                "each arm has this many freedoms": Enumeration(
                     n, lambda: r.rank(list(r.right), arms[:2]), "the rank of the right arm"
                 ),
                 "the tip stays in the plane": Identity(
@@ -149,7 +149,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         "{single} actuator used to generate the {pitching} motion.”",
         lambda n, angle: Every(
             {
-                "so many actuators are not in the arms": Enumeration(
+                "this many actuators are not in the arms": Enumeration(
                     n, lambda: len(q) - r.rank([*r.right, *r.left], q), "actuators"
                 ),
                 "it moves this angle alone": driven(r, angle, (q.theta,)),
@@ -164,7 +164,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         lambda joints, n: Every(
             {
                 "these joints move yaw and roll": driven(r, ("yaw", "roll"), joints),
-                "the freedoms are as many": Enumeration(
+                "they have this many freedoms": Enumeration(
                     n, lambda: r.rank([*r.slants.values()], arms), "of yaw and roll by the arms"
                 ),
             }
@@ -345,8 +345,8 @@ COUNTED_AS_FREE = (
 def mobility(d: Derivation, printed: Notation) -> None:
     """Table 1, and the formulas of Grübler and Kutzbach."""
     claim = partial(d.claim, where=DESCRIPTION, notation=printed)
-    p, n, freedoms, total = real("p"), real("n"), real("l"), real("F")
-    names = {r"\sum_{i=1}^{p} f_i": total, "l": freedoms, "M": real("M")}
+    p, n, loop_count, total = real("p"), real("n"), real("l"), real("F")
+    names = {r"\sum_{i=1}^{p} f_i": total, "l": loop_count, "M": real("M")}
     by_bodies = {"M": 6 * (n - 1) - (6 * p - total), "l": p - n + 1}
     claim(
         "Grübler's formula",
@@ -383,11 +383,11 @@ def mobility(d: Derivation, printed: Notation) -> None:
         "The mobility counts the two joints of the gear set as free, although the gears couple "
         "them",
         Gravity.OMISSION,
-        why="Meshed gears turn by opposite angles, which is one condition more.  With it the "
-        "formula gives $M = 5$.  The H6AR can have 6 freedoms only if one of the conditions of its "
-        "loop follows from the others, and the paper does not say which.",
-        use="Only the count is concerned; no equation uses it.  Someone who repeats the count for "
-        "another wrist with gears may find one freedom too many.",
+        why="Meshed gears turn by opposite angles, which is one more condition.  With it the "
+        "formula gives $M = 5$.  The H6AR can have 6 freedoms only if one of the conditions "
+        "of its loop follows from the others, and the paper does not say which.",
+        use="No equation of the paper uses the count.  A reader who repeats it for another wrist "
+        "with gears may find one freedom too many.",
     )
 
     def count(coupled: int, *printed_values: Any) -> Check:
@@ -395,9 +395,9 @@ def mobility(d: Derivation, printed: Notation) -> None:
         mobility = sum(counted().values()) - coupled - 6 * loop.right
         return Every(
             {
-                "the loops are as many": Enumeration(words, loops, "independent loops"),
-                "the freedoms less the bodies are the number of loops": Identity(
-                    loop.left.subs(freedoms, loops()), loop.right
+                "there are this many loops": Enumeration(words, loops, "independent loops"),
+                "the printed l is their number": Identity(
+                    loop.left.subs(loop_count, loops()), loop.right
                 ),
                 "the formula gives this M": Identity(
                     result.right, result.left.subs(real("M"), mobility)
@@ -487,11 +487,12 @@ def tips(d: Derivation, r: Robot, printed: Notation) -> None:
         opposites={"All": "Not all"},
         readings=[
             Reading(
-                "seen against the axis of the joint, as the D-H technique has it",
+                "as seen from the tip of the axis of the joint, by the Denavit-Hartenberg "
+                "convention",
                 lambda side: Identity(turned.diff(q.theta1).subs(q.theta1, 0), side * y_axis),
             ),
             Reading(
-                "the roll of (3) too, which lifts the right tip, about the level fore-arm",
+                "also the roll of (3) about the level fore-arm, which lifts the right tip",
                 lambda side: Identity(
                     r.half_line[2].subs({r.A23: pi / 2, r.psi: 0}), side * m.d * sp.tan(r.phi)
                 ),

@@ -110,7 +110,7 @@ def off_the_middle(r: Robot, yaw: sp.Expr) -> sp.Expr:
         for vector in (
             [-m.L1 * sin(r.A2), m.L1 * cos(r.A2)],
             [m.L2 * cos(fore) - m.a3 * sin(fore), m.L2 * sin(fore) + m.a3 * cos(fore)],
-            [m.d * sp.tan(yaw), 0],  # half of what is between the tips of the arms
+            [m.d * sp.tan(yaw), 0],  # half of the vector between the tips of the arms
         )
     )
     sines = sp.Matrix.hstack(upper_by, fore_by).inv() * apart
@@ -149,8 +149,9 @@ def wrong_frames(d: Derivation, r: Robot) -> None:
         why=r"In (3) a positive $\phi$ lifts the right tip: $z_R = z_I + d\tan\phi$.  In (9) the "
         r"wrist is turned by $+\phi$ about the axis of the fore-arm, which points away from the "
         "robot, so the right tip goes down.  The two cannot be the same angle.",
-        use=r"The inverse takes the tip from (9) and the arms from (3): the robot rolls by $-\phi$ "
-        r"where $+\phi$ is asked for.  A sign of $\phi$ in one of the two mends it.",
+        use="The inverse takes the tip from (9) and the arms from (3): the robot rolls by "
+        r"$-\phi$ where $+\phi$ is asked for.  Changing the sign of $\phi$ in one of the two "
+        "corrects this.",
     )
     d.erratum(
         "yaw-roll-axes",
@@ -161,7 +162,8 @@ def wrong_frames(d: Derivation, r: Robot) -> None:
         "roll differs from zero, the two agree, apart from the sign in (3), only if the other one "
         "is zero and the fore-arm is level; the inverse uses (3) and (4) for all postures.",
         use=r"For $d = [d]$ m, 10 degrees of yaw and a fore-arm at $\theta_{23} = 45^\circ$, (4) "
-        "puts the right tip [gap] mm from where (9) has it; the distance grows with yaw and roll.",
+        "puts the right tip [gap] mm from where (9) puts it; the distance grows with yaw and "
+        "roll.",
         numbers={
             "d": (r.example[r.m.d], 2),
             "gap": (1000 * r.example[r.m.d] * sp.tan(pi / 18) * 2 * sp.sin(pi / 8), 0),
@@ -205,7 +207,7 @@ def point_from_tips(d: Derivation, r: Robot, printed: Notation) -> None:
         readings=[
             Reading("the roll of (9), for a level fore-arm as in Fig. 3(b)", means=tips(**level)),
             Reading(
-                "(3) alone defines the roll: then the point is in the middle, as (6) has it",
+                "(3) alone defines the roll: then the point is in the middle, as in (6)",
                 lambda pair: Identity(
                     sum(e.left - e.right for e in pair),
                     2 * centre[2] - names["z_R"] - names["z_L"],

@@ -139,8 +139,8 @@ def errors(d: Derivation) -> None:
         r"$c_1 x_T + s_1 y_T \le 0$: the target is behind the robot.  The usual posture, with the "
         r"target in front, is the other solution, $\pi - \sin^{-1}(\cdot) - \gamma_1$.  A tip on "
         "the waist axis, where the formula divides by zero, is not mentioned.",
-        use="A robot that uses the formula turns its back to every target and reaches over its "
-        "head, if it can at all.",
+        use="A robot that uses the formula turns its back to every target and has to reach "
+        "backwards over itself, if it can reach the target at all.",
     )
     d.erratum(
         "quadrant",
@@ -150,8 +150,9 @@ def errors(d: Derivation) -> None:
         r"the fore-arm hangs down.  The denominator has the sign of $\cos\theta_{23}$: it is "
         "negative if the fore-arm points above the horizontal, and zero if it is level.",
         use=r"For a fore-arm above the horizontal the formula is off by $180^\circ$: the shoulder "
-        "turns half round, and the hand misses its target.  For a level fore-arm it divides by "
-        "zero.  A function of numerator and denominator, such as atan2, gives the right angle.",
+        "is turned by half a turn, and the hand misses its target.  For a level fore-arm it "
+        "divides by zero.  A function of numerator and denominator, such as atan2, gives the "
+        "correct angle.",
     )
     d.erratum(
         "one-elbow",
@@ -160,8 +161,8 @@ def errors(d: Derivation) -> None:
         why=r"$\sin(\theta_3 + \gamma) = k$ has the solutions $\sin^{-1} k - \gamma$ and "
         r"$\pi - \sin^{-1} k - \gamma$; the paper gives the first one only, and does not say that "
         "it chooses.",
-        use="The angles that the formula gives are right.  Whoever needs the other posture, for "
-        "example to avoid an obstacle, does not find it.",
+        use="The angles that the formula gives are correct.  A user who needs the other posture, "
+        "for example to avoid an obstacle, does not find it.",
     )
     d.erratum(
         "sign-before-14",

@@ -62,9 +62,9 @@ def error(d: Derivation, r: Robot) -> None:
         r"$d/(\cos\psi\cos\phi) = 4$, so a link has to be longer than $4 - g_s = 3.5$.",
         use="The tip is misplaced whenever the robot rolls.  At 30 degrees of yaw and roll the "
         "wrist of the example ($d = [d]$ m, $\\alpha l = [al]$ m, $g_s = [gs]$ m) is [gap] mm "
-        "shorter than (8) has it.  Wrist links as short as (10) allows reach their singular "
-        r"configuration before both angles are at their limits, unless $\beta_{\min}$ is large: "
-        "for limits of 30 degrees and this $g_s$, if it is below [enough] degrees.",
+        "shorter than by (8).  The shortest wrist links that (10) allows can reach their singular "
+        "configuration before both angles are at their limits.  For limits of 30 degrees and this "
+        r"$g_s$, they do if $\beta_{\min}$ is below [enough] degrees.",
         numbers={
             **{name: (r.example[getattr(r.m, name)], 2) for name in ("d", "al", "gs")},
             "enough": (sp.acos(flat / steep) * 180 / pi, 1),
@@ -391,7 +391,7 @@ def keeps_apart(claim: Callable[..., None], r: Robot, printed: Notation) -> None
 
 
 def slack(symbol: sp.Symbol, relation: Relational, k: int) -> tuple[sp.Symbol, sp.Expr]:
-    """The symbol by how much an inequality is satisfied."""
+    """The symbol for the margin by which an inequality is satisfied."""
     strict = isinstance(relation, sp.Gt | sp.Lt)
     gap = real(f"gap_{k}", positive=True) if strict else real(f"gap_{k}", nonnegative=True)
     (value,) = sp.solve(relation.gts - relation.lts - gap, symbol)

@@ -302,8 +302,8 @@ def loci(d: Derivation, bar: FiveBar) -> None:
         "$\\sqrt{207}/2$ from AB.  P is then free on a circle of radius 5, "
         "inside the workspace except where CP is in line with AC or BD.",
         use="A planner that expects parallel singularities at the boundary only leads P through "
-        "them.  They bound the parts that one working mode reaches without a singularity, as in "
-        "figures 13 and 14, together with the boundary of the workspace.",
+        "them.  Together with the boundary of the workspace, they bound the parts that one "
+        "working mode reaches without a singularity, as in figures 13 and 14.",
     )
 
     y, rho = real("y"), real("rho")
@@ -386,7 +386,9 @@ def loci(d: Derivation, bar: FiveBar) -> None:
         wanted = (sp.Le(L0 - 2 * L1, sqrt(2) * L2), sp.Le(sqrt(2) * L2, L0 + 2 * L1))
         return Every(
             {
-                "CD by the angle of CP and DP": Identity(apart, 2 * L2**2 - 2 * bar.gram[1, 2]),
+                "CD from the angle between CP and DP": Identity(
+                    apart, 2 * L2**2 - 2 * bar.gram[1, 2]
+                ),
                 **range_of_CD(bar),
                 r"CD can be as long as $\sqrt{2} L_2$": implies(given, wanted[1], bar.lengths),
                 r"CD can be as short as $\sqrt{2} L_2$": implies(

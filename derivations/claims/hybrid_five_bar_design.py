@@ -314,7 +314,7 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
         lambda printed: avoids([apart, never_in_line], relations(printed)),
         opposites={"all": "not all", "no": "a"},
         readings=[
-            Reading("the condition is sufficient alone"),
+            Reading("this condition alone is sufficient"),
             Reading(
                 "it is imposed in addition to the first one, as printed",
                 lambda printed: avoids([apart, never_in_line], [*relations(printed), *first]),
@@ -438,8 +438,9 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         readings=[
             Reading("the union of the sections of figures 13 and 14, against each of them"),
             Reading(
-                "the same, with the part in which det A is positive, above AB, for the lengths 7, "
-                "8, 5; twice as large as each would need sections without a common point",
+                "the same, where each section is the part above AB in which det A is positive, "
+                "for the lengths 7, 8, 5; the union can be twice as large as each section only if "
+                "they have no point in common",
                 lambda times: Not(common_point()) if times == 2 else common_point(),
             ),
             Reading(

@@ -110,8 +110,8 @@ def introduction(d: Derivation, arm: Palletiser) -> None:
         "two four-bar mechanisms",
         "“This manipulator includes two parallel four-bar mechanisms that make the kinematics and "
         "dynamic analysis complicated.”",
-        lambda: Undecidable("what the machine has is taken from the drawings of the paper; whether "
-                            "that is complicated is a judgement of value"),
+        lambda: Undecidable("the mechanisms are taken from the drawings of the paper; whether "
+                            "they make the analysis complicated is a judgement of value"),
         fixed="a drawing and a judgement",
     )  # fmt: skip
     claim(
@@ -146,28 +146,28 @@ def introduction(d: Derivation, arm: Palletiser) -> None:
         phrases=[{"avoid": True, "have": False}],
         readings=[
             Reading(
-                "twists describe the velocity at every pose, where Euler angles have singular "
-                "poses: from the velocity of a pose its twist follows",
+                "twists describe the velocity at every pose, whereas Euler angles have singular "
+                "poses: the twist follows from the velocity of the pose",
                 check=lambda avoid: Every(
                     {
                         "the twist follows from the velocity at every pose": stated(
                             avoid,
                             Identity(twist_of(twist_matrix(twist) * g * inverse(g)), twist),
                         ),
-                        "Euler angles, the angles of the pose at which their rates do not span "
-                        "the velocities": Identity(rates.det().subs(angles[1], 0), sp.S.Zero),
+                        "the rates of Euler angles do not span the velocities if the middle angle "
+                        "is zero": Identity(rates.det().subs(angles[1], 0), sp.S.Zero),
                     }
                 ),
             ),
             Reading(
-                "the exponential coordinates of a pose have no singularities: a turn of the axis "
-                "moves a body that has made a full turn",
+                "the exponential coordinates of a pose have no singularities: after a full turn, "
+                "a change of the axis moves the body",
                 check=lambda avoid: stated(
                     avoid,
                     Not(
                         Every(
                             {
-                                "at a full turn the axis turns without a motion": Identity(
+                                "after a full turn the axis has no effect": Identity(
                                     turn.diff(w[0]).subs(at_full_turn), sp.zeros(3)
                                 )
                             }
@@ -196,8 +196,8 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
         phrases=[{"a given functional relationship": True, "no relationship": False}],
         readings=[
             Reading(
-                "the angles of input and output satisfy an equation: each input leaves finitely "
-                "many outputs, one in each assembly"
+                "the angles of input and output satisfy an equation: for each input there is a "
+                "finite number of outputs, one in each assembly"
             )
         ],
     )
@@ -288,12 +288,12 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
         readings=[
             Reading(
                 "by closed loops, as the section before describes: the equations of the two loops "
-                "leave finitely many turns of the end-effector about the axis X, and an open chain "
-                "has no such equations"
+                "leave a finite number of turns of the end-effector about the axis X, and an open "
+                "chain has no such equations"
             ),
             Reading(
-                "a robot whose end-effector cannot turn about all axes is not an open chain: a "
-                "SCARA arm, which is one, tilts its hand",
+                "a robot whose end-effector cannot turn about all axes is not an open chain: then "
+                "a SCARA arm, which is an open chain, would tilt its hand",
                 check=lambda confined: stated(
                     confined,
                     Not(Every({"its hand stays level": Identity(scara[:3, 2], VERTICAL)})),

@@ -1,4 +1,4 @@
-"""The palletiser of Shi, Zhu and Li as their claims see it, and motions by other routes."""
+"""The palletiser of Shi, Zhu and Li for their claims, and motions computed in other ways."""
 
 from collections.abc import Iterable
 from itertools import combinations
@@ -17,8 +17,8 @@ JACOBIAN = "IV. KINEMATICS, B. Spatial Jacobian"
 VERIFICATION = "V. VERIFICATION"
 CONCLUSIONS = "CONCLUSIONS"
 ASSEMBLY = (
-    "the loops, which are parallelograms, stay so where they are flat: there each can enter its "
-    "other assembly, the antiparallelogram"
+    "the loops stay parallelograms where they are flat; there each could change to its other "
+    "assembly, the antiparallelogram"
 )
 FIVE = (1, 2, 3, 4, 5)
 VERTICAL = sp.Matrix([0, 0, 1])

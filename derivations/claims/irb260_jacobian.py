@@ -89,15 +89,15 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         "{1, 2, 3, and 5}, are actuated.”",
         lambda five, four, joints: Every(
             {
-                "the joints are as many": Enumeration(
+                "the chain has this many joints": Enumeration(
                     five,
                     lambda: screws.subs(generic).rank(),
                     "independent twists of the open chain",
                 ),
-                "the actuated ones are as many": Enumeration(
+                "this many are actuated": Enumeration(
                     four, arm.freedoms, "freedoms of the closed linkage"
                 ),
-                "they determine the others": Enumeration(
+                "their rates determine the others": Enumeration(
                     [joints],
                     arm.driving_sets,
                     "sets of joints without joint 4 whose rates determine all rates",
@@ -109,7 +109,7 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         readings=[
             Reading(
                 "joint 4 has no motor, as section III says; the rates of the actuated joints "
-                "determine all others, and there are as many of them as freedoms"
+                "determine all others, and their number is the number of freedoms"
             )
         ],
     )
@@ -150,7 +150,7 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
     accelerations = sp.Matrix([real(f"a_{i}") for i in FIVE[:4]])
     d.erratum(
         "dot-of-eq-14",
-        "The dots of eq. (14) stand on the wrong letters",
+        "The dots of eq. (14) are on the wrong letters",
         Gravity.MISPRINT,
         why=r"The spatial velocity is $\dot{g} g^{-1}$. Eq. (14) differentiates the inverse "
         r"instead, and since $g \frac{d}{dt}(g^{-1}) = -\dot{g} g^{-1}$, its right side is the "
@@ -297,9 +297,9 @@ def moved_twists(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None
         "Eqs. (19) and (20) move the twists a second time: their primes must be dropped",
         Gravity.MOTION,
         why=r"By eq. (16) the primed twist $\xi_i'$ is the twist in the present posture, so the "
-        r"motions of the joints before it are already in it. Eqs. (19) and (20) exponentiate and "
-        r"move primed twists again, so that $\xi_i'$ even stands on both sides of eq. (20). What "
-        r"is moved is the twist $\xi_i$ at home, of eqs. (1) to (5) and (9).",
+        "motions of the joints before it are already in it. Eqs. (19) and (20) exponentiate "
+        r"and move primed twists again, so that $\xi_i'$ even appears on both sides of eq. "
+        r"(20). What is moved is the twist $\xi_i$ at home, of eqs. (1) to (5) and (9).",
         use=r"Eq. (20) is the formula by which the paper computes the columns of the Jacobian. "
         r"With its primes each axis is turned twice: at $\theta_1 = 90^\circ$ the axis of joint 2 "
         r"points along $x$ instead of $-y$, and a velocity or a control law computed from it is "
@@ -342,7 +342,7 @@ def moved_twists(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None
         Gravity.MISPRINT,
         why=r"By eq. (21) $Ad_g$ is a 6x6 matrix, so it multiplies the six coordinates $\xi_i$ of "
         r"a twist. The hat in eq. (20) makes them the 4x4 matrix of eq. (8).",
-        use="The product is not defined, so nobody can compute with it; without the hat it is.",
+        use="With the hat the product is not defined; without the hat it is.",
     )
     size = {
         rf"Ad_{{({PRIMED_BEFORE})}}": lambda factor: sp.Matrix(
@@ -434,13 +434,13 @@ def point(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         "two-points-q5",
         "Two points have the name $q_5$: that of eq. (5) is fixed, that of eq. (23) moves",
         Gravity.INCONSISTENCY,
-        why=r"In eq. (5) $q_5$ is a constant, the place of the origin of the end-effector at home. "
-        r"In eq. (23) $q_5$ is this origin itself, which moves with the arm: "
-        r"$q_5^s = g_{st}(\theta) (0, 0, 0, 1)^T$, the last column of eq. (13). The two are equal "
-        "only while the end-effector is at its place at home.",
+        why="In eq. (5) $q_5$ is a constant, the position of the origin of the end-effector at "
+        "home. In eq. (23) $q_5$ is this origin itself, which moves with the arm: $q_5^s = "
+        r"g_{st}(\theta) (0, 0, 0, 1)^T$, the last column of eq. (13). The two are equal only "
+        "while the end-effector is at its home position.",
         use="With the point of eq. (5), eq. (23) gives the velocity of the point of the moving "
-        r"body that passes the home place of the end-effector. At $\theta_1 = 90^\circ$ with a "
-        "turning turret this is a velocity along $x$ instead of $y$.",
+        r"body that is just at the home position of the end-effector. At $\theta_1 = "
+        r"90^\circ$, with the turret turning, this velocity is along $x$ instead of $y$.",
     )
     claim(
         "q5, before eq. (23)",

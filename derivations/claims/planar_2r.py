@@ -109,7 +109,7 @@ def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
         "solutions as shown in Fig. 2, the so-called {elbow up} and elbow down configurations”",
         lambda n, elbow: Every(
             {
-                "there are so many solutions": Count((x - px, y - py), (theta1, theta2), n),
+                "there are this many solutions": Count((x - px, y - py), (theta1, theta2), n),
                 r"the elbow is above the line to the hand if $\theta_2 < 0$": Identity(
                     above, elbow * l1 * l2 * sin(bend)
                 ),

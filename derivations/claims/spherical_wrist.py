@@ -99,7 +99,7 @@ def rotations(d: Derivation, wrist: Wrist) -> None:
         "{intersecting} rotation axes.”",
         lambda n, axes: Every(
             {
-                "as many as a rotation has freedoms": Enumeration(
+                "their number is that of the freedoms of a rotation": Enumeration(
                     n, degrees_of_freedom, "freedoms"
                 ),
                 "they give every rotation": every_rotation(wrist, euler(axes, wrist.angles)),
@@ -181,7 +181,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "minimal representation",
         "“Euler angles are a {minimal} representation of relative orientation.”",
         lambda more: Enumeration(
-            more, lambda: len(TURNS) - degrees_of_freedom(), "angles more than freedoms"
+            more, lambda: len(TURNS) - degrees_of_freedom(), "number of angles beyond the freedoms"
         ),
         phrases=[{"minimal": 0, "redundant": 1}],
     )
@@ -191,7 +191,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "{moving} reference frame.”",
         lambda n, turned: Every(
             {
-                "the angles are as many": Enumeration(
+                "there are this many angles": Enumeration(
                     n, lambda: len(R.free_symbols), "their number"
                 ),
                 "the turns are about these axes": Identity(turned(wrist.angles), R),
@@ -204,7 +204,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "“There are however many ({12}, to be exact) sets that describe the same orientation:”",
         lambda n: Every(
             {
-                "the sequences are as many": Enumeration(
+                "there are this many sequences": Enumeration(
                     n,
                     lambda: len(independent_sequences()),
                     "sequences, of all 27, with independent rates",
@@ -226,7 +226,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
                     lambda: len({first, second} & {*independent_sequences()}),
                     "different examples with independent rates",
                 ),
-                "so many pairs give one matrix": Enumeration(
+                "this many pairs give one matrix": Enumeration(
                     alike, pairs_alike, "pairs that give one matrix"
                 ),
             }
@@ -299,9 +299,10 @@ def inverse_orientation(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "The inverse of the wrist has no case for $\\sin\\theta = 0$",
         Gravity.OMISSION,
         why="If $\\sin\\theta = 0$, then $R_{13} = R_{23} = R_{31} = R_{32} = 0$, and eqs. (13) "
-        "and (16) contain atan2(0, 0).  These rotations can be reached: the first and the last "
-        "axis coincide, and only the sum or the difference of their angles is determined.  One of "
-        "the two may be chosen.  Above eq. (16), $\\theta$ stands for $\\theta_5$.",
+        "and (16) contain atan2(0, 0).  These rotations can be reached: the first and the "
+        "last axis coincide, and only the sum or the difference of their angles is "
+        "determined.  One of the two can be chosen freely.  Above eq. (16), $\\theta$ stands "
+        "for $\\theta_5$.",
         use="The home position of the wrist, $\\theta_4 = \\theta_5 = \\theta_6 = 0$, is such a "
         "case.  A program that takes atan2(0, 0) as 0 gets 0 for both angles.  This is right for "
         "the identity and for a half turn about $y$; for every other such rotation the hand is "

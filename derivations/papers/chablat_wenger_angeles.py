@@ -3,9 +3,9 @@
 from closedform import Paper
 
 HEADING = "a heading"
-NAMES = "only names what the claims beside it judge"
+NAMES = "only names what the neighbouring claims judge"
 KNOWN = "general statements about other manipulators, or literature"
-AIMS = "aims and announcements; what is announced is judged where it stands"
+AIMS = "aims and announcements; what is announced is judged where it appears"
 FIGURE = "the caption of a figure that is not in the text"
 DEFINITION = "a definition"
 RUNNING = "the running title of the paper"
@@ -20,7 +20,7 @@ CHABLAT_WENGER_ANGELES = Paper(
     source="The text is a scan of the paper, read by optical character recognition, without its "
            "figures.  A misread index or fraction could affect eq. (4), the condition after eq. "
            "(6), the eigenvalues, eq. (8) and the angles that follow it.  The wrong indices of "
-           "section 3.4 stand in all its formulas, so the scan is not their cause.  The indices "
+           "section 3.4 appear in all its formulas, so the scan is not their cause.  The indices "
            "in section 3.2 may be misread: the text has the sum of the lengths L1 + L1.",
     out_of_scope=(
         ("HAL", "### Abstract", "the cover page of the archive, title and authors"),

@@ -18,7 +18,7 @@ PUMA_TEXTBOOKS = Paper(
     "Toolbox; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control; Paul: Robot Manipulators; "
     "Lee, Ziegler: Geometric Approach in Solving Inverse Kinematics of PUMA Robots (1984)",
     source="The books are quoted from memory for results that are common knowledge: each claim "
-    "gives the content of a formula or a sentence, not its wording.  A mistake of memory may touch "
-    "any of them.",
+    "gives the content of a formula or a sentence, not its wording.  An error of memory "
+    "may affect any of them.",
     works=(CORKE, CRAIG, LEE_ZIEGLER, PAUL, SPONG_HUTCHINSON_VIDYASAGAR),
 )

@@ -2,7 +2,7 @@
 
 from closedform import Paper
 
-OUTLINE = "says what follows; what it announces is judged where it stands"
+OUTLINE = "says what follows; what it announces is judged where it appears"
 BUILT = "describes the construction, which the model takes as given"
 NAMES = "introduces names and conventions"
 LITERATURE = "speaks of other robots and of the literature"
@@ -17,11 +17,11 @@ RAO_RAJU = Paper(
     "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
     year="2011",
     source="The text was read from a scan by optical character recognition, without the figures.  "
-    "The order of the axes of the wrist is taken from (9), because Fig. 4 is not legible there.  A "
-    "mistake of the scan may touch signs and indices: eq. (3), whose sign is compared with (9), "
-    "and the second equation before (14).  In the line of (9) for $L_\\theta$ the scan has "
-    "$l_n$, which is read as $l_p$.  The sentence after (14) about the coordinates of the right "
-    "tip is printed twice, once garbled.",
+    "The order of the axes of the wrist is taken from (9), because Fig. 4 is not legible "
+    "there.  Errors of the scan may affect signs and indices: eq. (3), whose sign is "
+    "compared with (9), and the second equation before (14).  In the line of (9) for "
+    "$L_\\theta$ the scan has $l_n$, which is read as $l_p$.  The sentence after (14) "
+    "about the coordinates of the right tip is printed twice, once garbled.",
     out_of_scope=(
         ("Forward and inverse kinematics of a hybrid", "relations of", DATA),
         (", named the H6AR, are presented.", "presented.", NAMES),

@@ -1,4 +1,4 @@
-"""Arms of seven joints, whose inverse takes one more input than the pose."""
+"""Arms of seven joints, whose inverse needs one input besides the pose."""
 
 from closedform.derivations.papers.textbooks import (
     HE_LIU,

@@ -13,12 +13,13 @@ SHI_ZHU_LI = Paper(
     ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
     year="n.d. (the latest work that it cites is of 2005)",
     source="The text was read from a scan by optical character recognition; the drawings were not "
-    "available.  What the drawings show is taken from the words and from the equations: the two "
-    "loops, the axes of eqs. (1) to (5), and the captions of Figs. 4 to 6.  A mistake of the scan "
-    "may touch the small signs: the dots and the exponent of eq. (14), the primes and hats of eqs. "
-    "(16) to (20), the index of $q_5$ in eqs. (5) and (23), and the number in the reference to "
-    "Fig. 5.  The primes stand in all lines of eqs. (19) and (20) alike, so one stroke of the scan "
-    "does not explain them.  The heading of the last section has the number I, probably for VI.",
+    "available.  What the drawings show is taken from the text and from the equations: the "
+    "two loops, the axes of eqs. (1) to (5), and the captions of Figs. 4 to 6.  Errors of "
+    "the scan may affect the small signs: the dots and the exponent of eq. (14), the "
+    "primes and hats of eqs. (16) to (20), the index of $q_5$ in eqs. (5) and (23), and "
+    "the number in the reference to Fig. 5.  All lines of eqs. (19) and (20) have the "
+    "primes, so a single error of the scan does not explain them.  The heading of the last "
+    "section has the number I, probably for VI.",
     out_of_scope=(
         ("New Method for Kinematic Analysis", "Fellow, IEEE*", "title and authors"),
         ("This paper presents a new method to analyze", "from the ABB Company.", ANNOUNCES),

@@ -34,7 +34,7 @@ WRIST_LOOPS = Paper(
 )
 TRIPODS = Paper(
     "tripods",
-    "Three legs in upright planes that lift and tilt a hand",
+    "Three legs in vertical planes that lift and tilt a hand",
     ("The closedform authors",),
     works=(MERLET, CARRETERO_PODHORODESKI_NAHON_GOSSELIN),
 )

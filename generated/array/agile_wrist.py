@@ -17,9 +17,10 @@
 Three equal legs join a hand to the base, and the axes of all nine joints meet in the centre O.
 Neighbouring axes of a leg are at right angles.  The first axes u of the three legs are driven.
 They are the axes x, y and z of the base, and the last axes v are the axes z, x and y of the
-hand.  The middle axis w of the first leg is along y at 0 and along z at 90 degrees; those of
-the others follow by turning x, y and z into each other.  R, the orientation of the hand, is the
-identity in one assembly mode where all joints are zero; there the mechanism is isotropic.
+hand.  The middle axis w of the first leg is along y at 0 and along z at 90 degrees; for the
+other legs x, y and z are interchanged cyclically.  R is the orientation of the hand.  In one of
+the assembly modes it is the identity where all joints are zero; there the mechanism is
+isotropic.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,

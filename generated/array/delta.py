@@ -18,7 +18,7 @@
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
 centre of the base and in the directions alpha1, alpha2 and alpha3.  A crank points outwards at
 0 and down at 90 degrees.  Three parallelograms of length l carry the platform, at the distance
-e from its centre P.  They keep it from turning.
+e from its centre P, and keep it from turning.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,
@@ -1908,7 +1908,7 @@ _CONSTRAINT = _runtime.Kernel(
 
 
 def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """What vanishes where the parallelograms do not keep the hand from turning.
+    """The factors that vanish where the parallelograms do not keep the hand from turning.
 
     Parameters
     ----------
@@ -2322,7 +2322,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

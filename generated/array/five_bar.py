@@ -1300,7 +1300,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

@@ -885,7 +885,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Whether the follower can be there.
+    """Whether the follower can reach the target.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@
 """Slider-crank.
 
 The crank of length r turns about the origin.  The slider moves along a line parallel to the x
-axis, at the height e.  The connecting rod of length l joins the end of the crank to it.
+axis, at the height e.  The connecting rod of length l joins the end of the crank to the slider.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,
@@ -714,7 +714,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Whether the follower can be there.
+    """Whether the follower can reach the target.
 
     Parameters
     ----------

@@ -14,8 +14,8 @@
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
-parallel; that of theta5 is normal to them and that of theta6 to the one of theta5.  No three
-axes meet in a point, so there is no spherical wrist.
+parallel; the axis of theta5 is normal to them, and the axis of theta6 is normal to that of
+theta5.  No three axes meet in a point, so there is no spherical wrist.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,

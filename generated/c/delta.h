@@ -252,7 +252,7 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     real_t *kappa, size_t kappa_stride);
 
 /*
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * Inputs
  * ------
@@ -315,7 +315,7 @@ void delta_ik_batch(size_t n, const delta_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * Inputs
  * ------

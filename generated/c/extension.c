@@ -6227,7 +6227,7 @@ const cf_function cf_functions[] = {
       1, delta_condition_number_in, 1, delta_condition_number_out,
       delta_condition_number_one, delta_condition_number_many },
     { "delta.constraint",
-      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "The factors that vanish where the parallelograms do not keep the hand from turning.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6306,7 +6306,7 @@ const cf_function cf_functions[] = {
       1, delta_ik_in, 2, delta_ik_out,
       delta_ik_one, delta_ik_many },
     { "delta.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6674,7 +6674,7 @@ const cf_function cf_functions[] = {
       1, five_bar_ik_in, 2, five_bar_ik_out,
       five_bar_ik_one, five_bar_ik_many },
     { "five_bar.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -6979,7 +6979,7 @@ const cf_function cf_functions[] = {
       1, four_bar_ik_in, 2, four_bar_ik_out,
       four_bar_ik_one, four_bar_ik_many },
     { "four_bar.workspace_contains",
-      "Whether the follower can be there.\n"
+      "Whether the follower can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7264,8 +7264,8 @@ const cf_function cf_functions[] = {
       "- The branches, in the order of `BRANCHES`: bent_ahead_front, bent_ahead_back,\n"
       "  bent_behind_front, bent_behind_back, over_ahead_front, over_ahead_back, over_behind_front,\n"
       "  over_behind_back.\n"
-      "- bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda\n"
-      "  allow; over: it is bent to the other side.\n"
+      "- bent: the elbow is bent to the side that the joint limits of a Panda allow; over: it is\n"
+      "  bent to the other side.\n"
       "- ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.\n"
       "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
       "- SINGULAR: a link without length: elbow is free, one within reach is returned.\n"
@@ -7468,7 +7468,7 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- NaN if the tips are farther apart than the wrist links can span.\n"
-      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
+      "- Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_jacobian_in, 1, h6ar_jacobian_out,
@@ -7583,7 +7583,8 @@ const cf_function cf_functions[] = {
       "  joints do not determine the tip to 1e-12 there; or if a half difference is at a right\n"
       "  angle and rounding of the target decides whether the tips can be so far apart.\n"
       "- OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:\n"
-      "  yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.\n"
+      "  yaw and roll follow from displacements of the tips divided by d, so rounding errors are\n"
+      "  divided by d too.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
@@ -7907,7 +7908,7 @@ const cf_function cf_functions[] = {
       "  cannot reach the middle of the tips.\n"
       "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
       "  its fore-arm.\n"
-      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
+      "- Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_jacobian_in, 1, h6ar_loop_closed_jacobian_out,
@@ -8025,14 +8026,16 @@ const cf_function cf_functions[] = {
       "  own shoulder (its upper arm is returned parallel to that of the virtual arm).\n"
       "- SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a\n"
       "  folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the\n"
-      "  distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near\n"
-      "  stretched wrist links (l_W is less than 2^-10 al). An arm at its limit that rounding bends\n"
-      "  otherwise than the virtual arm is SINGULAR too.\n"
+      "  distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where\n"
+      "  the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR\n"
+      "  too if an arm is at its limit and rounding bends it to the other side than the virtual\n"
+      "  arm.\n"
       "- OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:\n"
-      "  yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.\n"
+      "  yaw and roll follow from displacements of the tips divided by d, so rounding errors are\n"
+      "  divided by d too.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
-      "- A straight right arm is returned bent by a few units in the last place, so that fk can\n"
-      "  tell the side.\n"
+      "- If the right arm is straight, it is returned bent by a few units in the last place, so\n"
+      "  that fk can tell the side.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_ik_in, 2, h6ar_loop_closed_ik_out,
@@ -8893,9 +8896,9 @@ const cf_function cf_functions[] = {
       "- The branches, in the order of `BRANCHES`: facing_up_noflip, facing_up_flip,\n"
       "  facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,\n"
       "  backward_down_noflip, backward_down_flip.\n"
-      "- motors_from_joints takes them to the motors.\n"
+      "- motors_from_joints converts them to angles of the motors.\n"
       "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
-      "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "  wrist; down: it is below. Where X is between 0 and a1, up and down are interchanged.\n"
       "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links\n"
@@ -9696,7 +9699,7 @@ const cf_function cf_functions[] = {
       1, linear_delta_condition_number_in, 1, linear_delta_condition_number_out,
       linear_delta_condition_number_one, linear_delta_condition_number_many },
     { "linear_delta.constraint",
-      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "The factors that vanish where the parallelograms do not keep the hand from turning.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9772,7 +9775,7 @@ const cf_function cf_functions[] = {
       1, linear_delta_ik_in, 2, linear_delta_ik_out,
       linear_delta_ik_one, linear_delta_ik_many },
     { "linear_delta.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10056,10 +10059,10 @@ const cf_function cf_functions[] = {
       "  facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,\n"
       "  backward_down_noflip, backward_down_flip.\n"
       "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
-      "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "  wrist; down: it is below. Where X is between 0 and a1, up and down are interchanged.\n"
       "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
-      "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
+      "- Ill-conditioned near the shoulder and elbow singularities: the angles lose half their\n"
       "  digits, the pose does not.\n"
       "- INVALID: the matrix is not a homogeneous transform with a proper rotation.\n"
       "- SINGULAR: the centre of the wrist on the first axis (b = 0), theta1 = 0 is returned; equal\n"
@@ -10345,7 +10348,7 @@ const cf_function cf_functions[] = {
       1, orthoglide_condition_number_in, 1, orthoglide_condition_number_out,
       orthoglide_condition_number_one, orthoglide_condition_number_many },
     { "orthoglide.constraint",
-      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "The factors that vanish where the parallelograms do not keep the hand from turning.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -10421,7 +10424,7 @@ const cf_function cf_functions[] = {
       1, orthoglide_ik_in, 2, orthoglide_ik_out,
       orthoglide_ik_one, orthoglide_ik_many },
     { "orthoglide.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -11038,7 +11041,7 @@ const cf_function cf_functions[] = {
       "  the shoulder to the wrist; down: below.\n"
       "- X is how far the centre of the wrist is ahead of the base axis.\n"
       "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
-      "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
+      "- Ill-conditioned near the shoulder and elbow singularities: the angles lose half their\n"
       "  digits, the pose does not.\n"
       "- INVALID: the matrix is not a homogeneous transform with a proper rotation.\n"
       "- SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal\n"
@@ -11927,7 +11930,7 @@ const cf_function cf_functions[] = {
       1, slider_crank_ik_in, 2, slider_crank_ik_out,
       slider_crank_ik_one, slider_crank_ik_many },
     { "slider_crank.workspace_contains",
-      "Whether the follower can be there.\n"
+      "Whether the follower can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12159,8 +12162,8 @@ const cf_function cf_functions[] = {
       1, spherical_five_bar_singularities_in, 1, spherical_five_bar_singularities_out,
       spherical_five_bar_singularities_one, spherical_five_bar_singularities_many },
     { "spherical_five_bar.condition_number",
-      "Ratio of the largest to the smallest singular value of the rods of the driven legs, as they\n"
-      "are seen along the strut.\n"
+      "Ratio of the largest to the smallest singular value of the rods of the driven legs, as seen\n"
+      "along the strut.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12233,7 +12236,7 @@ const cf_function cf_functions[] = {
       1, spherical_five_bar_ik_in, 2, spherical_five_bar_ik_out,
       spherical_five_bar_ik_one, spherical_five_bar_ik_many },
     { "spherical_five_bar.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12748,7 +12751,8 @@ const cf_function cf_functions[] = {
       1, srs_arm_singularities_in, 1, srs_arm_singularities_out,
       srs_arm_singularities_one, srs_arm_singularities_many },
     { "srs_arm.arm_angle",
-      "The arm angle: of the plane of the arm, about the line from the shoulder to the wrist.\n"
+      "The arm angle: the turn of the plane of the arm about the line from the shoulder to the\n"
+      "wrist.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -12813,14 +12817,14 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The branches, in the order of `BRANCHES`: up_front_noflip, up_front_flip, up_back_noflip,\n"
       "  up_back_flip, down_front_noflip, down_front_flip, down_back_noflip, down_back_flip.\n"
-      "- up: sin(theta4) <= 0; down: sin(theta4) >= 0. At arm angles within a right angle of 0, the\n"
-      "  elbow of the branches up is above the line from the shoulder to the wrist.\n"
+      "- up: sin(theta4) <= 0; down: sin(theta4) >= 0. If the arm angle is between -90 and 90\n"
+      "  degrees, the elbow of the up branches is above the line from the shoulder to the wrist.\n"
       "- front: sin(theta2) >= 0; back: sin(theta2) <= 0.\n"
       "- noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.\n"
       "- OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the\n"
       "  distance of the wrist from the vertical line through the shoulder.\n"
       "- SINGULAR: a link without length: theta4 is free, 0 is returned.\n"
-      "- SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the\n"
+      "- SINGULAR: the wrist is above or below the shoulder; the arm angle is measured from the\n"
       "  plane of x and z.\n"
       "- SINGULAR: the wrist is on the shoulder.\n"
       "- SINGULAR: the first and the last axis of the shoulder are parallel; theta1 is free.\n"
@@ -13406,15 +13410,15 @@ const cf_function cf_functions[] = {
       "- SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of\n"
       "  the legs do not hold the hand: the loop closes, but the joints do not determine the hand.\n"
       "- Where the twist of the hand is free (on three equal legs, upside down) it is taken as 0. A\n"
-      "  rod that does not reach then might with another twist.\n"
-      "- Left out: the postures in which the hand is twisted half a turn more.\n"
+      "  rod may then be too short, although it would reach with another twist.\n"
+      "- Left out: the postures in which the hand is twisted by another half turn.\n"
       "- fk is not derived: the forward problem is an equation of degree 16.\n"
       ,
       3, three_prs_values, three_prs_fields,
       1, three_prs_ik_in, 2, three_prs_ik_out,
       three_prs_ik_one, three_prs_ik_many },
     { "three_prs.workspace_contains",
-      "Whether the hand can be reached.\n"
+      "Whether the hand can reach the target.\n"
       "\n"
       "Parameters\n"
       "----------\n"

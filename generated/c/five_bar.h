@@ -304,7 +304,7 @@ void five_bar_ik_batch(size_t n, const five_bar_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * Inputs
  * ------

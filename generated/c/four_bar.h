@@ -253,7 +253,7 @@ void four_bar_ik_batch(size_t n, const four_bar_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the follower can be there.
+ * Whether the follower can reach the target.
  *
  * Inputs
  * ------

@@ -225,8 +225,8 @@ void franka_arm_jacobian_body_batch(size_t n, const franka_arm_params *params,
  * -----
  * - The branches, in order: bent_ahead_front, bent_ahead_back, bent_behind_front,
  *   bent_behind_back, over_ahead_front, over_ahead_back, over_behind_front, over_behind_back.
- * - bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda
- *   allow; over: it is bent to the other side.
+ * - bent: the elbow is bent to the side that the joint limits of a Panda allow; over: it is
+ *   bent to the other side.
  * - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
  * - SINGULAR: a link without length: elbow is free, one within reach is returned.

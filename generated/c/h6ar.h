@@ -189,7 +189,7 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
  * Notes
  * -----
  * - NaN if the tips are farther apart than the wrist links can span.
- * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
+ * - Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.
  */
 void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t J[36]);
@@ -279,7 +279,8 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *   joints do not determine the tip to 1e-12 there; or if a half difference is at a right angle
  *   and rounding of the target decides whether the tips can be so far apart.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
- *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
+ *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
+ *   divided by d too.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],

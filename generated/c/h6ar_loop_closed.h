@@ -198,7 +198,7 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
  *   cannot reach the middle of the tips.
  * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
  *   its fore-arm.
- * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
+ * - Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.
  */
 void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t J[36]);
@@ -292,14 +292,15 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  *   own shoulder (its upper arm is returned parallel to that of the virtual arm).
  * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
  *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
- *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
- *   stretched wrist links (l_W is less than 2^-10 al). An arm at its limit that rounding bends
- *   otherwise than the virtual arm is SINGULAR too.
+ *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where
+ *   the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR too
+ *   if an arm is at its limit and rounding bends it to the other side than the virtual arm.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
- *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
+ *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
+ *   divided by d too.
  * - INVALID: d, L1, or both L2 and a3 are zero.
- * - A straight right arm is returned bent by a few units in the last place, so that fk can tell
- *   the side.
+ * - If the right arm is straight, it is returned bent by a few units in the last place, so that
+ *   fk can tell the side.
  */
 void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params,
     const real_t x[6], real_t q[48], uint8_t status[8]);

@@ -267,9 +267,9 @@ void irb2400_motors_from_joints_batch(size_t n, const irb2400_params *params,
  * - The branches, in order: facing_up_noflip, facing_up_flip, facing_down_noflip,
  *   facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
  *   backward_down_flip.
- * - motors_from_joints takes them to the motors.
+ * - motors_from_joints converts them to angles of the motors.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
- *   wrist; down: below; the other way round where X is between 0 and a1.
+ *   wrist; down: it is below. Where X is between 0 and a1, up and down are interchanged.
  * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links

@@ -251,7 +251,7 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     real_t *kappa, size_t kappa_stride);
 
 /*
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * Inputs
  * ------
@@ -311,7 +311,7 @@ void linear_delta_ik_batch(size_t n, const linear_delta_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * Inputs
  * ------

@@ -1,5 +1,5 @@
 /*
- * Six-axis arm of industry (OPW): the C of opw_arm.h for C++20, printed by closedform. Header only; every
+ * Industrial six-axis arm (OPW): the C of opw_arm.h for C++20, printed by closedform. Header only; every
  * function is one call of the C, with std::span for what it reads and std::array for what it returns.
  * Do not edit: change the template and run make.
  */

@@ -1,4 +1,4 @@
-"""Six-axis arm of industry (OPW): the generated C, with the names and the meaning of the NumPy module."""
+"""Industrial six-axis arm (OPW): the generated C, with the names and the meaning of the NumPy module."""
 
 from closedform.generated.numpy.opw_arm import (
     ASSEMBLY_MODES,

@@ -1,5 +1,5 @@
 /*
- * Six-axis arm of industry (OPW): the posture nearest to a seed, printed by closedform.
+ * Industrial six-axis arm (OPW): the posture nearest to a seed, printed by closedform.
  * Do not edit: change the template and run make.
  */
 #ifndef CLOSEDFORM_OPW_ARM_NEAREST_H

@@ -261,7 +261,7 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
     real_t *kappa, size_t kappa_stride);
 
 /*
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * Inputs
  * ------
@@ -321,7 +321,7 @@ void orthoglide_ik_batch(size_t n, const orthoglide_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * Inputs
  * ------

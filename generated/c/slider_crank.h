@@ -250,7 +250,7 @@ void slider_crank_ik_batch(size_t n, const slider_crank_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the follower can be there.
+ * Whether the follower can reach the target.
  *
  * Inputs
  * ------

@@ -196,8 +196,8 @@ void spherical_five_bar_singularities_batch(size_t n, const spherical_five_bar_p
     real_t *factors, size_t factors_stride);
 
 /*
- * Ratio of the largest to the smallest singular value of the rods of the driven legs, as they
- * are seen along the strut.
+ * Ratio of the largest to the smallest singular value of the rods of the driven legs, as seen
+ * along the strut.
  *
  * Inputs
  * ------
@@ -255,7 +255,7 @@ void spherical_five_bar_ik_batch(size_t n, const spherical_five_bar_params *para
     uint8_t *status, size_t status_stride);
 
 /*
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * Inputs
  * ------

@@ -216,7 +216,8 @@ void srs_arm_singularities_batch(size_t n, const srs_arm_params *params,
     real_t *factors, size_t factors_stride);
 
 /*
- * The arm angle: of the plane of the arm, about the line from the shoulder to the wrist.
+ * The arm angle: the turn of the plane of the arm about the line from the shoulder to the
+ * wrist.
  *
  * Inputs
  * ------
@@ -262,15 +263,15 @@ void srs_arm_arm_angle_batch(size_t n, const srs_arm_params *params,
  * -----
  * - The branches, in order: up_front_noflip, up_front_flip, up_back_noflip, up_back_flip,
  *   down_front_noflip, down_front_flip, down_back_noflip, down_back_flip.
- * - up: sin(theta4) <= 0; down: sin(theta4) >= 0. At arm angles within a right angle of 0, the
- *   elbow of the branches up is above the line from the shoulder to the wrist.
+ * - up: sin(theta4) <= 0; down: sin(theta4) >= 0. If the arm angle is between -90 and 90
+ *   degrees, the elbow of the up branches is above the line from the shoulder to the wrist.
  * - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
  * - noflip: sin(theta6) >= 0; flip: sin(theta6) <= 0.
  * - OK answers have the given arm angle up to 1e-12 times the size of the arm, divided by the
  *   distance of the wrist from the vertical line through the shoulder.
  * - SINGULAR: a link without length: theta4 is free, 0 is returned.
- * - SINGULAR: the wrist is above or below the shoulder; the arm angle is counted from the plane
- *   of x and z.
+ * - SINGULAR: the wrist is above or below the shoulder; the arm angle is measured from the
+ *   plane of x and z.
  * - SINGULAR: the wrist is on the shoulder.
  * - SINGULAR: the first and the last axis of the shoulder are parallel; theta1 is free.
  * - SINGULAR: the first and the last axis of the wrist are parallel; theta5 is free.

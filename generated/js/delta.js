@@ -20,7 +20,7 @@
  * Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
  * centre of the base and in the directions alpha1, alpha2 and alpha3.  A crank points outwards at
  * 0 and down at 90 degrees.  Three parallelograms of length l carry the platform, at the distance
- * e from its centre P.  They keep it from turning.
+ * e from its centre P, and keep it from turning.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Loops of common structure, solved leg by leg.
@@ -1869,7 +1869,7 @@ const _CONSTRAINT = _runtime.kernel({
 });
 
 /**
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
@@ -2281,7 +2281,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * @param {ArrayLike<number>} p 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -1358,7 +1358,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * @param {ArrayLike<number>} p 2 numbers. x, y in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

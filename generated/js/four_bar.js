@@ -940,7 +940,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the follower can be there.
+ * Whether the follower can reach the target.
  *
  * @param {ArrayLike<number>} p 1 number. psi in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

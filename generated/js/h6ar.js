@@ -28,7 +28,8 @@
  * tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
  * move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as printed,
  * the wrist hangs on a virtual arm whose angles are the averages of the real ones.  Yaw and roll
- * are measured against the base.  Directions of links are averaged on the shorter arc.
+ * are measured against the base.  The average of two directions is taken on the shorter arc
+ * between them.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -1139,7 +1140,7 @@ const _JACOBIAN = _runtime.kernel({
  * Source: derivative of eqs. (1) to (9).
  *
  * - NaN if the tips are farther apart than the wrist links can span.
- * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
+ * - Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -2839,7 +2840,8 @@ const _IK = _runtime.kernel({
  *   joints do not determine the tip to 1e-12 there; or if a half difference is at a right angle
  *   and rounding of the target decides whether the tips can be so far apart.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
- *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
+ *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
+ *   divided by d too.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  *
  * @param {ArrayLike<number>} x 6 numbers. x, y, z in the unit of the parameters; psi, phi,

@@ -19,8 +19,8 @@
  *
  * theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
  * a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper arm is
- * upright, the forearm level along x, and the tool points along x.  Motor 3 stands on the turret
- * beside motor 2; a parallelogram takes its turn to the forearm.
+ * upright, the forearm level along x, and the tool points along x.  Motor 3 is on the turret
+ * beside motor 2, and a parallelogram transmits its rotation to the forearm.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Arms of common structure, solved by lemmas.
@@ -1457,9 +1457,9 @@ const _IK = _runtime.kernel({
  * - The branches, in the order of `BRANCHES`: facing_up_noflip, facing_up_flip,
  *   facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,
  *   backward_down_noflip, backward_down_flip.
- * - motors_from_joints takes them to the motors.
+ * - motors_from_joints converts them to angles of the motors.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
- *   wrist; down: below; the other way round where X is between 0 and a1.
+ *   wrist; down: it is below. Where X is between 0 and a1, up and down are interchanged.
  * - X is how far the centre of the wrist is ahead of the base axis.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links

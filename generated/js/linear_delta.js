@@ -21,7 +21,7 @@
  * Delta robot with linear drives.
  *
  * Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the
- * first is on the x axis.  Parallelograms of length l lead from them to the platform, at the
+ * first is on the x axis.  Parallelograms of length l connect them to the platform, at the
  * distance e from its centre P, and keep it from turning.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
@@ -1556,7 +1556,7 @@ const _CONSTRAINT = _runtime.kernel({
 });
 
 /**
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
@@ -1802,7 +1802,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * @param {ArrayLike<number>} p 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -32,9 +32,9 @@
 /**
  * Orthoglide.
  *
- * Three sliders move along the axes x, y and z.  Parallelograms of length L lead from them to the
- * hand P, which they keep from turning.  Where all sliders are at L, P is at the origin and the
- * legs are at right angles: there the mechanism is isotropic.
+ * Three sliders move along the axes x, y and z.  Parallelograms of length L connect them to the
+ * hand P and keep it from turning.  If all sliders are at L, P is at the origin and the legs are
+ * at right angles to each other: there the mechanism is isotropic.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Loops of common structure, solved leg by leg.
@@ -1966,7 +1966,7 @@ const _CONSTRAINT = _runtime.kernel({
 });
 
 /**
- * What vanishes where the parallelograms do not keep the hand from turning.
+ * The factors that vanish where the parallelograms do not keep the hand from turning.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
  * - NaN for an assembly mode that does not exist.
@@ -2203,7 +2203,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * @param {ArrayLike<number>} p 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

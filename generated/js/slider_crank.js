@@ -16,7 +16,7 @@
  * Slider-crank.
  *
  * The crank of length r turns about the origin.  The slider moves along a line parallel to the x
- * axis, at the height e.  The connecting rod of length l joins the end of the crank to it.
+ * axis, at the height e.  The connecting rod of length l joins the end of the crank to the slider.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Loops of common structure, solved leg by leg.
@@ -770,7 +770,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the follower can be there.
+ * Whether the follower can reach the target.
  *
  * @param {ArrayLike<number>} p 1 number. x in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -16,10 +16,11 @@
  * Spherical five-bar linkage.
  *
  * All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
- * about it.  The first crank turns about the x axis, the second about the axis in the plane of x
- * and y at the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1
- * and beta2; the rods carry the point P.  At 0 a crank lies in the plane of x and y, on the side
- * that leads from the first axis to the second; at 90 degrees it rises along z.
+ * about it.  The first crank turns about the x axis, the second about an axis in the plane of x
+ * and y at the angle gamma from it.  The arcs of the cranks are alpha1 and alpha2, those of the
+ * rods beta1 and beta2.  The rods carry the point P.  At 0 a crank lies in the plane of x and y
+ * and points in the direction from the first axis to the second; at 90 degrees it points up along
+ * z.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Loops on a sphere, solved leg by leg.
@@ -1497,8 +1498,8 @@ const _CONDITION_NUMBER = _runtime.kernel({
 });
 
 /**
- * Ratio of the largest to the smallest singular value of the rods of the driven legs, as they
- * are seen along the strut.
+ * Ratio of the largest to the smallest singular value of the rods of the driven legs, as seen
+ * along the strut.
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
@@ -1842,7 +1843,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether the hand can be reached.
+ * Whether the hand can reach the target.
  *
  * @param {ArrayLike<number>} p 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

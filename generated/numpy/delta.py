@@ -18,7 +18,7 @@
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
 centre of the base and in the directions alpha1, alpha2 and alpha3.  A crank points outwards at
 0 and down at 90 degrees.  Three parallelograms of length l carry the platform, at the distance
-e from its centre P.  They keep it from turning.
+e from its centre P, and keep it from turning.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Loops of common structure, solved leg by leg.
@@ -2092,7 +2092,7 @@ _CONSTRAINT = _runtime.Kernel(
 
 
 def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """What vanishes where the parallelograms do not keep the hand from turning.
+    """The factors that vanish where the parallelograms do not keep the hand from turning.
 
     Parameters
     ----------
@@ -2566,7 +2566,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

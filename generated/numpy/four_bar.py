@@ -1029,7 +1029,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether the follower can be there.
+    """Whether the follower can reach the target.
 
     Parameters
     ----------

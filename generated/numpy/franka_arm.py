@@ -16,10 +16,11 @@
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
-The axes of theta1, theta2 and theta3 meet in the shoulder.  The elbow, theta4, is beside the
-upper arm and beside the forearm.  The axes of theta5 and theta6 meet in the wrist, and the axis
-of theta7 is beside it.  The table is modified (Craig's), as the maker's: at zero angles the arm
-points upwards and its hand downwards.  theta7 is an input of the inverse.
+The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
+offset from the upper arm and from the forearm.  The axes of theta5 and theta6 meet in the
+wrist, and the axis of theta7 is offset from it.  As in the maker's table, the Denavit-
+Hartenberg parameters are modified (Craig's).  At zero angles the arm points upwards and its
+hand downwards.  theta7 is an input of the inverse.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Arms of seven joints with offsets, solved by lemmas.
@@ -2234,8 +2235,8 @@ def ik(T: "ArrayLike", theta7: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     - The branches, in the order of `BRANCHES`: bent_ahead_front, bent_ahead_back,
       bent_behind_front, bent_behind_back, over_ahead_front, over_ahead_back, over_behind_front,
       over_behind_back.
-    - bent: the elbow is bent back from the straight arm, as far as the joint limits of a Panda
-      allow; over: it is bent to the other side.
+    - bent: the elbow is bent to the side that the joint limits of a Panda allow; over: it is
+      bent to the other side.
     - ahead: the shoulder, seen from the wrist before theta5 turns, has x >= 0; behind: x <= 0.
     - front: sin(theta2) >= 0; back: sin(theta2) <= 0.
     - SINGULAR: a link without length: elbow is free, one within reach is returned.

@@ -26,7 +26,8 @@ A waist carries two equal arms of two links, each at the distance d from the mid
 tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
 move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as printed,
 the wrist hangs on a virtual arm whose angles are the averages of the real ones.  Yaw and roll
-are measured against the base.  Directions of links are averaged on the shorter arc.
+are measured against the base.  The average of two directions is taken on the shorter arc
+between them.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -1200,7 +1201,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Notes
     -----
     - NaN if the tips are farther apart than the wrist links can span.
-    - Unbounded near stretched wrist links: the slope of l_W is infinite there.
+    - Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -3482,7 +3483,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       joints do not determine the tip to 1e-12 there; or if a half difference is at a right
       angle and rounding of the target decides whether the tips can be so far apart.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
-      yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
+      yaw and roll follow from displacements of the tips divided by d, so rounding errors are
+      divided by d too.
     - INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)

@@ -19,7 +19,7 @@
 """Delta robot with linear drives.
 
 Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the
-first is on the x axis.  Parallelograms of length l lead from them to the platform, at the
+first is on the x axis.  Parallelograms of length l connect them to the platform, at the
 distance e from its centre P, and keep it from turning.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
@@ -1797,7 +1797,7 @@ _CONSTRAINT = _runtime.Kernel(
 
 
 def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """What vanishes where the parallelograms do not keep the hand from turning.
+    """The factors that vanish where the parallelograms do not keep the hand from turning.
 
     Parameters
     ----------
@@ -2070,7 +2070,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

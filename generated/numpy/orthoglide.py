@@ -30,9 +30,9 @@
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
 
-Three sliders move along the axes x, y and z.  Parallelograms of length L lead from them to the
-hand P, which they keep from turning.  Where all sliders are at L, P is at the origin and the
-legs are at right angles: there the mechanism is isotropic.
+Three sliders move along the axes x, y and z.  Parallelograms of length L connect them to the
+hand P and keep it from turning.  If all sliders are at L, P is at the origin and the legs are
+at right angles to each other: there the mechanism is isotropic.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Loops of common structure, solved leg by leg.
@@ -2299,7 +2299,7 @@ _CONSTRAINT = _runtime.Kernel(
 
 
 def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """What vanishes where the parallelograms do not keep the hand from turning.
+    """The factors that vanish where the parallelograms do not keep the hand from turning.
 
     Parameters
     ----------
@@ -2561,7 +2561,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

@@ -1211,7 +1211,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       the shoulder to the wrist; down: below.
     - X is how far the centre of the wrist is ahead of the base axis.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
-    - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+    - Ill-conditioned near the shoulder and elbow singularities: the angles lose half their
       digits, the pose does not.
     - INVALID: the matrix is not a homogeneous transform with a proper rotation.
     - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal

@@ -14,7 +14,7 @@
 #   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
-Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by rho1
+Two legs turn freely about A1 at the origin and A2 at b on the x axis.  Their lengths are rho1
 and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of
 the legs follow.
 

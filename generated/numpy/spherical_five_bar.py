@@ -14,10 +14,11 @@
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
-about it.  The first crank turns about the x axis, the second about the axis in the plane of x
-and y at the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1
-and beta2; the rods carry the point P.  At 0 a crank lies in the plane of x and y, on the side
-that leads from the first axis to the second; at 90 degrees it rises along z.
+about it.  The first crank turns about the x axis, the second about an axis in the plane of x
+and y at the angle gamma from it.  The arcs of the cranks are alpha1 and alpha2, those of the
+rods beta1 and beta2.  The rods carry the point P.  At 0 a crank lies in the plane of x and y
+and points in the direction from the first axis to the second; at 90 degrees it points up along
+z.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Loops on a sphere, solved leg by leg.
@@ -1809,8 +1810,8 @@ _CONDITION_NUMBER = _runtime.Kernel(
 
 
 def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Ratio of the largest to the smallest singular value of the rods of the driven legs, as they
-    are seen along the strut.
+    """Ratio of the largest to the smallest singular value of the rods of the driven legs, as seen
+    along the strut.
 
     Parameters
     ----------
@@ -2206,7 +2207,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether the hand can be reached.
+    """Whether the hand can reach the target.
 
     Parameters
     ----------

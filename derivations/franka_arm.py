@@ -116,7 +116,7 @@ elbow = ik.angle("elbow", elbow_angle)
 d.write("elbow", r"\eta", "angle of the elbow, zero where the straight links are in line")
 
 
-def seen(pair: Pair) -> sp.Matrix:
+def shoulder_from_wrist(pair: Pair) -> sp.Matrix:
     """The shoulder in the frame of the forearm, from the cosine and sine of the elbow."""
     bent = turned(-(pair - straight)) * sp.Matrix([-a4, -d3, 0])
     return sp.Matrix([bent[0] + a5, 0, bent[1] - d5])
@@ -128,7 +128,7 @@ bent = ik.solve(
     (upper, fore),
     far,
     {-1: "bent", +1: "over"},
-    toward=TwoTurns(seen, along=u[2], across=reach),
+    toward=TwoTurns(shoulder_from_wrist, along=u[2], across=reach),
 )
 d.step(
     "Inverse: the elbow",
@@ -144,7 +144,7 @@ d.step(
         + 2 * sqrt(a4**2 + d3**2) * sqrt(a5**2 + d5**2) * cos(real("elbow")),
     },
 )
-v = ik.vector("v", seen(bent))
+v = ik.vector("v", shoulder_from_wrist(bent))
 tilt = ik.solve(
     turn,
     theta6,

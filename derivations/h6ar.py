@@ -13,11 +13,11 @@ from closedform.derivations.h6ar_mechanism import (
     Posture,
     allowances,
     alpha,
+    amplification,
     arm,
     arm_frames,
     beta,
     by_half_sums,
-    condition,
     declare,
     design,
     extended,
@@ -439,9 +439,9 @@ as_published(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 p.determined(length, m.al, "the wrist links are stretched")
-slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi))
-gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
-apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
+tangents = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi))
+gap = p.let("ahead", m.d * tangents[0]), p.let("higher", m.d * tangents[1])
+apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, tangents, strict=True))
 slack, beside = allowances(p, m, length, apart_by, gap)
 middle = solve_mid_plane(p, m, q, (length, base), slack=slack, gap=gap)
 upper, elbow = middle.upper, middle.elbow
@@ -453,8 +453,8 @@ seen = (
 v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
 free = free_turn(p, m, elbow, slack)
 fore_size = p.let("fore_size", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
-# in exact arithmetic every turn and lean is zero
-turns, leans = [], []
+# in exact arithmetic all these turns are zero
+turns, upper_turns = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
     aligned = v[0] * seen[0] + v[1] * seen[1]
@@ -471,11 +471,11 @@ for sine in ("alpha", "beta"):
         p.let(f"slope_aside_{sine}", m.L1 * (to_whole * v[1] - to_part * seen_rate)),
     )
     size = (fore_size if sine == "alpha" else m.L1) * beside
-    eased = free.easing(sine, margin, slopes, size, "a sine is at most 1")
-    spent = eased.spent
-    turn = p.let(f"turn_{sine}", choose(spent, eased.straight_on(), 0))
-    leant = p.let(f"lean_{sine}", choose(spent, free.lean(turn, eased.aside), 0))
-    back, on = turned_by(leant), turned_by(turn)
+    corrected = free.correction(sine, margin, slopes, size, "a sine is at most 1")
+    spent = corrected.spent
+    turn = p.let(f"turn_{sine}", choose(spent, corrected.linear_turn(), 0))
+    upper_turn = p.let(f"lean_{sine}", choose(spent, free.upper_turn(turn, corrected.aside), 0))
+    back, on = turned_by(upper_turn), turned_by(turn)
     ahead = on - back
     v, seen = (
         tuple(
@@ -487,7 +487,7 @@ for sine in ("alpha", "beta"):
         for name, e, by in (("v", v, ahead), ("p", seen, -back))
     )
     turns.append(turn)
-    leans.append(leant)
+    upper_turns.append(upper_turn)
 half = two_sines(
     p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
 )
@@ -496,14 +496,14 @@ at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
 sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]
 missed = v[0] * sines[1] - seen[0], m.L1 * sines[0] + v[1] * sines[1] - seen[1]
 missed = p.let("missed", choose(at_limit, sum(map(sp.Abs, missed)), 0))
-allowed = (1 + sp.Min(*(t**2 for t in slants))) * (m.d + sum(m) / 64)
+allowed = (1 + sp.Min(*(t**2 for t in tangents))) * (m.d + sum(m) / 64)
 p.determined(
     choose(at_limit, allowed, 1), missed * 2**50, "sines at their limits miss the gap of the tips"
 )
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {
-    theta2A: theta2A + sum(atan2(e, sp.S.One) for e in leans),
+    theta2A: theta2A + sum(atan2(e, sp.S.One) for e in upper_turns),
     theta23A: theta23A + sum(atan2(e, sp.S.One) for e in turns),
 }
 joints = {s: s for s in (theta1, theta)} | {
@@ -547,7 +547,7 @@ d.inverses.append(
         (*forward, *(apart / m.d)),
         angles=(psi, phi, pitch),
         images="fk",
-        condition=condition(m),
+        condition=amplification(m),
         links=tuple(map(Link.of, lemmas)),
         glue=Combination(sp.diag(MID_PLANE_ROWS, from_upper / m.d), joints),
     )

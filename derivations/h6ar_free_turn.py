@@ -20,29 +20,29 @@ from sympy import Rational, sqrt
 from closedform import Derivation, Program, choose, real, sign_of, used_up
 
 
-class Easing(NamedTuple):
+class Correction(NamedTuple):
     """How small turns make an area large enough that is too small by rounding.
 
     ``spent`` says that the area has no margin left.  The upper arm turns by ``aside``, after which
-    ``lack`` is still missing.  The free turn adds ``slope`` per radian and moves the tip by
-    ``heavy`` per radian, in units of the scale of the tolerance.  ``floor`` is smaller than any
-    slope that matters.
+    ``missing`` of the area is still lacking.  The free turn adds ``slope`` per radian and moves the
+    tip by ``tip_rate`` per radian, in units of the scale of the tolerance.  ``floor`` is smaller
+    than any slope that matters.
     """
 
     spent: sp.Symbol
     aside: sp.Symbol
-    lack: sp.Symbol
+    missing: sp.Symbol
     slope: sp.Symbol
-    heavy: sp.Symbol
+    tip_rate: sp.Symbol
     floor: sp.Expr
 
-    def straight_on(self) -> sp.Expr:
+    def linear_turn(self) -> sp.Expr:
         """The free turn if the area is linear in it."""
-        return sign_of(self.slope) * self.allowed(self.lack / (sp.Abs(self.slope) + self.floor))
+        return sign_of(self.slope) * self.allowed(self.missing / (sp.Abs(self.slope) + self.floor))
 
     def allowed(self, turn: sp.Expr) -> sp.Expr:
         """The turn, or 0 if it is negative or moves the tip by more than the tolerance."""
-        little = sp.And(turn > 0, turn * self.heavy <= Rational(1, 2**40))
+        little = sp.And(turn > 0, turn * self.tip_rate <= Rational(1, 2**40))
         return sp.Piecewise((turn, little), (0, True))
 
 
@@ -62,18 +62,18 @@ class FreeTurn:
     tilt: sp.Symbol
     drawn: sp.Symbol
 
-    def lean(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
+    def upper_turn(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
         """The tangent of the turn of the upper arm that belongs to a turn of the fore-arm."""
         return turn - self.drawn * turn / self.m.L1 + aside
 
-    def easing(
+    def correction(
         self,
         name: str,
         margin: sp.Symbol,
         slopes: tuple[sp.Symbol, sp.Symbol],
         scale: sp.Expr,
         meaning: str,
-    ) -> Easing:
+    ) -> Correction:
         """The turns that make an area ``margin`` large enough; ``scale`` is its natural size.
 
         ``slopes`` are the rates of the area for the free turn and for a turn of the upper arm
@@ -83,62 +83,62 @@ class FreeTurn:
         let, upper = self.program.let, 1 - self.drawn / self.m.L1
         # how far each turn moves the tip, by itself and by its square, in units of the tolerance
         squares = (self.m.L1 * upper**2 + sqrt(L_2W**2 + a_3W**2), self.m.L1)
-        heavy = [
+        tip_rates = [
             (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
             for by, square in zip((sp.Abs(self.tilt), self.m.L1), squares, strict=True)
         ]
         spent = self.program.vanishes(
             f"spent_{name}", used_up(margin), scale, f"no margin left: {meaning}"
         )
-        heavy = [let(f"heavy_{k}_{name}", choose(spent, e, 1)) for k, e in enumerate(heavy)]
+        tip_rates = [let(f"heavy_{k}_{name}", choose(spent, e, 1)) for k, e in enumerate(tip_rates)]
         gains = [
             let(f"gain_{k}_{name}", choose(spent, sp.Abs(s) / e, 0))
-            for k, (s, e) in enumerate(zip(slopes, heavy, strict=True))
+            for k, (s, e) in enumerate(zip(slopes, tip_rates, strict=True))
         ]
         play = let(f"play_{name}", scale + choose(spent, sum(gains), 0))
         self.program.bound(f"kept_{name}", margin, play, meaning)
         share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
         share = let(f"share_{name}", choose(spent, sp.Piecewise((share, margin < 0), (0, True)), 0))
-        floors = [scale * e / 2**24 for e in heavy]
+        floors = [scale * e / 2**24 for e in tip_rates]
         aside = -sign_of(slopes[1]) * share * margin / (sp.Abs(slopes[1]) + floors[1])
         aside = let(f"aside_{name}", choose(spent, aside, 0))
-        return Easing(
+        return Correction(
             spent=spent,
             aside=aside,
-            lack=let(f"lack_{name}", margin * (share - 1)),
+            missing=let(f"lack_{name}", margin * (share - 1)),
             slope=slopes[0],
-            heavy=heavy[0],
+            tip_rate=tip_rates[0],
             floor=floors[0],
         )
 
-    def turn(self, name: str, easings: Sequence[tuple[Easing, sp.Expr]]) -> sp.Symbol:
+    def turn(self, name: str, corrections: Sequence[tuple[Correction, sp.Expr]]) -> sp.Symbol:
         """A free turn that makes every area large enough, as far as possible.
 
-        Each easing comes with the coefficient of the square of the turn in its area.
+        Each correction comes with the coefficient of the square of the turn in its area.
         """
         let = self.program.let
-        spent = sp.Or(*(easing.spent for easing, _ in easings))
+        spent = sp.Or(*(correction.spent for correction, _ in corrections))
         sides = []
         for side, sign in (("on", 1), ("back", -1)):
             turn, ends = sp.S.Zero, []
-            for k, (e, curve) in enumerate(easings):
+            for k, (e, curve) in enumerate(corrections):
                 slope = sign * e.slope
-                root = sqrt(sp.Max(0, e.slope**2 + 4 * e.lack * curve))
+                root = sqrt(sp.Max(0, e.slope**2 + 4 * e.missing * curve))
                 root = let(f"root_{side}_{k}_{name}", choose(spent, root, 0))
-                near = e.allowed(2 * e.lack / (slope + root + e.floor))
+                near = e.allowed(2 * e.missing / (slope + root + e.floor))
                 far = e.allowed((root - slope) / (2 * sp.Max(curve, 0) + e.floor / 2**24))
                 ends.append(let(f"far_{side}_{k}_{name}", choose(spent, far, 0)))
-                first = sp.Piecewise((near, slope >= 0), (ends[-1], e.lack > 0), (0, True))
+                first = sp.Piecewise((near, slope >= 0), (ends[-1], e.missing > 0), (0, True))
                 turn = sp.Max(turn, first)
             turn = let(f"near_{side}_{name}", choose(spent, turn, 0))
 
             def grown(t: sp.Expr, k: int) -> sp.Expr:
-                e, curve = easings[k]
-                return t * (sign * e.slope + curve * t) - e.lack  # noqa: B023
+                e, curve = corrections[k]
+                return t * (sign * e.slope + curve * t) - e.missing  # noqa: B023
 
             needs = [sp.Piecewise((t, grown(turn, k) < 0), (0, True)) for k, t in enumerate(ends)]
             turn = let(f"turn_{side}_{name}", choose(spent, sp.Max(turn, *needs), 0))
-            least = sp.Min(*(grown(turn, k) for k in range(len(easings))))
+            least = sp.Min(*(grown(turn, k) for k in range(len(corrections))))
             sides.append((turn, let(f"left_{side}_{name}", choose(spent, least, 0))))
         (on, on_left), (back, back_left) = sides
         turn = sp.Piecewise((on, on_left >= back_left), (-back, True))

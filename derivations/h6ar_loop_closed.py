@@ -13,9 +13,9 @@ from closedform.derivations.h6ar_mechanism import (
     Posture,
     a_3W,
     allowances,
+    amplification,
     arm,
     by_half_sums,
-    condition,
     declare,
     design,
     extended,
@@ -443,15 +443,15 @@ sigma_left = real("sigma_left")
 LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
-slants = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
-slack, beside = allowances(p, m, wrist, sum(sp.Abs(half_base * t) for t in slants))
+tangents = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
+slack, beside = allowances(p, m, wrist, sum(sp.Abs(half_base * t) for t in tangents))
 mid = solve_mid_plane(p, m, q, (wrist, half_base), slack=slack)
 upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
 straight_mid = m.L2 * mid.elbow.s + m.a3 * mid.elbow.c
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
-by_pairs |= {tan(e): t for e, t in zip((psi, phi), slants, strict=True)}
+by_pairs |= {tan(e): t for e, t in zip((psi, phi), tangents, strict=True)}
 point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
 shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
 gap = p.let("gap", shift.dot(shift))
@@ -465,7 +465,7 @@ p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=Tru
 p.determined(square, size**2, "the virtual arm has no length", squares=True)
 p.determined(wrist, m.al, "the wrist links are stretched")
 free = free_turn(p, m, mid.elbow, slack)
-ends, squares, easings = {}, {}, []
+ends, squares, corrections = {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     ends[name] = r, h
@@ -487,20 +487,21 @@ for name, sign in (("right", 1), ("left", -1)):
     )
     onward = r * upper.c + h * upper.s - m.L1
     curve = p.let(f"curve_{name}", sense * onward * free.drawn**2 / m.L1)
-    eased = free.easing(name, margin, slopes, size * beside, "the arm is long enough")
-    easings.append((eased, curve))
-spent = sp.Or(*(e.spent for e, _ in easings))
-turn = free.turn("both", easings)
-more, less = (e.aside for e, _ in easings)
+    corrected = free.correction(name, margin, slopes, size * beside, "the arm is long enough")
+    corrections.append((corrected, curve))
+spent = sp.Or(*(e.spent for e, _ in corrections))
+turn = free.turn("both", corrections)
+more, less = (e.aside for e, _ in corrections)
 aside = sp.Piecewise((more, sp.Abs(more) >= sp.Abs(less)), (less, True))
-lean = p.let("lean", choose(spent, free.lean(turn, aside), 0))
+upper_turn = p.let("lean", choose(spent, free.upper_turn(turn, aside), 0))
 bent = p.let(
-    "bent_then", choose(spent, bent * (1 + turn * lean) + straight_mid * (turn - lean), bent)
+    "bent_then",
+    choose(spent, bent * (1 + turn * upper_turn) + straight_mid * (turn - upper_turn), bent),
 )
 side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
 elbow = p.matrix("elbow", m.L1 * upper.unit)
-swing = p.matrix("swing", moved_by(lean, elbow))
+swing = p.matrix("swing", moved_by(upper_turn, elbow))
 arms = []
 for name, sigma, unknowns in (
     ("right", side, (theta2R, theta23R)),
@@ -592,7 +593,7 @@ d.inverses.append(
         ),
         angles=(psi, phi, pitch),
         images="fk",
-        condition=condition(m),
+        condition=amplification(m),
         links=tuple(map(Link.of, lemmas)),
         glue=Combination(
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),

@@ -301,7 +301,7 @@ ACCURACY = (
 )
 
 
-def condition(m: Dimensions) -> sp.Expr:
+def amplification(m: Dimensions) -> sp.Expr:
     """The amplification of rounding errors: yaw and roll compare the tips over the distance d."""
     return sum(m) / m.d
 
@@ -326,7 +326,7 @@ def allowances(
     return reached, beside
 
 
-def along_gap(
+def distances_across_gap(
     program: Program,
     m: Dimensions,
     gap: tuple[sp.Expr, sp.Expr],
@@ -420,7 +420,7 @@ def solve_mid_plane(
     )
     virtual = LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1)
     if gap:
-        roots = along_gap(program, m, gap, (along, across), z - m.d1)
+        roots = distances_across_gap(program, m, gap, (along, across), z - m.d1)
         # the error that a clamped bound may have: eight units in the last place of yaw and roll
         virtual = replace(virtual, preferred=roots, rounding=Rational(1, 2**40))
     turn = sine_cosine(

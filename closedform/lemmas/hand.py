@@ -145,7 +145,7 @@ class Hand:
         legs = zip(self.legs, spans, strict=True)
         return [leg.normal if isinstance(leg, Rail) else span for leg, span in legs]
 
-    def told(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
+    def as_shown(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
         """The formulas of the legs, by their numbers; of alike legs, only those of leg i."""
         if self.alike:
             first, value = numbered[0]
@@ -164,10 +164,10 @@ class Hand:
     def state_loop(self) -> Step:
         self.declare_alike()
         numbers = [k for k, _ in self.numbered]
-        near = self.told([*zip(numbers, self.centres, strict=True)])
+        near = self.as_shown([*zip(numbers, self.centres, strict=True)])
         shown: dict[str, Any] = {rf"\mathbf b_{k}": c for k, c in near}
         self.d.explain(dict.fromkeys(shown, "near end of the rod of a leg"))
-        for k, leg in self.told(self.numbered):
+        for k, leg in self.as_shown(self.numbered):
             if isinstance(leg, Rail):
                 shown[rf"\mathbf n_{k}"] = leg.normal
             else:

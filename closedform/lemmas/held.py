@@ -115,7 +115,7 @@ def _in_space(m: Hand, loop: Step) -> None:
         "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
         "cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
-    bars = m.told([(k, leg.rod.direction) for k, leg in m.held])
+    bars = m.as_shown([(k, leg.rod.direction) for k, leg in m.held])
     one = INDEX if m.alike else "k"
     m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in bars})
     m.d.explain({rf"\mathbf n_{one}": f"normal of the parallelogram of leg {one}"})

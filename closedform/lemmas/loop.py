@@ -159,7 +159,7 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     )
 
 
-class _Met(NamedTuple):
+class _Meeting(NamedTuple):
     """The hand where legs meet, and what the article and the docstring say of it."""
 
     found: Meeting
@@ -176,7 +176,7 @@ NEAR = "Ill-conditioned near the parallel singularities, where both modes meet."
 
 def _on_rods(
     m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
-) -> _Met:
+) -> _Meeting:
     n = len(m.legs)
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
@@ -185,7 +185,7 @@ def _on_rods(
     found = meet(f, near, m.in_lemma(radii), hand, sigma, scale=size, share=share, free=hand)
     ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
     shape = "circles" if n == 2 else "spheres"
-    return _Met(
+    return _Meeting(
         found=found,
         link=replace(found.link, lemma=replace(found.lemma, roles=_roles(m))),
         title=f"{m.count} {shape}",
@@ -212,7 +212,7 @@ def _on_rods(
 
 def _on_rails(
     m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
-) -> _Met:
+) -> _Meeting:
     notes: tuple[str, ...] = ()
     if len(m.rails) == 2:
         found, title = two_rails(f, near, m.rails, m.hand), "two lines"
@@ -229,7 +229,7 @@ def _on_rails(
         "The determinant of the rows of A, in the frame of the rail, is the sign of the mode times "
         "a length; of two rails, it is a number."
     )
-    return _Met(
+    return _Meeting(
         found=found,
         link=found.link,
         title=title,
@@ -479,7 +479,7 @@ def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]
         diagonal = {f"B_{{{k}{k}}}": e for k, e in zip(numbers, rates, strict=True)}
         m.d.explain(dict.fromkeys(diagonal, "entry of the diagonal of B"))
         return {"A": sp.Matrix.vstack(*(r.T for r in rods)), **diagonal}
-    [(i, leg)] = m.told(m.driven)
+    [(i, leg)] = m.as_shown(m.driven)
     vectors = {
         rf"\mathbf a_{i}": rf"\mathbf p - \mathbf b_{i}",
         rf"\mathbf t_{i}": leg.rate,

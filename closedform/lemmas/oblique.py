@@ -45,7 +45,7 @@ class LinksAndObliqueWrist(Links):
             tilted = best.moved(turn.renamed(best.turn.least(best.tilt), f"{turn.name}_{k}"))
             near = tilted.turn.least(tilted.reach)
             other = tilted.moved(turn.renamed(near, f"{turn.name}_{k + 1}"))
-            best = best.unless(other, f"{turn.name}_{k}b")
+            best = best.better_of(other, f"{turn.name}_{k}b")
         return best.turn.pair
 
 
@@ -59,7 +59,7 @@ class _Wrist:
     def moved(self, turn: Turn) -> _Wrist:
         return _Wrist(self.goal, turn)
 
-    def unless(self, other: _Wrist, name: str) -> _Wrist:
+    def better_of(self, other: _Wrist, name: str) -> _Wrist:
         """This wrist, or the other one if it misses less."""
         better = other.miss < self.miss
         s, c = (

@@ -404,7 +404,7 @@ class LinksAndWrist(Links):
         # steps may lead away from where the axis reverses, so the last detour begins anew
         for detour, begin in zip(_DETOURS, (best, moved(start, start.turn.pair)), strict=True):
             other = follow(begin, detour)
-            best = moved(best, best.unless(other.miss < best.miss, other))
+            best = moved(best, best.better_of(other.miss < best.miss, other))
         return best.turn.pair
 
 
@@ -418,7 +418,7 @@ class _Place:
     def moved(self, pair: Pair, name: str) -> _Place:
         return _Place(self.goal, self.turn.renamed(pair, name))
 
-    def unless(self, better: sp.Basic, other: _Place) -> Pair:
+    def better_of(self, better: sp.Basic, other: _Place) -> Pair:
         """The pair of this place, or of the other one if it is better."""
         there, here = other.turn.pair, self.turn.pair
         return Pair(

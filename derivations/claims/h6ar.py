@@ -53,7 +53,7 @@ def state(d: Derivation, m: Dimensions, q: Joints) -> None:
 
 def driven(r: Robot, angles: tuple[str, ...], joints: tuple[sp.Symbol, ...]) -> Check:
     """Some of yaw, roll and pitch depend on exactly these joints."""
-    of = r.slants | {"pitch": r.q.theta}
+    of = r.tangents | {"pitch": r.q.theta}
     return Enumeration(
         ", ".join(j.name for j in r.q if j in joints),
         lambda: ", ".join(j.name for j in r.q if any(not equal(of[a].diff(j), 0) for a in angles)),
@@ -72,7 +72,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
         state = (q.theta1, r.A2, r.A3, r.psi, r.phi, q.theta)
         averages = (q.theta2R + q.theta2L) / 2, (q.theta3R + q.theta3L) / 2
         outer = r.derivative([*r.tip, *state[3:]], state)
-        inner = r.derivative([q.theta1, *averages, *r.slants.values(), q.theta], q)
+        inner = r.derivative([q.theta1, *averages, *r.tangents.values(), q.theta], q)
         return int((outer * inner).rank())
 
     claim(
@@ -165,7 +165,7 @@ def overview(d: Derivation, r: Robot, printed: Notation) -> None:
             {
                 "these joints move yaw and roll": driven(r, ("yaw", "roll"), joints),
                 "they have this many freedoms": Enumeration(
-                    n, lambda: r.rank([*r.slants.values()], arms), "of yaw and roll by the arms"
+                    n, lambda: r.rank([*r.tangents.values()], arms), "of yaw and roll by the arms"
                 ),
             }
         ),

@@ -87,7 +87,7 @@ def symmetric_motions(d: Derivation, r: Robot, printed: Notation) -> None:
         "roll and waist",
         "“Since the rolling motion is {indepedent} of the waist angle, Fig. 3(b) shows the "
         "projection for a pure rolling motion for”",
-        lambda judged: judged(Identity(r.slants["roll"].diff(q.theta1), sp.S.Zero)),
+        lambda judged: judged(Identity(r.tangents["roll"].diff(q.theta1), sp.S.Zero)),
         phrases=[{"indepedent": lambda check: check, "dependent": Not}],
     )
     claim(

@@ -94,7 +94,7 @@ class Robot:
         return self.m.d / turned[1]
 
     @cached_property
-    def slants(self) -> dict[str, sp.Expr]:
+    def tangents(self) -> dict[str, sp.Expr]:
         """Tangents of yaw and roll by (3) to (5): half differences of the tips, over d."""
         c1, s1 = cos(self.q.theta1), sin(self.q.theta1)
         apart = (self.right - self.left) / 2

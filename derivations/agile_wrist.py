@@ -145,11 +145,11 @@ for _, signs in fk.cases():
 d.step(
     "Velocity and singular sets",
     "The derivatives of the loop equations give A*omega = B*dq for the angular velocity omega of "
-    "the hand.  The rows of A are the cross products a of w and v.  B is diagonal, because each "
-    "leg depends on its own joint alone; its entries are sines of the angles between u and v.  In "
-    "all assembly modes the determinant of A is C - S, where C is the product of the cosines of "
-    "the joints and S the product of their sines.  The entry of B for a leg is plus or minus C - "
-    "S, divided by the sines of the angles between its middle axis and the other two.  So A and B "
+    "the hand.  The rows of A are the cross products of w and v.  B is diagonal, because each leg "
+    "depends on its own joint alone; its entries are sines of the angles between u and v.  In all "
+    "assembly modes the determinant of A is C - S, where C is the product of the cosines of the "
+    "joints and S the product of their sines.  The entry of B for a leg is plus or minus C - S, "
+    "divided by the sines of the angles between its middle axis and the other two.  So A and B "
     "are singular together.  If no two middle axes are parallel, every v is then u or -u: the "
     "hand is in one of the four orientations in which the legs turn freely, and the Jacobian is "
     "finite.  Where two middle axes are parallel, the Jacobian is not finite: the hand turns "

@@ -32,7 +32,8 @@ ik.solve(remainder, theta4, theta1 + theta2 - yaw)
 d.step(
     "Inverse",
     "Seen from above, the links are a planar two-link arm with two elbows, theta2 >= 0 (left) and "
-    "theta2 <= 0 (right).  Then the height gives the slide of the spindle and the yaw its turn.",
+    "theta2 <= 0 (right).  Then the height gives the slide of the spindle, and the yaw gives its "
+    "turn.",
     {r"d_3": h - z, r"\theta_4": theta1 + theta2 - yaw},
 )
 ik.finish("Both elbow configurations for a position and a yaw.")

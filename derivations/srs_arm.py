@@ -121,7 +121,8 @@ d.step(
     "the links have a length, that is where sin(theta4) = 0, and where sin(theta2) and "
     "sin(theta6), or sin(theta2) and cos(theta3), or sin(theta6) and cos(theta5) vanish together.",
     {r"\dot q": self_motion},
-    proves="J times these rates is zero, and d_se d_ew sin(theta4) times them are the minors.",
+    proves="J times these rates is zero, and these rates times d_se d_ew sin(theta4) are the "
+    "minors of J.",
     equal=[
         (arm.middle * self_motion, sp.zeros(6, 1)),
         *((m, (-1) ** k * d_se * d_ew * s4 * self_motion[k]) for k, m in enumerate(minors)),
@@ -183,7 +184,7 @@ far = ik.let("far", sqrt(p.dot(p)))
 elbow = ik.solve(law_of_cosines, theta4, (d_se, d_ew), far, {-1: "up", +1: "down"})
 d.step(
     "Inverse: the elbow",
-    "The upper arm, the forearm and the line from the shoulder to the wrist are a triangle.",
+    "The upper arm, the forearm and the line from the shoulder to the wrist form a triangle.",
     {"w": ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]), "L": sqrt(p.dot(p))},
 )
 bent = ik.vector("v", sp.Matrix([0, d_se, 0]) + turned(elbow) * sp.Matrix([0, d_ew, 0]))

@@ -79,7 +79,7 @@ d.explain({"w": "centre of the wrist"})
 d.step(
     "Inverse: the shoulder",
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulder "
-    "angles put it there, and there is none if the wrist is nearer to the first axis than d4.",
+    "angles put it there.  There is no solution if the wrist is nearer to the first axis than d4.",
     {"w": ik.p - d6 * ik.R[:, 2], r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
 )
 first = in_plane(shoulder)

@@ -238,7 +238,7 @@ def test_a_lemma_on_a_degenerate_equation() -> None:
     x, y = ik.x
     ik.solve(turn, THETA1, (ik.let("a", x - l1), ik.let("b", y - l2), 0), {1: "a", -1: "b"})
     ik.finish("Inverse.")
-    with pytest.raises(ProofError, match="degenerate at every posture: the axis of theta1 is met"):
+    with pytest.raises(ProofError, match="degenerate at every posture: the target is on the axis"):
         prove(d)
 
 

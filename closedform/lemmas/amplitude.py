@@ -99,4 +99,6 @@ def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str
     It is true if the lever is less than 2^-8 of the ``scale``.  With a longer lever, the tolerance
     of the reach covers the rounding.
     """
-    return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
+    return program.vanishes(
+        f"tangent{suffix}", lever - scale / 2**8, scale, "both solutions nearly coincide"
+    )

@@ -237,7 +237,7 @@ class Chain:
         """The pair of ``atan2(y, x)`` for a vector of parameters; the pair of 0 if both vanish."""
         p = self.program
         length = p.let(f"size_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
-        nothing = p.vanishes(f"no_{name}", length, 0, "it has no direction")
+        nothing = p.vanishes(f"no_{name}", length, 0, "the vector is zero")
         named = direction(y, x, length, nothing).known_as(p, f"_{name}")
         self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
         self.directions[sp.atan2(y, x)] = named

@@ -131,7 +131,9 @@ def turn(
     at = Amplitude.of(p, x, (a, b, c), sigma, scale=lambda _: missed_by, suffix=tag)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
-        flag = p.vanishes(f"free{tag}", at.h, chain.size, f"the axis of {x.name} is met", free=(x,))
+        flag = p.vanishes(
+            f"free{tag}", at.h, chain.size, f"the target is on the axis of {x.name}", free=(x,)
+        )
     root = p.let(f"root{tag}", at.root, nonnegative=True)
     width = p.let(f"width{tag}", at.below + at.above, nonnegative=True)
     allowance = 2 * missed_by * ROUNDING
@@ -364,7 +366,9 @@ def polar(
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (x, y)):
-        flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
+        flag = p.vanishes(
+            f"on_axis_{name}", r, chain.size, f"the target is on the axis of {angle}", (angle,)
+        )
     pair, means = named(chain, angle, direction(sigma * y, sigma * x, r, flag))
     value = p.let(f"{length.name}_{name}", sigma * r)
     lemma = Lemma(
@@ -377,7 +381,7 @@ def polar(
         excluded=0 if choice else 1,
         roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
     )
-    meaning = f"the axis of {angle} is met; {angle} is free, 0 is returned."
+    meaning = f"the target is on the axis of {angle}; {angle} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(x, y)], angle, meaning)
     return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
 

@@ -88,7 +88,7 @@ def rotate(
     shorter = sp.Min(of_w, of_v)
     if not any(differs_from_zero(chain, e, size) for e in (w1, w2)):
         flag = p.vanishes(
-            f"on_axis_{tag}", shorter, size, f"the axis of {x.name} is met", free=(x,)
+            f"on_axis_{tag}", shorter, size, f"the target is on the axis of {x.name}", free=(x,)
         )
     found, near = direction(sine, cosine, length, flag), ()
     unit: dict[sp.Expr, sp.Expr] = {}
@@ -114,7 +114,7 @@ def rotate(
     given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
     locus = vanishing(w1, w2, v1, v2)
     returned = "0 is returned." if reaching is None else "one within reach is returned."
-    meaning = f"the axis of {x} is met; {x} is free, {returned}"
+    meaning = f"the target is on the axis of {x}; {x} is free, {returned}"
     cases = degenerate(flag, [locus and locus | unit], x, meaning)
     if near and locus is not None:
         cases += (Degenerate(near, locus | unit, None, meaning),)

@@ -125,19 +125,21 @@ def three_spheres(
     line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
     equal = r1 == r2 == r3
     # in a mechanism without size, only equal spheres are recognised as touching
-    beside, length = _beside(p, a, scale if equal else choose(point, 1, scale))
+    beside, length = _perpendicular(p, a, scale if equal else choose(point, 1, scale))
     w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
     if equal:
         # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
         left = other.dot(other - span)
         part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
         squares = (mu, nu, part)
-        X, Y, h = _met_by_equal(p, r1, squares, left, flags=(point, line), scale=scale, share=share)
+        X, Y, h = _equal_spheres(
+            p, r1, squares, left, flags=(point, line), scale=scale, share=share
+        )
         more: tuple[sp.Symbol, ...] = ()
     else:
         lengths = (r1, either(r3, r2), either(r2, r3))
         squares = (mu, nu, p.let("nu_w", choose(line, length * over, nu), nonnegative=True))
-        X, Y, h, flat = _met_by_unequal(
+        X, Y, h, flat = _unequal_spheres(
             p, lengths, squares, other.dot(a), flags=(point, line), scale=scale, share=share
         )
         more = (flat,)
@@ -157,7 +159,7 @@ def three_spheres(
         2,
         signs=(sigma,),
         vectors=(
-            r"The algorithm has the entries of $\mathbf m = \mathbf a \times \mathbf c_3$, of "
+            r"The algorithm uses the entries of $\mathbf m = \mathbf a \times \mathbf c_3$, of "
             r"$\mathbf n = \mathbf m \times \mathbf a / \mu$ and of $\mathbf w$."
         ),
     )
@@ -184,7 +186,7 @@ def three_spheres(
     )
 
 
-def _met_by_equal(
+def _equal_spheres(
     p: Program,
     r: sp.Symbol,
     squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
@@ -208,7 +210,7 @@ def _met_by_equal(
     return sp.S.Half, Y, p.let("h", rise, nonnegative=True)
 
 
-def _met_by_unequal(
+def _unequal_spheres(
     p: Program,
     radii: tuple[sp.Expr, sp.Expr, sp.Expr],
     squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
@@ -306,7 +308,7 @@ def _vector(p: Program, name: str, entries: Iterable[sp.Expr]) -> sp.Matrix:
     return sp.Matrix([p.let(f"{name}_{i}", e) for i, e in zip("xyz", entries, strict=True)])
 
 
-def _beside(p: Program, e: sp.Matrix, scale: sp.Expr) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
+def _perpendicular(p: Program, e: sp.Matrix, scale: sp.Expr) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
     """A vector at right angles to a vector, and the square of its length.
 
     It is the product of the vector and ``scale * (1, s, 0)``, where the sign s differs from that of

@@ -83,7 +83,7 @@ def _place(m: Tripod) -> Step:
     d.explain({"f": "coefficient of cos(psi) in the equation of the twist"})
     d.explain({"g": "coefficient of sin(psi) in the equation of the twist"})
     step = d.step(
-        "The place of the hand",
+        "Pose of the hand",
         "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and the "
         "corner of leg i is e in its frame, so it is at p + R*e.  It has to be in the plane of "
         "its leg, whose normal is n.  This gives three equations.  The sum of the normals, each "

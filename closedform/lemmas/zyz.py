@@ -201,7 +201,9 @@ class Reaching:
         """
         p, size = self.chain.program, self.chain.size
         (x, y), (least, most) = self.target, self._reach
-        close = p.vanishes("close", gain * self.lever - size / 2**11, size, "it may be in doubt")
+        close = p.vanishes(
+            "close", gain * self.lever - size / 2**11, size, "its direction may be inaccurate"
+        )
         ex, ey = x - self.offset * u.c, y - self.offset * u.s
         there = p.let("here", sp.sqrt(ex**2 + ey**2))
         reach = p.let("in_reach", sp.Min(sp.Max(there, least), most))
@@ -212,7 +214,7 @@ class Reaching:
         inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
         doubt = gain * change - sp.Rational(1, 2**42)  # which single precision cannot resolve
-        near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
+        near = p.vanishes("within_rounding", doubt, 4, "the turn is free up to rounding")
         return close, near, inside, v
 
 

@@ -1,7 +1,7 @@
 """Serial chains: from a table of joints to the pose, the Jacobians and their determinant.
 
 A chain is given by rows of Denavit-Hartenberg (standard or modified) or by the screws of its axes
-at home.  What every serial arm has, one call derives, proves and exports.
+at home.  One call derives, proves and exports all that serial arms have in common.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geome
 from closedform.model.derivation import Derivation
 
 FORWARD_ALONE: ContextVar[bool] = ContextVar("FORWARD_ALONE", default=False)
-"""Whether ``export`` only returns the forward map: all that the proof of an inverse needs."""
+"""Whether ``export`` only returns the forward map, which is enough to prove an inverse."""
 TASK = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
 POSE = "Pose of the tool in the base frame."
 GEOMETRIC = "The geometric Jacobian: rows (v; omega), v of the origin of the tool."
@@ -45,7 +45,7 @@ GEOMETRIC = "The geometric Jacobian: rows (v; omega), v of the origin of the too
 
 @dataclass(frozen=True)
 class Serial:
-    """A serial chain of joints: ``pose`` of the tool, and the twist of each joint as it stands.
+    """A serial chain of joints: ``pose`` of the tool, and the twist of each joint at a posture.
 
     ``space`` and ``body`` are the 6xn Jacobians, twists ``(v; omega)`` in the base frame and in
     that of the tool; ``geometric`` has the velocity of the tool's origin and the angular velocity,
@@ -87,7 +87,7 @@ class Serial:
 
     @cached_property
     def middle(self) -> sp.Matrix:
-        """The twists in the frame, somewhere along the chain, where they are shortest."""
+        """The twists in that frame along the chain in which they are shortest."""
         return min(
             (
                 sp.Matrix.hstack(*(seen_from(k, j, self.groups, cut) for k, j in self.places))
@@ -98,7 +98,7 @@ class Serial:
 
     @property
     def places(self) -> list[tuple[int, int]]:
-        """The group of each joint, and its place there."""
+        """The group of each joint, and its position in the group."""
         return [(k, j) for k, group in enumerate(self.groups) for j in range(len(group.rows))]
 
     @property
@@ -123,7 +123,7 @@ class Serial:
     def coordinates(self) -> Coordinates | None:
         """As many task coordinates as joints: those of x, y, z and the yaw that the joints move.
 
-        None if the whole pose is the task, or if no such choice is evident.
+        None if the whole pose is the task, or if the choice is not evident.
         """
         n = len(self.joints)
         if n > 4:  # more than x, y, z and the yaw
@@ -193,9 +193,9 @@ class Serial:
         twists = [] if spelled else from_geometric(self.pose, self.geometric, self.space, self.body)
         d.step(
             "Jacobians",
-            "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
-            "joint is its axis and the velocity that it gives to the origin, that of a prismatic "
-            "joint its direction.  Differentiating the pose gives the same."
+            "The columns are the twists (v; omega) of the joints in this posture.  The twist of a "
+            "revolute joint is its axis and the velocity that it gives to the origin; that of a "
+            "prismatic joint is its direction.  Differentiating the pose gives the same."
             + ("" if spelled else TURNED)
             + (AXES if long else ""),
             (long.jacobian if long else {"J": self.geometric})
@@ -382,7 +382,7 @@ def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
 
 
 def _quotient(product: sp.Expr, divisor: sp.Expr, joints: Sequence[sp.Symbol]) -> sp.Expr:
-    """The quotient of expressions if it holds no angle, from their values at one posture."""
+    """The quotient of expressions if it contains no angle, from their values at one posture."""
     at: dict[sp.Expr, sp.Expr] = {}
     for k, q in enumerate(joints):
         t = sp.Rational(1, k + 2)
@@ -542,7 +542,7 @@ def from_screws(
 
 
 def _seen(frame: sp.Matrix, value: sp.Matrix) -> sp.Matrix:
-    """Vectors in the axes of a frame, the squares of sines and cosines of parameters reduced."""
+    """Vectors in the axes of a frame, with squares of sines and cosines of parameters reduced."""
     seen = frame.T * value
     return reduce_circle(seen.applyfunc(sp.expand)) if seen.free_symbols else seen
 

@@ -1,4 +1,4 @@
-"""Where an axis meets the one before it."""
+"""The point at which an axis meets the one before it."""
 
 from __future__ import annotations
 

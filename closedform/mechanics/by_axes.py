@@ -30,10 +30,10 @@ class ByAxes:
 def by_axes(
     d: Derivation, pose: sp.Matrix, geometric: sp.Matrix, moves: Sequence[sp.Matrix]
 ) -> ByAxes | None:
-    """The pose of a long arm and its Jacobian, by the axes of its joints; None of a short one.
+    """The pose of a long arm and its Jacobian, by the axes of its joints; None for a short one.
 
-    Each motion has to turn one joint about the z axis of the frame before it, or after it as in a
-    modified table.  ``d`` is told what the names mean.
+    Each motion has to turn one joint about the z axis of the frame before it, or of the frame after
+    it as in a modified table.  The meanings of the names are added to ``d``.
     """
     n = geometric.cols
     if sp.count_ops(pose) <= ENTRIES or len(moves) != n:
@@ -64,7 +64,7 @@ def by_axes(
 def _agree(first: sp.Matrix, second: sp.Matrix) -> bool:
     """Whether two matrices have the same values at a point; the proof decides."""
     symbols = sorted(first.free_symbols | second.free_symbols, key=str)
-    # In floats: SymPy's own evaluation takes longer than all the rest of a derivation.
+    # In floats, because SymPy's own evaluation takes longer than the rest of a derivation.
     point = [(7 * k + 3) / 11 for k in range(len(symbols))]
     a, b = sp.lambdify(symbols, [first, second], "numpy")(*point)
     return bool(np.abs(a - b).max() < 1e-9)

@@ -16,9 +16,9 @@ def factored_determinant(J: sp.Matrix) -> sp.Expr:
 
 
 def _in_decimals(product: sp.Expr) -> sp.Expr:
-    """Sums whose coefficients were made integers by factoring, divided by a power of ten again.
+    """Sums that factoring gave integer coefficients, divided by a power of ten again.
 
-    A factor then has the size of the lengths that are numbers in it, not a million times that.
+    A factor then has the size of the lengths in it, not a million times that.
     """
     number, others = product.as_coeff_Mul()
     whole, rest = [], []

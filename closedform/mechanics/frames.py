@@ -132,7 +132,7 @@ def angular_velocity_matrix(R: sp.Matrix, joints: Sequence[sp.Symbol], frame: st
 
 
 def reduce_circle(value: sp.Matrix) -> sp.Matrix:
-    """Rewrite even powers of sines and cosines by ``s^2 + c^2 = 1`` where that shortens."""
+    """Rewrite even powers of sines and cosines by ``s^2 + c^2 = 1`` where the result is shorter."""
 
     def shorter(entry: sp.Expr) -> sp.Expr:
         return min((entry, normal(entry)), key=sp.count_ops)
@@ -166,7 +166,7 @@ def frame_along(w: sp.Matrix) -> sp.Matrix:
 
 
 def _rational_frame(w: sp.Matrix) -> sp.Matrix:
-    """The least turn that takes z to ``w``, or to its opposite and then around x; without roots."""
+    """The least rotation from z to ``w``, or to ``-w`` after half a turn about x; without roots."""
     x, y, z = up = w if w[2] >= 0 else -w
     share = 1 / (1 + z)
     turned = sp.Matrix([[1 - share * x**2, -share * x * y], [-share * x * y, 1 - share * y**2]])

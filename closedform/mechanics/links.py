@@ -41,7 +41,7 @@ class Row(NamedTuple):
 class Group:
     """Consecutive joints with parallel axes, and the constant rotation that ends them.
 
-    What turns in a plane adds up, so no product of two sines of one group ever occurs.
+    The angles of turns in one plane add up, so no product of two sines of one group ever occurs.
     """
 
     rows: tuple[Row, ...]
@@ -82,8 +82,8 @@ class Group:
 def groups_of(links: Sequence[Link], turned: sp.Matrix) -> list[Group]:
     """The links by parallel axes; the frame before the first is ``turned`` about its axis.
 
-    A constant rotation that keeps the axis adds to the turn of the next joint, and one that
-    reverses it mirrors what follows.
+    A constant rotation that keeps the axis is added to the angle of the next joint; one that
+    reverses the axis mirrors all later links.
     """
     groups: list[Group] = []
     current: list[Row] = []
@@ -101,7 +101,7 @@ def groups_of(links: Sequence[Link], turned: sp.Matrix) -> list[Group]:
 
 
 def _angle_of(turned: sp.Matrix) -> sp.Expr:
-    """The angle by which a rotation about z, or one that reverses z too, turns the x axis."""
+    """The angle by which a rotation about z turns the x axis; the rotation may also reverse z."""
     c, s = turned[0, 0], turned[1, 0]
     if isinstance(c, sp.cos):
         angle = c.args[0]

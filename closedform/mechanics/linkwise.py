@@ -47,11 +47,11 @@ class Named:
 
     @property
     def explicit(self) -> sp.Matrix:
-        """Written out, in joints and parameters."""
+        """The matrix written out, in joints and parameters."""
         return self.program.explicit(self.matrix)
 
     def part(self, rows: Sequence[int], columns: Sequence[int]) -> Named:
-        """A part of the matrix, with the statements that it needs."""
+        """A part of the matrix, with the statements that define its names."""
         part = self.matrix.extract(list(rows), list(columns))
         return Named(self.program.needed_for(part), part)
 
@@ -59,7 +59,7 @@ class Named:
 def links_of(
     groups: Sequence[Group], joints: Sequence[sp.Symbol], lead: sp.Matrix, last: sp.Matrix
 ) -> list[Link]:
-    """The links of a chain; a slide that starts a group is a link of its own, which only shifts."""
+    """The links of a chain; a slide that starts a group is a link of its own."""
     remaining = iter(joints)
     links = [_moving(part, remaining) for group in groups for part in _split(group)]
     if lead != sp.eye(4):
@@ -87,7 +87,7 @@ def _moving(group: Group, joints: Iterator[sp.Symbol]) -> Link:
 
 
 def pose(program: Program, links: Sequence[Link]) -> Named:
-    """The transform of the whole chain, from the tool to the base, which is the cheaper way."""
+    """The transform of the whole chain, multiplied from the tool on, which is cheaper."""
     T = links[-1].transform
     for k in range(len(links) - 1, 0, -1):
         T = links[k - 1].transform * program.matrix(f"T{k}", T)

@@ -31,7 +31,7 @@ def dependent_joints(J: sp.Matrix, joints: Sequence[sp.Symbol]) -> tuple[int, li
 def dependent_in_chain(
     groups: Sequence[Group], joints: Sequence[sp.Symbol]
 ) -> tuple[int, list[sp.Symbol]]:
-    """The same for a serial chain, without writing out its twists."""
+    """The same for a serial chain, without writing its twists out."""
     parts = [
         sp.Matrix.hstack(
             group.transform(),

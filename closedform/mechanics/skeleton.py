@@ -1,7 +1,7 @@
 """The skeleton of a mechanism: the points and links to draw, exported as a function and proved.
 
-The proof shows that no link changes its length when the joints move, and that the hand is where the
-forward map says.
+The proof shows that no link changes its length when the joints move, and that the position of the
+hand is that of the forward map.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def skeleton(
         notes=notes,
     )
     d.skeleton = drawn
-    where_from = "it is to be" if pose else "the forward map says"
+    position = "the given position" if pose else "the position of the forward map"
     own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
@@ -114,11 +114,15 @@ def skeleton(
                 distances[length].append(between)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
-    closed = "  Where a rod closes a loop, the equation of the loop says so." if rest else ""
+    closed = (
+        "  For a rod that closes a loop, this follows from the equation of the loop."
+        if rest
+        else ""
+    )
     d.step(
         "Skeleton",
-        "The points through which the links are drawn.  No link changes its length when the joints "
-        f"move, and the hand is where {where_from}.{closed}",
+        "The links are drawn through these points.  No link changes its length when the joints "
+        f"move, and the hand is at {position}.{closed}",
         {},
         rows=[
             ("Points", "Distance"),
@@ -127,7 +131,7 @@ def skeleton(
         proves=(
             "The squared distance of each pair of neighbouring points is that of the length"
             f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "
-            f"the hand is at the position {'that is given' if pose else 'of the forward map'}."
+            f"the hand is at {position}."
         ),
         equal=equal,
         nonnegative=bounds,
@@ -150,7 +154,7 @@ def _cases(
     pairs: Sequence[tuple[str, str]],
     at_posture: Sequence[Mapping[str, Sequence[Any]]],
 ) -> Iterator[tuple[dict[str, sp.Matrix], tuple[sp.Expr, ...], list[tuple[str, str]]]]:
-    """Points in joints and parameters, what is not negative, and the distances to prove there."""
+    """Points in joints and parameters, what is not negative there, and the distances to prove."""
     for k, given in enumerate(at_posture):
         at = {name: sp.Matrix(list(place)) for name, place in given.items()}
         later = at_posture[k + 1 :]

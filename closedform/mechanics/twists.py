@@ -11,9 +11,9 @@ SPELLED = 120
 SHIFT = r"\begin{bmatrix} 1 & [p]_\times \\ 0 & 1 \end{bmatrix} J"
 TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
 TURNED = (
-    "  The velocity in J is that of the tool.  J_s has that of the point that passes the origin of "
-    "the base, and J_b has the axes of the tool: p is the position in T, R its rotation, and "
-    "[p]_× the matrix of the cross product with p."
+    "  The velocity in J is that of the tool.  In J_s it is that of the point of the tool that is "
+    "just at the origin of the base.  J_b is in the axes of the tool.  Here p is the position in "
+    "T, R its rotation, and [p]_× the matrix of the cross product with p."
 )
 
 

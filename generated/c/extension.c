@@ -7271,7 +7271,7 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a link without length: elbow is free, one within reach is returned.\n"
       "- SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is\n"
       "  returned.\n"
-      "- SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.\n"
+      "- SINGULAR: the target is on the axis of theta5; theta5 is free, 0 is returned.\n"
       "- SINGULAR: the first and the last axis of the wrist are parallel; theta1 is free.\n"
       ,
       7, franka_arm_values, franka_arm_fields,

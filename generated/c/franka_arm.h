@@ -232,7 +232,7 @@ void franka_arm_jacobian_body_batch(size_t n, const franka_arm_params *params,
  * - SINGULAR: a link without length: elbow is free, one within reach is returned.
  * - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
  *   returned.
- * - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.
+ * - SINGULAR: the target is on the axis of theta5; theta5 is free, 0 is returned.
  * - SINGULAR: the first and the last axis of the wrist are parallel; theta1 is free.
  */
 void franka_arm_ik(const franka_arm_params *params, const real_t T[16],

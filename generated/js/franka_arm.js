@@ -2096,7 +2096,7 @@ const _IK = _runtime.kernel({
  * - SINGULAR: a link without length: elbow is free, one within reach is returned.
  * - SINGULAR: all coefficients of the equation for theta6 vanish; theta6 is free, 0 is
  *   returned.
- * - SINGULAR: the axis of theta5 is met; theta5 is free, 0 is returned.
+ * - SINGULAR: the target is on the axis of theta5; theta5 is free, 0 is returned.
  * - SINGULAR: the first and the last axis of the wrist are parallel; theta1 is free.
  *
  * @param {ArrayLike<number>} T 16 numbers (4 x 4 in row order). A homogeneous transform with a

@@ -8,6 +8,7 @@ from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
     MID_PLANE_ROWS,
+    STEEP,
     WAIST,
     Pair,
     Posture,
@@ -405,10 +406,7 @@ d.function(
     program=p,
     equation="J",
     source="derivative of eqs. (1) to (9)",
-    notes=(
-        too_wide,
-        "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.",
-    ),
+    notes=(too_wide, STEEP),
 )
 p = Program()
 here, _ = stand(p)

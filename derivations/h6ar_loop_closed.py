@@ -8,6 +8,7 @@ from closedform.derivations.h6ar_mechanism import (
     ELBOW,
     L_2W,
     MID_PLANE_ROWS,
+    STEEP,
     WAIST,
     Pair,
     Posture,
@@ -107,10 +108,8 @@ d.step(
     "cancel if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
     published=("(6)",),
-    proves=(
-        "The middle and half the difference of the tips are as stated, in terms of the half sums "
-        "and half differences of the angles."
-    ),
+    proves="The middle and half the difference of the tips are as stated, in terms of the half "
+    "sums and half differences of the angles.",
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
 )
 ahead, higher = real("ahead"), real("higher")
@@ -408,10 +407,7 @@ d.function(
     program=p,
     equation="J",
     source="derivative of the forward map",
-    notes=(
-        *notes,
-        "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there.",
-    ),
+    notes=(*notes, STEEP),
 )
 p = Program()
 here = stand(p)
@@ -493,15 +489,14 @@ spent = sp.Or(*(e.spent for e, _ in corrections))
 turn = free.turn("both", corrections)
 more, less = (e.aside for e, _ in corrections)
 aside = sp.Piecewise((more, sp.Abs(more) >= sp.Abs(less)), (less, True))
-upper_turn = p.let("lean", choose(spent, free.upper_turn(turn, aside), 0))
+lean = p.let("lean", choose(spent, free.upper_turn(turn, aside), 0))
 bent = p.let(
-    "bent_then",
-    choose(spent, bent * (1 + turn * upper_turn) + straight_mid * (turn - upper_turn), bent),
+    "bent_then", choose(spent, bent * (1 + turn * lean) + straight_mid * (turn - lean), bent)
 )
 side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
 elbow = p.matrix("elbow", m.L1 * upper.unit)
-swing = p.matrix("swing", moved_by(upper_turn, elbow))
+swing = p.matrix("swing", moved_by(lean, elbow))
 arms = []
 for name, sigma, unknowns in (
     ("right", side, (theta2R, theta23R)),
@@ -530,8 +525,7 @@ for name, sigma, unknowns in (
             rest=upper,
         )
     )
-# an arm at its limit may bend to the other side than the virtual arm, and then the wrist points
-# elsewhere
+# an arm at its limit may bend to the other side, and then the wrist points elsewhere
 kept = [real(f"{k}_{name}", nonnegative=True) for k in "NM" for name in ("right", "left")]
 N, M = (kept[0] + kept[1]) / 2 + gap, (kept[2] + kept[3]) / 2 - gap
 bends = 2 * m.L1 * bent - side * sqrt(sp.Max(0, N)) * sqrt(sp.Max(0, M))

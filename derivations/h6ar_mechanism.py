@@ -294,6 +294,8 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
     return wrist, program.let("base", m.d / level)
 
 
+STEEP = "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there."
+
 ACCURACY = (
     "OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12: "
     "yaw and roll follow from displacements of the tips divided by d, so rounding errors are "

@@ -20,6 +20,7 @@ from closedform import (
     Pair,
     Preferred,
     Program,
+    choose,
     denavit_hartenberg,
     homogeneous,
     linear_pair,
@@ -320,8 +321,10 @@ def allowances(
     """
     base = m.al + m.gs + apart
     by_root = m.al * base / (2**9 * wrist + base / 2**14)
-    stretched = sp.Piecewise((by_root, wrist < m.al / 2**10), (0, True))
-    far = program.let("far_apart", apart / 512 + stretched, nonnegative=True)
+    stretched = program.vanishes(
+        "stretched", wrist - m.al / 2**10, m.al, "the wrist links are stretched"
+    )
+    far = program.let("far_apart", apart / 512 + choose(stretched, by_root, 0), nonnegative=True)
     lengths = program.let("lengths", sum(m))
     reached = program.let("slack", lengths / 4 + far, nonnegative=True)
     beside = program.let("play", sum(map(sp.Abs, gap), m.d) / 4 + lengths / 2048 + far)

@@ -143,7 +143,7 @@ void agile_wrist_fk(const agile_wrist_params *params, const real_t q[3],
 {
     const real_t one = cf_one();
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[0], q[2] };
+    const real_t lanes[4] = { q[1], q[0], q[2], q[2] };
     cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[4];
     agile_wrist_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
@@ -316,7 +316,7 @@ void agile_wrist_jacobian_parallel(const agile_wrist_params *params, const real_
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[0], q[1] };
+    const real_t lanes[4] = { q[2], q[0], q[1], q[1] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_jacobian_parallel_kernel(1, sines, cosines, A);
 }
@@ -426,7 +426,7 @@ void agile_wrist_jacobian_serial(const agile_wrist_params *params, const real_t 
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_jacobian_serial_kernel(1, sines, cosines, B);
 }
@@ -569,7 +569,7 @@ void agile_wrist_jacobian_space(const agile_wrist_params *params, const real_t q
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_jacobian_space_kernel(1, sines, cosines, J);
 }
@@ -662,7 +662,7 @@ void agile_wrist_determinant(const agile_wrist_params *params, const real_t q[3]
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_determinant_kernel(1, sines, cosines, det);
 }
@@ -745,7 +745,7 @@ void agile_wrist_singularities(const agile_wrist_params *params, const real_t q[
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_singularities_kernel(1, sines, cosines, factors);
 }
@@ -856,7 +856,7 @@ void agile_wrist_condition_number(const agile_wrist_params *params, const real_t
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[2], q[1] };
+    const real_t lanes[4] = { q[0], q[2], q[1], q[1] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_condition_number_kernel(1, sines, cosines, kappa);
 }
@@ -923,8 +923,8 @@ CF_INLINE void agile_wrist_passive_angles_kernel(const int single, const real_t 
     const real_t t9 = s2 * f1;
     const real_t y3 = e1 * t8 - f2 * t9;
     const real_t x3 = e1 * f2 + t8 * t9;
-    const real_t opposite[8] = { y1, y2, y3, y2, y3, y1 };
-    const real_t adjacent[8] = { x1, x2, x3, -x2, -x3, -x1 };
+    const real_t opposite[8] = { y1, y2, y3, y2, y3, y1, y1, y1 };
+    const real_t adjacent[8] = { x1, x2, x3, -x2, -x3, -x1, -x1, -x1 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -962,7 +962,7 @@ void agile_wrist_passive_angles(const agile_wrist_params *params, const real_t q
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[0], q[1] };
+    const real_t lanes[4] = { q[2], q[0], q[1], q[1] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_passive_angles_kernel(1, sines, cosines, phi);
 }
@@ -1205,7 +1205,7 @@ void agile_wrist_skeleton(const agile_wrist_params *params, const real_t q[3],
     real_t points[132])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     agile_wrist_skeleton_kernel(1, params, sines, cosines, points);
 }
@@ -1444,8 +1444,8 @@ CF_INLINE void agile_wrist_ik_whole_kernel(const int single, const real_t one,
     const int t47 = cf_min(t28, t46) <= CLOSEDFORM_DETERMINED;
     const real_t t48 = cf_rounded(single, one, c3_plus_plus_minus * t45);
     const int t49 = cf_min(t28, cf_abs(t29 - t48)) <= CLOSEDFORM_DETERMINED;
-    const real_t opposite[8] = { s1_minus_plus_plus, s2_plus_minus_plus, s3_plus_plus_minus, s3_plus_plus_minus, s2_plus_minus_plus, s1_minus_plus_plus };
-    const real_t adjacent[8] = { c1, c2, c3, c3_plus_plus_minus, c2_plus_minus_plus, c1_minus_plus_plus };
+    const real_t opposite[8] = { s1_minus_plus_plus, s2_plus_minus_plus, s3_plus_plus_minus, s3_plus_plus_minus, s2_plus_minus_plus, s1_minus_plus_plus, s1_minus_plus_plus, s1_minus_plus_plus };
+    const real_t adjacent[8] = { c1, c2, c3, c3_plus_plus_minus, c2_plus_minus_plus, c1_minus_plus_plus, c1_minus_plus_plus, c1_minus_plus_plus };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -1553,8 +1553,8 @@ CF_INLINE void agile_wrist_ik_common_kernel(const int single, const real_t one,
     const real_t t24 = cf_rounded(single, one, R23 * t20 * (R31 * t21) * (R12 * t22));
     const real_t t25 = cf_min(cf_min(cf_min(h1, h2), h3), cf_abs(t23 + t24));
     const real_t t26 = cf_status(single, invalid, 0, t25 <= CLOSEDFORM_DETERMINED);
-    const real_t opposite[8] = { R23, R31, R12, R12, R31, R23 };
-    const real_t adjacent[8] = { R33, R11, R22, -R22, -R11, -R33 };
+    const real_t opposite[8] = { R23, R31, R12, R12, R31, R23, R23, R23 };
+    const real_t adjacent[8] = { R33, R11, R22, -R22, -R11, -R33, -R33, -R33 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);

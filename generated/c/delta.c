@@ -158,7 +158,7 @@ void delta_fk(const delta_params *params, const real_t q[3],
     }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2] };
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[2];
     delta_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
@@ -857,7 +857,7 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_skeleton_lanes(params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1187,7 +1187,7 @@ void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1404,7 +1404,7 @@ void delta_jacobian_serial(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_serial_kernel(1, params, q, sines, cosines, B);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1643,7 +1643,7 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1860,7 +1860,7 @@ void delta_determinant(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_determinant_kernel(1, params, q, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -2065,7 +2065,7 @@ void delta_singularities(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_singularities_kernel(1, params, q, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -2295,7 +2295,7 @@ void delta_condition_number(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3 };
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_condition_number_kernel(1, params, q, sines, cosines, kappa);
 }
@@ -2516,7 +2516,7 @@ void delta_constraint(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2] };
+    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_constraint_kernel(1, params, q, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -2798,8 +2798,8 @@ CF_INLINE void delta_ik_kernel(const int single, const real_t one,
     const real_t t156 = cf_rounded(single, one, t135 * A_13_minus_plus_plus);
     const int t157 = cf_abs(t155 + t156) <= t100;
     const real_t t158 = cf_status(single, invalid, unreachable, t82 | t157);
-    const real_t opposite[8] = { sine_1, sine_2, sine_3, sine_3_plus_plus_minus, sine_2_plus_minus_plus, sine_1_minus_plus_plus };
-    const real_t adjacent[8] = { cosine_1, cosine_2, cosine_3, cosine_3_plus_plus_minus, cosine_2_plus_minus_plus, cosine_1_minus_plus_plus };
+    const real_t opposite[8] = { sine_1, sine_2, sine_3, sine_3_plus_plus_minus, sine_2_plus_minus_plus, sine_1_minus_plus_plus, sine_1_minus_plus_plus, sine_1_minus_plus_plus };
+    const real_t adjacent[8] = { cosine_1, cosine_2, cosine_3, cosine_3_plus_plus_minus, cosine_2_plus_minus_plus, cosine_1_minus_plus_plus, cosine_1_minus_plus_plus, cosine_1_minus_plus_plus };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -3044,7 +3044,7 @@ void delta_ik(const delta_params *params, const real_t x[3],
     }
     const real_t one = cf_one();
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
+    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3, params->alpha3 };
     cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[8];
     delta_ik_lanes(one, params, x, sines, cosines, q, status_real);
@@ -3328,7 +3328,7 @@ void delta_workspace_contains(const delta_params *params, const real_t p[3],
     }
     const real_t one = cf_one();
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
+    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3, params->alpha3 };
     cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t inside_real[1];
     delta_workspace_contains_lanes(one, params, p, sines, cosines, inside_real);

@@ -100,7 +100,7 @@ void franka_arm_pose(const franka_arm_params *params, const real_t q[7],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0] };
+    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_pose_kernel(params, sines, cosines, T);
 }
@@ -235,7 +235,7 @@ void franka_arm_skeleton(const franka_arm_params *params, const real_t q[7],
     real_t points[24])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[5], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[5], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_skeleton_kernel(params, sines, cosines, points);
 }
@@ -371,7 +371,7 @@ void franka_arm_fk(const franka_arm_params *params, const real_t q[7],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0] };
+    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_fk_kernel(params, sines, cosines, T);
 }
@@ -533,7 +533,7 @@ void franka_arm_jacobian(const franka_arm_params *params, const real_t q[7],
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[2], q[5], q[4], q[3], q[0], q[1] };
+    const real_t lanes[8] = { q[2], q[5], q[4], q[3], q[0], q[1], q[1], q[1] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_jacobian_kernel(params, sines, cosines, J);
 }
@@ -639,7 +639,7 @@ void franka_arm_determinant(const franka_arm_params *params, const real_t q[7],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[3], q[1], q[4] };
+    const real_t lanes[4] = { q[3], q[1], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     franka_arm_determinant_kernel(params, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -727,7 +727,7 @@ void franka_arm_singularities(const franka_arm_params *params, const real_t q[7]
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[3], q[4] };
+    const real_t lanes[4] = { q[1], q[3], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     franka_arm_singularities_kernel(params, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -910,7 +910,7 @@ void franka_arm_jacobian_space(const franka_arm_params *params, const real_t q[7
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[5] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[5], q[5], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -1104,7 +1104,7 @@ void franka_arm_jacobian_body(const franka_arm_params *params, const real_t q[7]
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[1], q[2], q[3], q[5], q[4] };
+    const real_t lanes[8] = { q[6], q[1], q[2], q[3], q[5], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     franka_arm_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -1646,8 +1646,8 @@ CF_INLINE void franka_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t286 = cf_status(single, invalid, unreachable_3, t285);
     const int t287 = t281 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front;
     const real_t t288 = cf_status(single, invalid, unreachable_4, t287);
-    const real_t opposite[24] = { s_wrist, R4_13 * c_wrist + R4_23 * s_wrist, t132, t76, t98, s6, s_x_theta7, t155, t158, t161 + t162, t144, t134, s_wrist_over_ahead_front, t244 + t245, t248, t200, t229, s6_over_ahead_front, t272, t275, t278 + t279, t261, t251 };
-    const real_t adjacent[24] = { c_wrist, t74 * (R1_31 * s6 - T33 * c6) + t131, t133, t74, c5, c6, c_x_theta7, c_wrist_bent_behind_front, t76 * (t159 - R1_33 * t144) - t160, -(t155 * R3_13_bent_behind_front + t163), c5_bent_behind_front, c6_bent_behind_front, c_wrist_over_ahead_front, R4_33_over_ahead_front, t249 - t250, t197, c5_over_ahead_front, c6_over_ahead_front, c_wrist_over_behind_front, t200 * (t276 - R1_33 * t261) - t277, -(t272 * R3_13_over_behind_front + t280), c5_over_behind_front, c6_over_behind_front };
+    const real_t opposite[24] = { s_wrist, R4_13 * c_wrist + R4_23 * s_wrist, t132, t76, t98, s6, s_x_theta7, t155, t158, t161 + t162, t144, t134, s_wrist_over_ahead_front, t244 + t245, t248, t200, t229, s6_over_ahead_front, t272, t275, t278 + t279, t261, t251, t251 };
+    const real_t adjacent[24] = { c_wrist, t74 * (R1_31 * s6 - T33 * c6) + t131, t133, t74, c5, c6, c_x_theta7, c_wrist_bent_behind_front, t76 * (t159 - R1_33 * t144) - t160, -(t155 * R3_13_bent_behind_front + t163), c5_bent_behind_front, c6_bent_behind_front, c_wrist_over_ahead_front, R4_33_over_ahead_front, t249 - t250, t197, c5_over_ahead_front, c6_over_ahead_front, c_wrist_over_behind_front, t200 * (t276 - R1_33 * t261) - t277, -(t272 * R3_13_over_behind_front + t280), c5_over_behind_front, c6_over_behind_front, c6_over_behind_front };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -2099,8 +2099,8 @@ CF_INLINE void franka_arm_ik_common_kernel(const int single, const real_t one,
     const int t197 = t196 | on_axis_5_over_ahead_front | (h_wrist_over_ahead_front <= t82);
     const int on_axis_5_over_behind_front = cf_min(t150, t177) <= t37;
     const int t198 = t197 | on_axis_5_over_behind_front | (h_wrist_over_behind_front <= t82);
-    const real_t opposite[24] = { t49, t50 * t84 + t49 * t85, t87, t33, t45, s6, s_x_theta7, t99, -t110, t111 - t112, t45, t89, t140, t148 * t157 + t140 * t158, t157 * t159 - t158 * t160, t115, t131, s6_over_ahead_front, t172, -t183, t184 - t185, t131, t162 };
-    const real_t adjacent[24] = { -t50, t86 - t29 * (R1_31 * s6 - T33 * c6), t88, -t29, dot_5, c6, c_x_theta7, t103, R4_33_bent_behind_front, t113 - t109 * (t97 * t101 + R1_13 * t95), -t93, -t90, -t148, R4_33_over_ahead_front, t161, -t114, dot_5_over_ahead_front, c6_over_ahead_front, t176, R4_33_over_behind_front, t186 - t182 * (t170 * t174 + R1_13 * t168), -t166, -t163 };
+    const real_t opposite[24] = { t49, t50 * t84 + t49 * t85, t87, t33, t45, s6, s_x_theta7, t99, -t110, t111 - t112, t45, t89, t140, t148 * t157 + t140 * t158, t157 * t159 - t158 * t160, t115, t131, s6_over_ahead_front, t172, -t183, t184 - t185, t131, t162, t162 };
+    const real_t adjacent[24] = { -t50, t86 - t29 * (R1_31 * s6 - T33 * c6), t88, -t29, dot_5, c6, c_x_theta7, t103, R4_33_bent_behind_front, t113 - t109 * (t97 * t101 + R1_13 * t95), -t93, -t90, -t148, R4_33_over_ahead_front, t161, -t114, dot_5_over_ahead_front, c6_over_ahead_front, t176, R4_33_over_behind_front, t186 - t182 * (t170 * t174 + R1_13 * t168), -t166, -t163, -t163 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);

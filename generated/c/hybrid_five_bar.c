@@ -97,7 +97,7 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     }
     const real_t one = cf_one();
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[2];
     hybrid_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
@@ -401,7 +401,7 @@ void hybrid_five_bar_skeleton(const hybrid_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -570,7 +570,7 @@ void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -864,7 +864,7 @@ void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1372,8 +1372,8 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const real_t t49 = cf_status(single, invalid, unreachable, t30 | t48);
     const int t50 = cf_abs(t39 + t35) <= t41;
     const real_t t51 = cf_status(single, invalid, unreachable, t30 | t50);
-    const real_t opposite[8] = { z, t20 - t22, t25 - t27, t25 + t27, t20 + t22, z };
-    const real_t adjacent[8] = { -x_2, t23 + t24, t28 + t29, t28 - t29, t23 - t24, x_2 };
+    const real_t opposite[8] = { z, t20 - t22, t25 - t27, t25 + t27, t20 + t22, z, z, z };
+    const real_t adjacent[8] = { -x_2, t23 + t24, t28 + t29, t28 - t29, t23 - t24, x_2, x_2, x_2 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);

@@ -82,7 +82,7 @@ void irb2400_pose(const irb2400_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_pose_kernel(params, sines, cosines, T);
 }
@@ -192,7 +192,7 @@ void irb2400_skeleton(const irb2400_params *params, const real_t q[6],
     real_t points[21])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[4], q[3] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[4], q[3], q[3], q[3], q[3] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_skeleton_kernel(params, sines, cosines, points);
 }
@@ -307,7 +307,7 @@ void irb2400_fk(const irb2400_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_fk_kernel(params, sines, cosines, T);
 }
@@ -433,7 +433,7 @@ void irb2400_jacobian(const irb2400_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[4], q[3], q[1], q[2] };
+    const real_t lanes[8] = { q[0], q[4], q[3], q[1], q[2], q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_jacobian_kernel(params, sines, cosines, J);
 }
@@ -532,7 +532,7 @@ void irb2400_determinant(const irb2400_params *params, const real_t q[6],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[1], q[4] };
+    const real_t lanes[4] = { q[2], q[1], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb2400_determinant_kernel(params, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -606,7 +606,7 @@ void irb2400_singularities(const irb2400_params *params, const real_t q[6],
     real_t factors[3])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[4] };
+    const real_t lanes[4] = { q[1], q[2], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb2400_singularities_kernel(params, sines, cosines, factors);
 }
@@ -733,7 +733,7 @@ void irb2400_jacobian_space(const irb2400_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -883,7 +883,7 @@ void irb2400_jacobian_body(const irb2400_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[1], q[2], q[3], q[4], q[5] };
+    const real_t lanes[8] = { q[1], q[2], q[3], q[4], q[5], q[5], q[5], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     irb2400_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -1298,8 +1298,8 @@ CF_INLINE void irb2400_ik_kernel(const int single, const real_t one,
     const int t146 = t142 | folded_elbow_backward_up_noflip;
     const real_t t147 = cf_status(single, invalid, unreachable_2, t146 | aligned_wrist_backward_up_noflip);
     const real_t t148 = cf_status(single, invalid, unreachable_2, t146 | aligned_wrist_backward_down_noflip);
-    const real_t opposite[24] = { s1, clower, -t58, s_wrist, R2_13 * c_wrist + R2_23 * s_wrist, t70, clower_facing_down_noflip, t74, s_wrist_facing_down_noflip, t83 + R2_23 * s_wrist_facing_down_noflip, t84 - R2_21 * c_wrist_facing_down_noflip, s1, clower_backward_up_noflip, t108, t123, t124, t123 * (t125 * t117 + T31 * t120) + t126, clower_backward_down_noflip, -t129, t138, t139, t138 * (t125 * t132 + T31 * t135) + t140 };
-    const real_t adjacent[24] = { c1, -slower, c3, c_wrist, -(R1_13 * t65 + T33 * t64), t73, -slower_facing_down_noflip, c3_facing_down_noflip, c_wrist_facing_down_noflip, -(R1_13 * t80 + T33 * t77), R2_22 * c_wrist_facing_down_noflip - t85, c1_backward_up_noflip, -slower_backward_up_noflip, c3_backward_up_noflip, c_wrist_backward_up_noflip, t114 * t120 - T33 * t117, -(t123 * (t127 * t117 + T32 * t120) + t128), -slower_backward_down_noflip, c3_backward_down_noflip, c_wrist_backward_down_noflip, t114 * t135 - T33 * t132, -(t138 * (t127 * t132 + T32 * t135) + t141) };
+    const real_t opposite[24] = { s1, clower, -t58, s_wrist, R2_13 * c_wrist + R2_23 * s_wrist, t70, clower_facing_down_noflip, t74, s_wrist_facing_down_noflip, t83 + R2_23 * s_wrist_facing_down_noflip, t84 - R2_21 * c_wrist_facing_down_noflip, s1, clower_backward_up_noflip, t108, t123, t124, t123 * (t125 * t117 + T31 * t120) + t126, clower_backward_down_noflip, -t129, t138, t139, t138 * (t125 * t132 + T31 * t135) + t140, t138 * (t125 * t132 + T31 * t135) + t140, t138 * (t125 * t132 + T31 * t135) + t140 };
+    const real_t adjacent[24] = { c1, -slower, c3, c_wrist, -(R1_13 * t65 + T33 * t64), t73, -slower_facing_down_noflip, c3_facing_down_noflip, c_wrist_facing_down_noflip, -(R1_13 * t80 + T33 * t77), R2_22 * c_wrist_facing_down_noflip - t85, c1_backward_up_noflip, -slower_backward_up_noflip, c3_backward_up_noflip, c_wrist_backward_up_noflip, t114 * t120 - T33 * t117, -(t123 * (t127 * t117 + T32 * t120) + t128), -slower_backward_down_noflip, c3_backward_down_noflip, c_wrist_backward_down_noflip, t114 * t135 - T33 * t132, -(t138 * (t127 * t132 + T32 * t135) + t141), -(t138 * (t127 * t132 + T32 * t135) + t141), -(t138 * (t127 * t132 + T32 * t135) + t141) };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);

@@ -370,7 +370,7 @@ void irb260_skeleton(const irb260_params *params, const real_t q[4],
     real_t points[33])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_skeleton_kernel(params, sines, cosines, points);
 }
@@ -471,7 +471,7 @@ void irb260_jacobian(const irb260_params *params, const real_t q[4],
     real_t J[16])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_kernel(params, sines, cosines, J);
 }
@@ -563,7 +563,7 @@ void irb260_jacobian_space(const irb260_params *params, const real_t q[4],
     real_t J[24])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -663,7 +663,7 @@ void irb260_jacobian_body(const irb260_params *params, const real_t q[4],
     real_t J[24])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[3], q[1], q[2] };
+    const real_t lanes[4] = { q[3], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -755,7 +755,7 @@ void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
     real_t J[16])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[1], q[2], q[0], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_motors_kernel(params, sines, cosines, J);
 }
@@ -963,7 +963,7 @@ void irb260_point_velocity(const irb260_params *params, const real_t q[4],
     const real_t qdot[4], real_t v[3])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_point_velocity_kernel(params, qdot, sines, cosines, v);
 }
@@ -1073,8 +1073,8 @@ CF_INLINE void irb260_ik_kernel(const int single, const real_t one,
     const real_t t37 = CLOSEDFORM_C(2.0) * cf_root(single, t35 * t36);
     const real_t t38 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
     const real_t t39 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    const real_t opposite[16] = { s_turret_back_elbow_up, -t13, t21, t24, s_psi * c_turret + t25, s_turret_back_elbow_up, t27, t34, t37, t25 - s_psi * c_turret_back_elbow_up };
-    const real_t adjacent[16] = { c_turret, h, t20 - t19, t23 - t22, c_psi * c_turret - t26, c_turret_back_elbow_up, h, t33 - t32, t36 - t35, t26 + c_psi * c_turret_back_elbow_up };
+    const real_t opposite[16] = { s_turret_back_elbow_up, -t13, t21, t24, s_psi * c_turret + t25, s_turret_back_elbow_up, t27, t34, t37, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up, t25 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, h, t20 - t19, t23 - t22, c_psi * c_turret - t26, c_turret_back_elbow_up, h, t33 - t32, t36 - t35, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);

@@ -85,7 +85,7 @@ void opw_arm_pose(const opw_arm_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_pose_kernel(params, sines, cosines, T);
 }
@@ -203,7 +203,7 @@ void opw_arm_skeleton(const opw_arm_params *params, const real_t q[6],
     real_t points[24])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[4], q[3] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[4], q[3], q[3], q[3], q[3] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_skeleton_kernel(params, sines, cosines, points);
 }
@@ -322,7 +322,7 @@ void opw_arm_fk(const opw_arm_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_fk_kernel(params, sines, cosines, T);
 }
@@ -450,7 +450,7 @@ void opw_arm_jacobian(const opw_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[4], q[3], q[1], q[2] };
+    const real_t lanes[8] = { q[0], q[4], q[3], q[1], q[2], q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_jacobian_kernel(params, sines, cosines, J);
 }
@@ -549,7 +549,7 @@ void opw_arm_determinant(const opw_arm_params *params, const real_t q[6],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[1], q[4] };
+    const real_t lanes[4] = { q[2], q[1], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     opw_arm_determinant_kernel(params, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -623,7 +623,7 @@ void opw_arm_singularities(const opw_arm_params *params, const real_t q[6],
     real_t factors[3])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[4] };
+    const real_t lanes[4] = { q[1], q[2], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     opw_arm_singularities_kernel(params, sines, cosines, factors);
 }
@@ -753,7 +753,7 @@ void opw_arm_jacobian_space(const opw_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -906,7 +906,7 @@ void opw_arm_jacobian_body(const opw_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[1], q[2], q[3], q[4], q[5] };
+    const real_t lanes[8] = { q[1], q[2], q[3], q[4], q[5], q[5], q[5], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     opw_arm_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -1314,8 +1314,8 @@ CF_INLINE void opw_arm_ik_whole_kernel(const int single, const real_t one,
     const int t204 = t200 | folded_elbow_backward_up_noflip;
     const real_t t205 = cf_status(single, invalid, unreachable_2, t204 | aligned_wrist_backward_up_noflip);
     const real_t t206 = cf_status(single, invalid, unreachable_2, t204 | aligned_wrist_backward_down_noflip);
-    const real_t opposite[24] = { s1, clower, s3, t93, t86 * t93 - t90 * c_wrist, t95, clower_facing_down_noflip, t98, t107, t108, t109, s1_backward_up_noflip, clower_backward_up_noflip, t162, t180, t181, c_wrist_backward_up_noflip * t182 + t183, clower_backward_down_noflip, s3_backward_down_noflip, t195, t196, t182 * c_wrist_backward_down_noflip + t197 };
-    const real_t adjacent[24] = { c1_0, -slower, c3_0, c_wrist, R1_13 * t89 - T33 * t88, -t97, -slower_facing_down_noflip, c3_0_facing_down_noflip, c_wrist_facing_down_noflip, R1_13 * t104 - T33 * t101, -t110, c1_0_backward_up_noflip, -slower_backward_up_noflip, c3_0_backward_up_noflip, c_wrist_backward_up_noflip, R1_13_backward_up_noflip * t177 - T33 * t173, -(c_wrist_backward_up_noflip * t184 + t185), -slower_backward_down_noflip, c3_0_backward_down_noflip, c_wrist_backward_down_noflip, R1_13_backward_up_noflip * t192 - T33 * t188, t199 };
+    const real_t opposite[24] = { s1, clower, s3, t93, t86 * t93 - t90 * c_wrist, t95, clower_facing_down_noflip, t98, t107, t108, t109, s1_backward_up_noflip, clower_backward_up_noflip, t162, t180, t181, c_wrist_backward_up_noflip * t182 + t183, clower_backward_down_noflip, s3_backward_down_noflip, t195, t196, t182 * c_wrist_backward_down_noflip + t197, t182 * c_wrist_backward_down_noflip + t197, t182 * c_wrist_backward_down_noflip + t197 };
+    const real_t adjacent[24] = { c1_0, -slower, c3_0, c_wrist, R1_13 * t89 - T33 * t88, -t97, -slower_facing_down_noflip, c3_0_facing_down_noflip, c_wrist_facing_down_noflip, R1_13 * t104 - T33 * t101, -t110, c1_0_backward_up_noflip, -slower_backward_up_noflip, c3_0_backward_up_noflip, c_wrist_backward_up_noflip, R1_13_backward_up_noflip * t177 - T33 * t173, -(c_wrist_backward_up_noflip * t184 + t185), -slower_backward_down_noflip, c3_0_backward_down_noflip, c_wrist_backward_down_noflip, R1_13_backward_up_noflip * t192 - T33 * t188, t199, t199, t199 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -1662,8 +1662,8 @@ CF_INLINE void opw_arm_ik_common_kernel(const int single, const real_t one,
     const int t156 = (h1 <= t6) | tangent1 | (r_elbow <= t6) | (c2 * f <= CLOSEDFORM_VANISHING * (t39 * t39));
     const int t157 = t156 | (h_wrist <= t75) | (h_wrist_facing_down_noflip <= t75);
     const int t158 = t157 | (r_elbow_backward_up_noflip <= t6) | (h_wrist_backward_up_noflip <= t75);
-    const real_t opposite[24] = { -t11, clower, s3, -t70, t70 * t77 + t73 * t78, t79 * t78 - t77 * (R1_11 * t71 - T31 * t72), clower_facing_down_noflip, t82, -t70, t70 * t90 + t88 * t91, t79 * t91 - t90 * (R1_11 * t85 - T31 * t87), -t92, clower_backward_up_noflip, t118, t123, t123 * t133 + t130 * t134, t137, clower_backward_down_noflip, s3_backward_down_noflip, t123, t123 * t150 + t148 * t151, t152 };
-    const real_t adjacent[24] = { c_1_1, t59, -t69, -t73, -(R1_13 * t72 + T33 * t71), t77 * (R1_12 * t71 - T32 * t72) - t80 * t78, t81, -t83, -t88, -(R1_13 * t87 + T33 * t85), t90 * (R1_12 * t85 - T32 * t87) - t80 * t91, c_1_1_backward_up_noflip, t111, -t121, -t130, -(t125 * t129 + T33 * t127), t140, t141, -t142, -t148, -(t125 * t147 + T33 * t144), t153 };
+    const real_t opposite[24] = { -t11, clower, s3, -t70, t70 * t77 + t73 * t78, t79 * t78 - t77 * (R1_11 * t71 - T31 * t72), clower_facing_down_noflip, t82, -t70, t70 * t90 + t88 * t91, t79 * t91 - t90 * (R1_11 * t85 - T31 * t87), -t92, clower_backward_up_noflip, t118, t123, t123 * t133 + t130 * t134, t137, clower_backward_down_noflip, s3_backward_down_noflip, t123, t123 * t150 + t148 * t151, t152, t152, t152 };
+    const real_t adjacent[24] = { c_1_1, t59, -t69, -t73, -(R1_13 * t72 + T33 * t71), t77 * (R1_12 * t71 - T32 * t72) - t80 * t78, t81, -t83, -t88, -(R1_13 * t87 + T33 * t85), t90 * (R1_12 * t85 - T32 * t87) - t80 * t91, c_1_1_backward_up_noflip, t111, -t121, -t130, -(t125 * t129 + T33 * t127), t140, t141, -t142, -t148, -(t125 * t147 + T33 * t144), t153, t153, t153 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);

@@ -518,8 +518,8 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const real_t one,
     const int unreachable = !((-t15 <= t5) & (-t17 <= t4));
     const real_t t18 = cf_poison(single, invalid | unreachable);
     const real_t t19 = cf_status(single, invalid, unreachable, no_link | at_base);
-    const real_t opposite[4] = { t6 - t9, CLOSEDFORM_C(2.0) * t8, t6 + t9 };
-    const real_t adjacent[4] = { t10 + t11, M - N, t10 - t11 };
+    const real_t opposite[4] = { t6 - t9, CLOSEDFORM_C(2.0) * t8, t6 + t9, t6 + t9 };
+    const real_t adjacent[4] = { t10 + t11, M - N, t10 - t11, t10 - t11 };
     real_t angles[4];
     if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);

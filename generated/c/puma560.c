@@ -74,7 +74,7 @@ void puma560_pose(const puma560_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     puma560_pose_kernel(params, sines, cosines, T);
 }
@@ -167,7 +167,7 @@ void puma560_skeleton(const puma560_params *params, const real_t q[6],
     real_t points[15])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[2] };
+    const real_t lanes[4] = { q[0], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     puma560_skeleton_kernel(params, sines, cosines, points);
 }
@@ -267,7 +267,7 @@ void puma560_fk(const puma560_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     puma560_fk_kernel(params, sines, cosines, T);
 }
@@ -383,7 +383,7 @@ void puma560_jacobian(const puma560_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     puma560_jacobian_kernel(params, sines, cosines, J);
 }
@@ -480,7 +480,7 @@ void puma560_determinant(const puma560_params *params, const real_t q[6],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[1], q[4] };
+    const real_t lanes[4] = { q[2], q[1], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     puma560_determinant_kernel(params, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -553,7 +553,7 @@ void puma560_singularities(const puma560_params *params, const real_t q[6],
     real_t factors[3])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[4] };
+    const real_t lanes[4] = { q[1], q[2], q[4], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     puma560_singularities_kernel(params, sines, cosines, factors);
 }
@@ -665,7 +665,7 @@ void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[1], q[0], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[1], q[0], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     puma560_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -813,7 +813,7 @@ void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[1], q[2], q[3], q[5], q[4] };
+    const real_t lanes[8] = { q[1], q[2], q[3], q[5], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     puma560_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -1106,8 +1106,8 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const real_t t127 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_right_down_noflip);
     const real_t t128 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_left_up_noflip);
     const real_t t129 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_left_down_noflip);
-    const real_t opposite[24] = { t19, s2, t68, s_wrist, R2_13 * c_wrist + R2_23 * s_wrist, t76, s2_right_down_noflip, -t78, s_wrist_right_down_noflip, t87 + R2_23 * s_wrist_right_down_noflip, t88 - R2_21 * c_wrist_right_down_noflip, t90, s2_left_up_noflip, s_wrist_left_up_noflip, t106 + t107, t108 - t109, s2_left_down_noflip, s_wrist_left_down_noflip, t118 * c_wrist_left_down_noflip - t120, t121 + t122 };
-    const real_t adjacent[24] = { c1, c2, c3, c_wrist, R1_13 * t72 + T33 * t71, t77, c2_right_down_noflip, c3_right_down_noflip, c_wrist_right_down_noflip, R1_13 * t84 + T33 * t81, R2_22 * c_wrist_right_down_noflip - t89, c1_left_up_noflip, c2_left_up_noflip, c_wrist_left_up_noflip, R1_13_left_up_noflip * t101 + T33 * t97, t110 - t111, -t112, c_wrist_left_down_noflip, -(R1_13_left_up_noflip * t117 + T33 * t114), t123 + t124 };
+    const real_t opposite[24] = { t19, s2, t68, s_wrist, R2_13 * c_wrist + R2_23 * s_wrist, t76, s2_right_down_noflip, -t78, s_wrist_right_down_noflip, t87 + R2_23 * s_wrist_right_down_noflip, t88 - R2_21 * c_wrist_right_down_noflip, t90, s2_left_up_noflip, s_wrist_left_up_noflip, t106 + t107, t108 - t109, s2_left_down_noflip, s_wrist_left_down_noflip, t118 * c_wrist_left_down_noflip - t120, t121 + t122, t121 + t122, t121 + t122, t121 + t122, t121 + t122 };
+    const real_t adjacent[24] = { c1, c2, c3, c_wrist, R1_13 * t72 + T33 * t71, t77, c2_right_down_noflip, c3_right_down_noflip, c_wrist_right_down_noflip, R1_13 * t84 + T33 * t81, R2_22 * c_wrist_right_down_noflip - t89, c1_left_up_noflip, c2_left_up_noflip, c_wrist_left_up_noflip, R1_13_left_up_noflip * t101 + T33 * t97, t110 - t111, -t112, c_wrist_left_down_noflip, -(R1_13_left_up_noflip * t117 + T33 * t114), t123 + t124, t123 + t124, t123 + t124, t123 + t124, t123 + t124 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);

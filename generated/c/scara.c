@@ -56,7 +56,7 @@ void scara_pose(const scara_params *params, const real_t q[4],
     real_t T[16])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[3] };
+    const real_t lanes[4] = { q[0], q[1], q[3], q[3] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     scara_pose_kernel(params, q, sines, cosines, T);
 }
@@ -207,7 +207,7 @@ void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4])
 {
     real_t sines[4], cosines[4], turned[4];
-    const real_t lanes[4] = { q[0], q[1], q[3] };
+    const real_t lanes[4] = { q[0], q[1], q[3], q[3] };
     cf_turned_lanes(4, lanes, sines, cosines, turned);
     const real_t principals[3] = { turned[0], turned[1], turned[2] };
     scara_fk_kernel(params, q, sines, cosines, principals, x);
@@ -679,8 +679,8 @@ CF_INLINE void scara_ik_kernel(const int single, const real_t one,
     const real_t t30 = c2 * c1_right + s2 * s1_right;
     const real_t t31 = s2 * c1_right - c2 * s1_right;
     const real_t t32 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
-    const real_t opposite[8] = { s1, s2, s_x_yaw * t28 - c_x_yaw * t29, s1_right, s_x_yaw * t30 + c_x_yaw * t31 };
-    const real_t adjacent[8] = { c1, c2, c_x_yaw * t28 + s_x_yaw * t29, c1_right, c_x_yaw * t30 - s_x_yaw * t31 };
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t28 - c_x_yaw * t29, s1_right, s_x_yaw * t30 + c_x_yaw * t31, s_x_yaw * t30 + c_x_yaw * t31, s_x_yaw * t30 + c_x_yaw * t31, s_x_yaw * t30 + c_x_yaw * t31 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t28 + s_x_yaw * t29, c1_right, c_x_yaw * t30 - s_x_yaw * t31, c_x_yaw * t30 - s_x_yaw * t31, c_x_yaw * t30 - s_x_yaw * t31, c_x_yaw * t30 - s_x_yaw * t31 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);

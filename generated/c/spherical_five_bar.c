@@ -175,7 +175,7 @@ void spherical_five_bar_fk(const spherical_five_bar_params *params,
     }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[2];
     spherical_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
@@ -456,7 +456,7 @@ void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -724,7 +724,7 @@ void spherical_five_bar_jacobian_parallel(const spherical_five_bar_params *param
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -963,7 +963,7 @@ void spherical_five_bar_jacobian_serial(const spherical_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1225,7 +1225,7 @@ void spherical_five_bar_jacobian(const spherical_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1461,7 +1461,7 @@ void spherical_five_bar_singularities(const spherical_five_bar_params *params,
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1736,7 +1736,7 @@ void spherical_five_bar_condition_number(const spherical_five_bar_params *params
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     spherical_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
 }
@@ -2019,7 +2019,7 @@ void spherical_five_bar_ik(const spherical_five_bar_params *params,
     }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2 };
+    const real_t lanes[8] = { params->alpha1, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2, params->alpha2, params->alpha2, params->alpha2 };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[4];
     spherical_five_bar_ik_kernel(1, one, params, x, sines, cosines, q, status_real);
@@ -2219,7 +2219,7 @@ void spherical_five_bar_workspace_contains(const spherical_five_bar_params *para
     }
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->beta1 / CLOSEDFORM_C(2.0), params->alpha1, params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2 };
+    const real_t lanes[8] = { params->beta1 / CLOSEDFORM_C(2.0), params->alpha1, params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2, params->alpha2, params->alpha2, params->alpha2 };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t inside_real[1];
     spherical_five_bar_workspace_contains_kernel(1, one, params, p, sines, cosines, inside_real);

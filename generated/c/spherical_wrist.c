@@ -45,7 +45,7 @@ void spherical_wrist_fk(const spherical_wrist_params *params,
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[0], q[2] };
+    const real_t lanes[4] = { q[1], q[0], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     spherical_wrist_fk_kernel(sines, cosines, R);
 }
@@ -120,7 +120,7 @@ void spherical_wrist_pose(const spherical_wrist_params *params,
     const real_t q[3], real_t T[16])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[0], q[2] };
+    const real_t lanes[4] = { q[1], q[0], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     spherical_wrist_pose_kernel(params, sines, cosines, T);
 }
@@ -452,8 +452,8 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t one,
     const real_t t19 = cf_poison(single, invalid);
     const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t t20 = cf_status(single, invalid, 0, aligned);
-    const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
-    const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
+    const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4, R11 * s4 - R21 * c4 };
+    const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4, R22 * c4 - R12 * s4 };
     real_t angles[4];
     if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);

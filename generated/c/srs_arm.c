@@ -96,7 +96,7 @@ void srs_arm_pose(const srs_arm_params *params, const real_t q[7],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0] };
+    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_pose_kernel(params, sines, cosines, T);
 }
@@ -203,7 +203,7 @@ void srs_arm_skeleton(const srs_arm_params *params, const real_t q[7],
     real_t points[15])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[3], q[2], q[5], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[3], q[2], q[5], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_skeleton_kernel(params, sines, cosines, points);
 }
@@ -326,7 +326,7 @@ void srs_arm_fk(const srs_arm_params *params, const real_t q[7],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0] };
+    const real_t lanes[8] = { q[6], q[5], q[4], q[3], q[2], q[1], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_fk_kernel(params, sines, cosines, T);
 }
@@ -484,7 +484,7 @@ void srs_arm_jacobian(const srs_arm_params *params, const real_t q[7],
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[2], q[3], q[0], q[1] };
+    const real_t lanes[8] = { q[5], q[4], q[2], q[3], q[0], q[1], q[1], q[1] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_jacobian_kernel(params, sines, cosines, J);
 }
@@ -672,7 +672,7 @@ void srs_arm_jacobian_space(const srs_arm_params *params, const real_t q[7],
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[5] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[5], q[5], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -850,7 +850,7 @@ void srs_arm_jacobian_body(const srs_arm_params *params, const real_t q[7],
     real_t J[42])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[6], q[1], q[2], q[3], q[5], q[4] };
+    const real_t lanes[8] = { q[6], q[1], q[2], q[3], q[5], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -956,7 +956,7 @@ void srs_arm_self_motion(const srs_arm_params *params, const real_t q[7],
     real_t qdot[7])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[2], q[3], q[1], q[4] };
+    const real_t lanes[8] = { q[5], q[2], q[3], q[1], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     srs_arm_self_motion_kernel(params, sines, cosines, qdot);
 }
@@ -1022,7 +1022,7 @@ void srs_arm_determinant(const srs_arm_params *params, const real_t q[7],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[3], q[1], q[5] };
+    const real_t lanes[4] = { q[3], q[1], q[5], q[5] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     srs_arm_determinant_kernel(params, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1206,7 +1206,7 @@ void srs_arm_arm_angle(const srs_arm_params *params, const real_t q[7],
         params = &params_scaled;
     }
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[3], q[1], q[2] };
+    const real_t lanes[4] = { q[3], q[1], q[2], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     srs_arm_arm_angle_kernel(1, params, sines, cosines, arm_angle);
 }
@@ -1456,8 +1456,8 @@ CF_INLINE void srs_arm_ik_kernel(const int single, const real_t one,
     const real_t t115 = cf_status(single, invalid, unreachable, t114 | aligned_shoulder | aligned_wrist);
     const int t116 = t114 | aligned_shoulder_down_front_noflip | aligned_wrist_down_front_noflip;
     const real_t t117 = cf_status(single, invalid, unreachable, t116);
-    const real_t opposite[16] = { t32, shoulder_12 * c_shoulder + t29 * t32, c_shoulder * shoulder_21 + t32 * shoulder_11, s4_down_front_noflip, t71, R2_13 * c_wrist + t68 * t71, t74 - c_wrist * t75, s_shoulder_down_front_noflip, t85 + t86, t89 + s_shoulder_down_front_noflip * t91, t104, t105, -t109 };
-    const real_t adjacent[16] = { c_shoulder, shoulder_32, c_shoulder * R1_22 - t32 * y_plane_x, c4, c_wrist, c4 * t65 + s4_down_front_noflip * t63, t78 - c_wrist * t79, c_shoulder_down_front_noflip, shoulder_32_down_front_noflip, t92, c_wrist_down_front_noflip, c4 * t100 + s4_down_front_noflip * t96, -t113 };
+    const real_t opposite[16] = { t32, shoulder_12 * c_shoulder + t29 * t32, c_shoulder * shoulder_21 + t32 * shoulder_11, s4_down_front_noflip, t71, R2_13 * c_wrist + t68 * t71, t74 - c_wrist * t75, s_shoulder_down_front_noflip, t85 + t86, t89 + s_shoulder_down_front_noflip * t91, t104, t105, -t109, -t109, -t109, -t109 };
+    const real_t adjacent[16] = { c_shoulder, shoulder_32, c_shoulder * R1_22 - t32 * y_plane_x, c4, c_wrist, c4 * t65 + s4_down_front_noflip * t63, t78 - c_wrist * t79, c_shoulder_down_front_noflip, shoulder_32_down_front_noflip, t92, c_wrist_down_front_noflip, c4 * t100 + s4_down_front_noflip * t96, -t113, -t113, -t113, -t113 };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);

@@ -71,7 +71,7 @@ void stanford_arm_pose(const stanford_arm_params *params,
     const real_t q[6], real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     stanford_arm_pose_kernel(params, q, sines, cosines, T);
 }
@@ -234,7 +234,7 @@ void stanford_arm_fk(const stanford_arm_params *params,
     const real_t q[6], real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     stanford_arm_fk_kernel(params, q, sines, cosines, T);
 }

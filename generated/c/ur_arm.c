@@ -77,7 +77,7 @@ void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[1], q[2], q[3], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[1], q[2], q[3], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_pose_kernel(params, sines, cosines, T);
 }
@@ -185,7 +185,7 @@ void ur_arm_skeleton(const ur_arm_params *params, const real_t q[6],
     real_t points[21])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_skeleton_kernel(params, sines, cosines, points);
 }
@@ -295,7 +295,7 @@ void ur_arm_fk(const ur_arm_params *params, const real_t q[6],
     real_t T[16])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[1], q[2], q[3], q[0] };
+    const real_t lanes[8] = { q[5], q[4], q[1], q[2], q[3], q[0], q[0], q[0] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_fk_kernel(params, sines, cosines, T);
 }
@@ -417,7 +417,7 @@ void ur_arm_jacobian(const ur_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[4], q[0], q[1], q[2], q[3] };
+    const real_t lanes[8] = { q[4], q[0], q[1], q[2], q[3], q[3], q[3], q[3] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_jacobian_kernel(params, sines, cosines, J);
 }
@@ -708,7 +708,7 @@ void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_jacobian_space_kernel(params, sines, cosines, J);
 }
@@ -855,7 +855,7 @@ void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
     real_t J[36])
 {
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[1], q[2], q[3], q[4] };
+    const real_t lanes[8] = { q[5], q[1], q[2], q[3], q[4], q[4], q[4], q[4] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     ur_arm_jacobian_body_kernel(params, sines, cosines, J);
 }
@@ -6000,8 +6000,8 @@ CF_INLINE void ur_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t188 = cf_rounded(single, one, root1 * h_wrist_right_noflip_up);
     const int t189 = t187 | (h_wrist_right_noflip_up <= t42) | (t188 - t184 <= t5);
     const int t190 = t189 | (r_elbow_right_noflip_up <= t5) | (r_elbow_right_flip_up <= t5);
-    const real_t opposite[32] = { -t10, -t65, area_elbow, -(t72 * t73 + s3 * t74), t75, t76, -t78, s3 * t79 - t72 * t80, -t97, area_elbow_left_flip_up, t104 * t105 + s3_left_flip_up * t106, -t75, -t76, -t107, t104 * t108 - s3_left_flip_up * t109, -t110, -t133, area_elbow_right_noflip_up, -(t140 * t141 + s3_right_noflip_up * t142), t143, t145, -t148, s3_right_noflip_up * t149 - t140 * t150, -t167, area_elbow_right_flip_up, t174 * t175 + s3_right_flip_up * t176, -t143, -t145, -t177, t174 * t178 - s3_right_flip_up * t179 };
-    const real_t adjacent[32] = { c_1_1, c2, -t70, t73 * s3 - t72 * t74, M_33, -t77, c2_left_noflip_down, -(t72 * t79 + s3 * t80), c2_left_flip_up, -t102, t104 * t106 - t105 * s3_left_flip_up, M_33, t77, c2_left_flip_down, t104 * t109 + s3_left_flip_up * t108, c_1_1_right_noflip_up, c2_right_noflip_up, -t138, t141 * s3_right_noflip_up - t140 * t142, M_33_right_noflip_up, -t147, c2_right_noflip_down, -(t140 * t149 + s3_right_noflip_up * t150), c2_right_flip_up, -t172, t174 * t176 - t175 * s3_right_flip_up, M_33_right_noflip_up, t147, c2_right_flip_down, t174 * t179 + s3_right_flip_up * t178 };
+    const real_t opposite[32] = { -t10, -t65, area_elbow, -(t72 * t73 + s3 * t74), t75, t76, -t78, s3 * t79 - t72 * t80, -t97, area_elbow_left_flip_up, t104 * t105 + s3_left_flip_up * t106, -t75, -t76, -t107, t104 * t108 - s3_left_flip_up * t109, -t110, -t133, area_elbow_right_noflip_up, -(t140 * t141 + s3_right_noflip_up * t142), t143, t145, -t148, s3_right_noflip_up * t149 - t140 * t150, -t167, area_elbow_right_flip_up, t174 * t175 + s3_right_flip_up * t176, -t143, -t145, -t177, t174 * t178 - s3_right_flip_up * t179, t174 * t178 - s3_right_flip_up * t179, t174 * t178 - s3_right_flip_up * t179 };
+    const real_t adjacent[32] = { c_1_1, c2, -t70, t73 * s3 - t72 * t74, M_33, -t77, c2_left_noflip_down, -(t72 * t79 + s3 * t80), c2_left_flip_up, -t102, t104 * t106 - t105 * s3_left_flip_up, M_33, t77, c2_left_flip_down, t104 * t109 + s3_left_flip_up * t108, c_1_1_right_noflip_up, c2_right_noflip_up, -t138, t141 * s3_right_noflip_up - t140 * t142, M_33_right_noflip_up, -t147, c2_right_noflip_down, -(t140 * t149 + s3_right_noflip_up * t150), c2_right_flip_up, -t172, t174 * t176 - t175 * s3_right_flip_up, M_33_right_noflip_up, t147, c2_right_flip_down, t174 * t179 + s3_right_flip_up * t178, t174 * t179 + s3_right_flip_up * t178, t174 * t179 + s3_right_flip_up * t178 };
     real_t angles[32];
     if (single) {
         cf_atan2_lanes(32, opposite, adjacent, angles);
@@ -6339,8 +6339,8 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t t64 = cf_rounded(single, one, root1 * h_wrist) - size * CLOSEDFORM_C(0.00048828125);
     const int t65 = (h1 <= t5) | tangent1 | aligned_wrist | (t64 <= t5);
     const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (full_1_1 * full_1_1);
-    const real_t opposite[8] = { -t8, -t56, t55, -(t61 * t62 + s3 * t63), t35 * t40 + T33 * s_phi, s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t40 };
-    const real_t adjacent[8] = { c_1_1, c2, -t59, t62 * s3 - t61 * t63, -(T13 * t8 + T23 * c_1_1), T32 * t40 - s_phi * (T12 * c_1_1 - T22 * t8) };
+    const real_t opposite[8] = { -t8, -t56, t55, -(t61 * t62 + s3 * t63), t35 * t40 + T33 * s_phi, s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t40, s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t40, s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t40 };
+    const real_t adjacent[8] = { c_1_1, c2, -t59, t62 * s3 - t61 * t63, -(T13 * t8 + T23 * c_1_1), T32 * t40 - s_phi * (T12 * c_1_1 - T22 * t8), T32 * t40 - s_phi * (T12 * c_1_1 - T22 * t8), T32 * t40 - s_phi * (T12 * c_1_1 - T22 * t8) };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);

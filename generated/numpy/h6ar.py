@@ -12,10 +12,10 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 594 compare and select, 466 add, 33 atan2, 156 divide, 579 multiply, 1 reduce to a turn, 3
+#   ik: 594 compare and select, 467 add, 33 atan2, 156 divide, 580 multiply, 1 reduce to a turn, 3
 #     sincos, 50 sqrt
-#   ik where nothing vanishes: 249 compare and select, 178 add, 17 atan2, 43 divide, 165 multiply,
-#     1 reduce to a turn, 3 sincos, 24 sqrt
+#   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
+#     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1530,56 +1530,55 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t8
     ahead = d * t_psi
     t17 = np.abs(t_psi * ahead)
+    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     t18 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t16 * 6.103515625e-05
     t19 = al * (t1 + t16 + t17) / (t18 + t17 * 6.103515625e-05 + 512.0 * wrist)
     del t18
-    t20 = _runtime.select(wrist < al * 0.0009765625, t19, 0.0)
-    del t19
-    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + t20
-    del t16, t17, t20
+    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + _runtime.select(stretched, t19, 0.0)
+    del stretched, t16, t17, t19
     slack = lengths * 0.25 + far_apart
-    t21 = h * slack
+    t20 = h * slack
     del h
-    tangent = 4.0 * root * t15 - t21 * 0.00390625 <= _runtime.VANISHING * t21
+    tangent = 4.0 * root * t15 - t20 * 0.00390625 <= _runtime.VANISHING * t20
     gap_size = np.sqrt(higher * higher + ahead * ahead)
     fore_size = np.sqrt(L2 * L2 + a3 * a3)
-    t22 = L1 < fore_size
-    shorter = _runtime.select(t22, L1, fore)
-    t23 = z - d1
-    t24 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
-    t25 = 1.0 / (t24 + gap_size)
-    del t24
-    t26 = 1.0 / fore_size
-    t27 = _runtime.select(t22, t26 * (L2 * L_2W + a3 * a_3W), L1)
-    t28 = t25 * t27
-    del t27
-    t29 = _runtime.select(t22, -(t26 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    t21 = L1 < fore_size
+    shorter = _runtime.select(t21, L1, fore)
+    t22 = z - d1
+    t23 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    t24 = 1.0 / (t23 + gap_size)
+    del t23
+    t25 = 1.0 / fore_size
+    t26 = _runtime.select(t21, t25 * (L2 * L_2W + a3 * a_3W), L1)
+    t27 = t24 * t26
     del t26
-    long_x = t25 * t29
-    del t29
-    t30 = ahead * t28 - higher * long_x
-    beyond_gap_behind = t23 - t30
-    t31 = gap_size * (shorter - np.abs(beyond_gap_behind))
-    t32 = np.abs(higher)
-    across_long = _runtime.select(t22, L1 * t32 * t25, fore_size)
-    del t22, t25
-    long_r = ahead * long_x + higher * t28
-    del long_x, t28
-    t33 = long_r * long_r
+    t28 = _runtime.select(t21, -(t25 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    del t25
+    long_x = t24 * t28
+    del t28
+    t29 = ahead * t27 - higher * long_x
+    beyond_gap_behind = t22 - t29
+    t30 = gap_size * (shorter - np.abs(beyond_gap_behind))
+    t31 = np.abs(higher)
+    across_long = _runtime.select(t21, L1 * t31 * t24, fore_size)
+    del t21, t24
+    long_r = ahead * long_x + higher * t27
+    del long_x, t27
+    t32 = long_r * long_r
     del long_r
     short_h_behind = np.maximum(-shorter, np.minimum(beyond_gap_behind, shorter))
-    beyond_gap_ahead = t23 + t30
+    beyond_gap_ahead = t22 + t29
+    del t29
+    t33 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
+    left_r_behind = np.sqrt(np.maximum(0.0, t32 - t33))
+    del t33
+    t34 = -t30 <= across_long * left_r_behind
     del t30
-    t34 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
-    left_r_behind = np.sqrt(np.maximum(0.0, t33 - t34))
-    del t34
-    t35 = -t31 <= across_long * left_r_behind
-    del t31
-    t36 = gap_size <= np.maximum(L1, fore_size)
-    t37 = (shorter - short_h_behind) * (shorter + short_h_behind)
+    t35 = gap_size <= np.maximum(L1, fore_size)
+    t36 = (shorter - short_h_behind) * (shorter + short_h_behind)
     del short_h_behind
-    short_r_behind = np.sqrt(t37)
-    del t37
+    short_r_behind = np.sqrt(t36)
+    del t36
     root_apart_behind = np.abs(left_r_behind - short_r_behind)
     root_apart_behind_squared = root_apart_behind * root_apart_behind
     del root_apart_behind
@@ -1588,19 +1587,19 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_behind_squared = root_same_behind * root_same_behind
     del root_same_behind
     root_same_behind_away = np.abs(t14 - root_same_behind_squared)
-    t38 = gap_size * (shorter - np.abs(beyond_gap_ahead))
+    t37 = gap_size * (shorter - np.abs(beyond_gap_ahead))
     del gap_size
     short_h_ahead = np.maximum(-shorter, np.minimum(beyond_gap_ahead, shorter))
-    t39 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
+    t38 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
     del beyond_gap_ahead, beyond_gap_behind
-    left_r_ahead = np.sqrt(np.maximum(0.0, t33 - t39))
-    del t33, t39
-    t40 = (-t38 <= across_long * left_r_ahead) & t36
-    del across_long, t38
-    t41 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
+    left_r_ahead = np.sqrt(np.maximum(0.0, t32 - t38))
+    del t32, t38
+    t39 = (-t37 <= across_long * left_r_ahead) & t35
+    del across_long, t37
+    t40 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
     del short_h_ahead, shorter
-    short_r_ahead = np.sqrt(t41)
-    del t41
+    short_r_ahead = np.sqrt(t40)
+    del t40
     root_apart_ahead = np.abs(left_r_ahead - short_r_ahead)
     root_apart_ahead_squared = root_apart_ahead * root_apart_ahead
     del root_apart_ahead
@@ -1610,1302 +1609,1302 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_ahead_squared = root_same_ahead * root_same_ahead
     del root_same_ahead
     root_same_ahead_away = np.abs(t14 - root_same_ahead_squared)
-    t42 = t21 * 1.8189894035458565e-12
-    t43 = t40 & (root_same_ahead_away <= t42)
-    root_same_ahead_least = _runtime.select(t43, root_same_ahead_away, t42)
-    del root_same_ahead_away, t42
-    t44 = root_apart_ahead_away <= root_same_ahead_least
-    t45 = t40 & t44
-    del t40, t44
-    root_apart_ahead_least = _runtime.select(t45, root_apart_ahead_away, root_same_ahead_least)
+    t41 = t20 * 1.8189894035458565e-12
+    t42 = t39 & (root_same_ahead_away <= t41)
+    root_same_ahead_least = _runtime.select(t42, root_same_ahead_away, t41)
+    del root_same_ahead_away, t41
+    t43 = root_apart_ahead_away <= root_same_ahead_least
+    t44 = t39 & t43
+    del t39, t43
+    root_apart_ahead_least = _runtime.select(t44, root_apart_ahead_away, root_same_ahead_least)
     del root_apart_ahead_away, root_same_ahead_least
-    t46 = root_same_behind_away <= root_apart_ahead_least
-    t47 = t46 & t35 & t36
-    del t46
-    root_same_behind_least = _runtime.select(t47, root_same_behind_away, root_apart_ahead_least)
+    t45 = root_same_behind_away <= root_apart_ahead_least
+    t46 = t45 & t34 & t35
+    del t45
+    root_same_behind_least = _runtime.select(t46, root_same_behind_away, root_apart_ahead_least)
     del root_apart_ahead_least, root_same_behind_away
-    t48 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
+    t47 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
     del root_same_behind_least
-    t49 = L1 - fore
-    t50 = t49 * t49
-    t51 = t23 * t23
-    t52 = t15 * t15
-    wanted = np.maximum(np.maximum(0.0, t50 - t51), np.minimum(t14, t52 - t51))
-    t53 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t21, wanted, t14)
-    del t14, t21, wanted
-    root_same_ahead_held = _runtime.select(t43, root_same_ahead_squared, t53)
-    del root_same_ahead_squared, t43, t53
-    root_apart_ahead_held = _runtime.select(t45, root_apart_ahead_squared, root_same_ahead_held)
-    del root_apart_ahead_squared, root_same_ahead_held, t45
-    root_same_behind_held = _runtime.select(t47, root_same_behind_squared, root_apart_ahead_held)
-    del root_apart_ahead_held, root_same_behind_squared, t47
-    root_apart_behind_held = _runtime.select(t35 & t36 & t48, root_apart_behind_squared, root_same_behind_held)
-    del root_apart_behind_squared, root_same_behind_held, t35, t36, t48
-    t54 = np.sqrt(root_apart_behind_held)
+    t48 = L1 - fore
+    t49 = t48 * t48
+    t50 = t22 * t22
+    t51 = t15 * t15
+    wanted = np.maximum(np.maximum(0.0, t49 - t50), np.minimum(t14, t51 - t50))
+    t52 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t20, wanted, t14)
+    del t14, t20, wanted
+    root_same_ahead_held = _runtime.select(t42, root_same_ahead_squared, t52)
+    del root_same_ahead_squared, t42, t52
+    root_apart_ahead_held = _runtime.select(t44, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t44
+    root_same_behind_held = _runtime.select(t46, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t46
+    root_apart_behind_held = _runtime.select(t34 & t35 & t47, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t34, t35, t47
+    t53 = np.sqrt(root_apart_behind_held)
     del root_apart_behind_held
-    t55 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    t54 = _runtime.select(tangent, np.arctan2(t53, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below
-    t56 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t55))
-    t57 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t58 = t57 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t55 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t54))
+    t56 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t57 = t56 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t56
+    t58 = t57 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t57
-    t59 = t58 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t58
-    t60 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t61 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    t59 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t60 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
     del t2
-    t62 = t59 & (0.0 <= loff) & (0.0 <= lp) & t60 & (t61 <= _runtime.ROTATION)
-    del t59, t60, t61
-    invalid = np.logical_not(t62)
-    del t62
-    t63 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t61 = t58 & (0.0 <= loff) & (0.0 <= lp) & t59 & (t60 <= _runtime.ROTATION)
+    del t58, t59, t60
+    invalid = np.logical_not(t61)
+    del t61
+    t62 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
     del c_psi, s_psi
-    t64 = -(_runtime.FEASIBILITY * (t1 * t63))
-    del t1, t63
-    t65 = (-_runtime.FEASIBILITY <= c_phi) & (t64 <= t5)
+    t63 = -(_runtime.FEASIBILITY * (t1 * t62))
+    del t1, t62
+    t64 = (-_runtime.FEASIBILITY <= c_phi) & (t63 <= t5)
     del c_phi, t5
-    t66 = -(_runtime.FEASIBILITY * slack)
-    t67 = t65 & (t64 <= t6) & (t66 <= t13) & (t66 <= t12)
-    del t12, t13, t6, t64, t65, t66
-    t68 = 2.0 * fore
-    t69 = _runtime.FEASIBILITY * ((L1 * 2.0 + t68) * slack)
-    in_reach = _runtime.select(tangent, t54, root)
-    del root, t54, tangent
-    square = t51 + in_reach * in_reach
-    del t51
-    t70 = t52 - square
-    t71 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t72 = _runtime.FEASIBILITY * ((t71 + 2.0 * np.abs(t49)) * slack)
-    del t71
-    t73 = square - t50
-    del square, t50
-    t74 = t67 & (-t69 <= t70) & (-t72 <= t73)
-    del t67, t69, t72
-    t75 = d * 0.25 + t32 * 0.25 + np.abs(ahead) * 0.25 + far_apart
-    del far_apart, t32
-    play = t75 + lengths * 0.00048828125
-    del lengths, t75
-    t76 = fore_size * play
-    t77 = _runtime.VANISHING * t15
-    folded = np.abs(t23) + np.abs(in_reach) <= t77
-    short = L1 * fore <= _runtime.VANISHING * t52
-    del t52
-    M = np.maximum(t73, 0.0)
-    del t73
-    N = np.maximum(t70, 0.0)
+    t65 = -(_runtime.FEASIBILITY * slack)
+    t66 = t64 & (t63 <= t6) & (t65 <= t13) & (t65 <= t12)
+    del t12, t13, t6, t63, t64, t65
+    t67 = 2.0 * fore
+    t68 = _runtime.FEASIBILITY * ((L1 * 2.0 + t67) * slack)
+    in_reach = _runtime.select(tangent, t53, root)
+    del root, t53, tangent
+    square = t50 + in_reach * in_reach
+    del t50
+    t69 = t51 - square
+    t70 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t71 = _runtime.FEASIBILITY * ((t70 + 2.0 * np.abs(t48)) * slack)
     del t70
-    t78 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t15, t49 + t68 * M * t78)
-    del t15, t49, t68
-    t79 = in_reach * ahead_1
-    t80 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t78 * t80)
-    t81 = fore * s_bend_front_elbow_down
-    t82 = t23 * t81
-    out_2 = t79 - t82
-    t83 = t23 * ahead_1
-    del ahead_1, t23
-    t84 = in_reach * t81
-    del in_reach, t81
-    up = t83 + t84
-    t85 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t86 = out_2 * t85
-    ctheta2A = _runtime.select(folded, 1.0, t86)
-    stheta2A = _runtime.select(folded, 0.0, up * t85)
-    del t85
-    t87 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t87
-    bare = fore <= t77
-    del t77
-    t88 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t88)
-    t89 = M - N
+    t72 = square - t49
+    del square, t49
+    t73 = t66 & (-t68 <= t69) & (-t71 <= t72)
+    del t66, t68, t71
+    t74 = d * 0.25 + t31 * 0.25 + np.abs(ahead) * 0.25 + far_apart
+    del far_apart, t31
+    play = t74 + lengths * 0.00048828125
+    del lengths, t74
+    t75 = fore_size * play
+    t76 = _runtime.VANISHING * t15
+    folded = np.abs(t22) + np.abs(in_reach) <= t76
+    short = L1 * fore <= _runtime.VANISHING * t51
+    del t51
+    M = np.maximum(t72, 0.0)
+    del t72
+    N = np.maximum(t69, 0.0)
+    del t69
+    t77 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t15, t48 + t67 * M * t77)
+    del t15, t48, t67
+    t78 = in_reach * ahead_1
+    t79 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t77 * t79)
+    t80 = fore * s_bend_front_elbow_down
+    t81 = t22 * t80
+    out_2 = t78 - t81
+    t82 = t22 * ahead_1
+    del ahead_1, t22
+    t83 = in_reach * t80
+    del in_reach, t80
+    up = t82 + t83
+    t84 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t85 = out_2 * t84
+    ctheta2A = _runtime.select(folded, 1.0, t85)
+    stheta2A = _runtime.select(folded, 0.0, up * t84)
+    del t84
+    t86 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t86
+    bare = fore <= t76
+    del t76
+    t87 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t87)
+    t88 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t78 * t89)
-    del t78
-    t90 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t88)
-    del bare, t88
-    t91 = c_lag * s_bend_front_elbow_down
-    s_relative = t90 - t91
-    t92 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t77 * t88)
+    del t77
+    t89 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t87)
+    del bare, t87
+    t90 = c_lag * s_bend_front_elbow_down
+    s_relative = t89 - t90
+    t91 = c_lag * c_bend
     del c_bend
-    t93 = s_lag * s_bend_front_elbow_down
+    t92 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t92 + t93
+    c_relative = t91 + t92
     v_2 = L2 * s_relative + a3 * c_relative
-    t94 = ahead * stheta2A
+    t93 = ahead * stheta2A
     del stheta2A
-    t95 = t94 - higher * ctheta2A
+    t94 = t93 - higher * ctheta2A
     del ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t96 = p_1 * v_2 + t95 * v_1
+    t95 = p_1 * v_2 + t94 * v_1
     whole_alpha = L1 * v_1
-    t97 = np.abs(whole_alpha)
-    t98 = np.abs(t96) - t97
-    t99 = np.maximum(t98 * 9.094947017729282e-13, -t98)
-    t100 = _runtime.VANISHING * t76
-    spent_alpha = t99 <= t100
-    del t99
-    t101 = v_2 * _runtime.sign(whole_alpha)
+    t96 = np.abs(whole_alpha)
+    t97 = np.abs(t95) - t96
+    t98 = np.maximum(t97 * 9.094947017729282e-13, -t97)
+    t99 = _runtime.VANISHING * t75
+    spent_alpha = t98 <= t99
+    del t98
+    t100 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t102 = t101 * drawn
-    t103 = _runtime.sign(-t96) * (p_1 * v_1 - v_2 * t95)
-    del t96
-    t104 = t102 - t103
-    del t103
-    t105 = np.abs(t104)
-    t106 = 1.0 / slack
-    t107 = 1.4142135623730951 * np.sqrt(slack)
+    t101 = t100 * drawn
+    t102 = _runtime.sign(-t95) * (p_1 * v_1 - v_2 * t94)
+    del t95
+    t103 = t101 - t102
+    del t102
+    t104 = np.abs(t103)
+    t105 = 1.0 / slack
+    t106 = 1.4142135623730951 * np.sqrt(slack)
     del slack
-    t108 = 1.0 / L1
-    t109 = 1.0 - t108 * drawn
-    t110 = t107 * np.sqrt(fore + L1 * (t109 * t109)) / 2000000.0
-    del t109
-    t111 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t107 = 1.0 / L1
+    t108 = 1.0 - t107 * drawn
+    t109 = t106 * np.sqrt(fore + L1 * (t108 * t108)) / 2000000.0
+    del t108
+    t110 = np.abs(L_2W * c_relative - a_3W * s_relative)
     del c_relative, s_relative
-    t112 = t106 * (t110 + t111)
-    del t110, t111
-    heavy_0_alpha = _runtime.select(spent_alpha, t112, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t105 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t101
-    del t101
-    t113 = np.abs(slope_aside_alpha)
-    t114 = t106 * (L1 + np.sqrt(L1) * t107 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t114, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t113 / heavy_1_alpha, 0.0)
-    t115 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t116 = -(_runtime.FEASIBILITY * (t76 + t115)) <= -t98
-    del t115
-    t117 = L1 * play
-    t118 = gain_1_alpha * gain_1_alpha
+    t111 = t105 * (t109 + t110)
+    del t109, t110
+    heavy_0_alpha = _runtime.select(spent_alpha, t111, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t104 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t100
+    del t100
+    t112 = np.abs(slope_aside_alpha)
+    t113 = t105 * (L1 + np.sqrt(L1) * t106 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t113, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t112 / heavy_1_alpha, 0.0)
+    t114 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t115 = -(_runtime.FEASIBILITY * (t75 + t114)) <= -t97
+    del t114
+    t116 = L1 * play
+    t117 = gain_1_alpha * gain_1_alpha
     del gain_1_alpha
-    t119 = play * play
-    t120 = fore_size * fore_size * t119
+    t118 = play * play
+    t119 = fore_size * fore_size * t118
     del fore_size
-    t121 = t118 / (t118 + t120 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t118
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t98 < 0.0, t121, 0.0), 0.0)
-    del t121
-    t122 = _runtime.sign(slope_aside_alpha)
+    t120 = t117 / (t117 + t119 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t117
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t97 < 0.0, t120, 0.0), 0.0)
+    del t120
+    t121 = _runtime.sign(slope_aside_alpha)
     del slope_aside_alpha
-    t123 = t113 + t76 * heavy_1_alpha * 5.960464477539063e-08
+    t122 = t112 + t75 * heavy_1_alpha * 5.960464477539063e-08
     del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t98 * share_alpha * t122 / t123, 0.0)
+    aside_alpha = _runtime.select(spent_alpha, t97 * share_alpha * t121 / t122, 0.0)
+    del t122
+    lack_alpha = t97 * (1.0 - share_alpha)
+    del share_alpha, t97
+    t123 = t104 + t75 * heavy_0_alpha * 5.960464477539063e-08
+    del t104
+    t124 = 1.0 / t123
     del t123
-    lack_alpha = t98 * (1.0 - share_alpha)
-    del share_alpha, t98
-    t124 = t105 + t76 * heavy_0_alpha * 5.960464477539063e-08
-    del t105
-    t125 = 1.0 / t124
-    del t124
-    t126 = heavy_0_alpha * lack_alpha * t125 <= 9.094947017729282e-13
+    t125 = heavy_0_alpha * lack_alpha * t124 <= 9.094947017729282e-13
     del heavy_0_alpha
-    t127 = lack_alpha * t125
-    del lack_alpha, t125
-    t128 = _runtime.select(t126 & (0.0 < t127), t127, 0.0)
-    del t126, t127
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t104) * t128, 0.0)
-    del t104, t128
-    t129 = aside_alpha + turn_alpha - t108 * (drawn * turn_alpha)
+    t126 = lack_alpha * t124
+    del lack_alpha, t124
+    t127 = _runtime.select(t125 & (0.0 < t126), t126, 0.0)
+    del t125, t126
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t103) * t127, 0.0)
+    del t103, t127
+    t128 = aside_alpha + turn_alpha - t107 * (drawn * turn_alpha)
     del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t129, 0.0)
-    del t129
-    t130 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t131 = 1.0 / t130
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t131 - t95 * lean_alpha * t131, p_1)
+    lean_alpha = _runtime.select(spent_alpha, t128, 0.0)
+    del t128
+    t129 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t130 = 1.0 / t129
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t130 - t94 * lean_alpha * t130, p_1)
     part_beta = L1 * p_1_alpha
-    t132 = t130 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t130
-    t133 = 1.0 / t132
+    t131 = t129 * np.sqrt(1.0 + turn_alpha * turn_alpha)
+    del t129
+    t132 = 1.0 / t131
+    del t131
+    t133 = t132 + t132 * (turn_alpha * lean_alpha)
+    t134 = lean_alpha * t132 - turn_alpha * t132
     del t132
-    t134 = t133 + t133 * (turn_alpha * lean_alpha)
-    t135 = lean_alpha * t133 - turn_alpha * t133
-    del t133
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t134 + v_2 * t135, v_1)
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t133 + v_2 * t134, v_1)
     whole_beta = L1 * v_1_alpha
-    t136 = np.abs(part_beta) - np.abs(whole_beta)
-    t137 = np.maximum(t136 * 9.094947017729282e-13, -t136)
-    t138 = _runtime.VANISHING * t117
-    spent_beta = t137 <= t138
-    del t137
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t134 - v_1 * t135, v_2)
-    del t134, t135
-    t139 = v_2_alpha * _runtime.sign(whole_beta)
+    t135 = np.abs(part_beta) - np.abs(whole_beta)
+    t136 = np.maximum(t135 * 9.094947017729282e-13, -t135)
+    t137 = _runtime.VANISHING * t116
+    spent_beta = t136 <= t137
+    del t136
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t133 - v_1 * t134, v_2)
+    del t133, t134
+    t138 = v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    t140 = _runtime.select(spent_alpha, t131 * (p_1 * lean_alpha) + t95 * t131, t95)
-    del p_1, t131, t95
-    t141 = t140 * _runtime.sign(part_beta)
+    t139 = _runtime.select(spent_alpha, t130 * (p_1 * lean_alpha) + t94 * t130, t94)
+    del p_1, t130, t94
+    t140 = t139 * _runtime.sign(part_beta)
     del part_beta
-    t142 = L1 - drawn
-    t143 = drawn * t139 - t141 * t142
-    t144 = np.abs(t143)
-    heavy_0_beta = _runtime.select(spent_beta, t112, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t144 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t139 + t141)
-    del t139, t141
-    t145 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t114, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t145 / heavy_1_beta, 0.0)
-    t146 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t147 = -(_runtime.FEASIBILITY * (t117 + t146)) <= -t136
-    del t146
-    t148 = -(_runtime.FEASIBILITY * play)
-    t149 = gain_1_beta * gain_1_beta
+    t141 = L1 - drawn
+    t142 = drawn * t138 - t140 * t141
+    t143 = np.abs(t142)
+    heavy_0_beta = _runtime.select(spent_beta, t111, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t143 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t138 + t140)
+    del t138, t140
+    t144 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t113, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t144 / heavy_1_beta, 0.0)
+    t145 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t146 = -(_runtime.FEASIBILITY * (t116 + t145)) <= -t135
+    del t145
+    t147 = -(_runtime.FEASIBILITY * play)
+    t148 = gain_1_beta * gain_1_beta
     del gain_1_beta
-    t150 = L1 * L1 * t119
-    del t119
-    t151 = t149 / (t149 + t150 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t149
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t136 < 0.0, t151, 0.0), 0.0)
+    t149 = L1 * L1 * t118
+    del t118
+    t150 = t148 / (t148 + t149 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t148
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t135 < 0.0, t150, 0.0), 0.0)
+    del t150
+    lack_beta = t135 * (1.0 - share_beta)
+    t151 = t143 + t116 * heavy_0_beta * 5.960464477539063e-08
+    del t143
+    t152 = 1.0 / t151
     del t151
-    lack_beta = t136 * (1.0 - share_beta)
-    t152 = t144 + t117 * heavy_0_beta * 5.960464477539063e-08
-    del t144
-    t153 = 1.0 / t152
-    del t152
-    t154 = heavy_0_beta * lack_beta * t153 <= 9.094947017729282e-13
+    t153 = heavy_0_beta * lack_beta * t152 <= 9.094947017729282e-13
     del heavy_0_beta
-    t155 = lack_beta * t153
-    del lack_beta, t153
-    t156 = _runtime.select(t154 & (0.0 < t155), t155, 0.0)
-    del t154, t155
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t143) * t156, 0.0)
-    del t143, t156
-    t157 = t136 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t136
-    t158 = t145 + t117 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t145
-    aside_beta = _runtime.select(spent_beta, t157 / t158, 0.0)
-    del t157, t158
-    t159 = turn_beta + aside_beta - t108 * (drawn * turn_beta)
+    t154 = lack_beta * t152
+    del lack_beta, t152
+    t155 = _runtime.select(t153 & (0.0 < t154), t154, 0.0)
+    del t153, t154
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t142) * t155, 0.0)
+    del t142, t155
+    t156 = t135 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t135
+    t157 = t144 + t116 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t144
+    aside_beta = _runtime.select(spent_beta, t156 / t157, 0.0)
+    del t156, t157
+    t158 = turn_beta + aside_beta - t107 * (drawn * turn_beta)
     del aside_beta
-    lean_beta = _runtime.select(spent_beta, t159, 0.0)
-    del t159
-    t160 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t161 = 1.0 / (t160 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t162 = t161 + t161 * (turn_beta * lean_beta)
-    t163 = lean_beta * t161 - turn_beta * t161
-    del t161
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t162 + v_2_alpha * t163, v_1_alpha)
-    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t164 = 1.0 / t160
+    lean_beta = _runtime.select(spent_beta, t158, 0.0)
+    del t158
+    t159 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t160 = 1.0 / (t159 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t161 = t160 + t160 * (turn_beta * lean_beta)
+    t162 = lean_beta * t160 - turn_beta * t160
     del t160
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t164 - t140 * lean_beta * t164, p_1_alpha)
-    t165 = sigma_uv * p_1_beta
-    t166 = v_1_beta * sigma_uv
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t161 + v_2_alpha * t162, v_1_alpha)
+    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
+    t163 = 1.0 / t159
+    del t159
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t163 - t139 * lean_beta * t163, p_1_alpha)
+    t164 = sigma_uv * p_1_beta
+    t165 = v_1_beta * sigma_uv
     del sigma_uv
-    t167 = t74 & t116 & t147 & (t148 <= t165 - t166) & (t148 <= -(t166 + t165))
-    del t116, t147
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t162 - v_1_alpha * t163, v_2_alpha)
-    del t162, t163, v_1_alpha, v_2_alpha
-    t168 = np.abs(v_2_beta)
-    parallel = -t166 <= _runtime.VANISHING * (64.0 * t168)
-    whole_y = _runtime.select(parallel, L1 + t168, -t166)
-    t169 = _runtime.select(spent_beta, t164 * (p_1_alpha * lean_beta) + t140 * t164, t140)
-    del p_1_alpha, t140, t164
-    t170 = _runtime.select(parallel, t169 * _runtime.sign(v_2_beta), t165)
-    del t165
-    t171 = whole_y + t170
-    t172 = whole_y - t170
-    t173 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t171, t173)
-    above_beta_0 = np.maximum(t172, t173)
-    t174 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t166 = t73 & t115 & t146 & (t147 <= t164 - t165) & (t147 <= -(t165 + t164))
+    del t115, t146
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t161 - v_1_alpha * t162, v_2_alpha)
+    del t161, t162, v_1_alpha, v_2_alpha
+    t167 = np.abs(v_2_beta)
+    parallel = -t165 <= _runtime.VANISHING * (64.0 * t167)
+    whole_y = _runtime.select(parallel, L1 + t167, -t165)
+    t168 = _runtime.select(spent_beta, t163 * (p_1_alpha * lean_beta) + t139 * t163, t139)
+    del p_1_alpha, t139, t163
+    t169 = _runtime.select(parallel, t168 * _runtime.sign(v_2_beta), t164)
+    del t164
+    t170 = whole_y + t169
+    t171 = whole_y - t169
+    t172 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t170, t172)
+    above_beta_0 = np.maximum(t171, t172)
+    t173 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t175 = t169 - v_2_beta * t174
-    del t174
-    left_along = L1 - np.abs(t175)
-    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t177 = _runtime.VANISHING * play
-    spent_along = t176 <= t177
-    del t176
-    t178 = L1 / 1000000000.0
-    t179 = _runtime.select(spent_along, t168 / (t178 - t166), 0.0)
-    del t168
-    t180 = -(_runtime.FEASIBILITY * (play * (1.0 + t179)))
-    del t179
-    t181 = t167 & (t148 <= t171) & (t148 <= t172) & (t180 <= left_along)
-    del t167, t171, t172, t180
-    t182 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    t174 = t168 - v_2_beta * t173
+    del t173
+    left_along = L1 - np.abs(t174)
+    t175 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t176 = _runtime.VANISHING * play
+    spent_along = t175 <= t176
+    del t175
+    t177 = L1 / 1000000000.0
+    t178 = _runtime.select(spent_along, t167 / (t177 - t165), 0.0)
+    del t167
+    t179 = -(_runtime.FEASIBILITY * (play * (1.0 + t178)))
+    del t178
+    t180 = t166 & (t147 <= t170) & (t147 <= t171) & (t179 <= left_along)
+    del t166, t170, t171, t179
+    t181 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t183 = t182 / (t166 * t166 + v_2_beta * v_2_beta) * _runtime.sign(-t175)
-    del t166, t175, t182
-    t184 = _runtime.select(spent_along, t170 + whole_y * t183, t170)
-    del t170, t183
-    t185 = whole_y + t184
-    t186 = whole_y - t184
-    del t184, whole_y
-    below_beta = np.maximum(t185, t173)
-    above_beta = np.maximum(t186, t173)
-    t187 = 1.0 / (below_beta + above_beta)
-    t188 = (below_beta - above_beta) * t187
-    t189 = t169 - v_2_beta * t188
-    del t169, v_2_beta
-    t190 = L1 + t189
-    t191 = t181 & (t148 <= t185) & (t148 <= t186) & (t148 <= t190)
-    del t181, t185, t186
-    t192 = L1 - t189
-    unreachable = np.logical_not(t191 & (t148 <= t192))
-    del t191
-    t193 = _runtime.poison(invalid | unreachable)
-    t194 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t195 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t196 = t194 + t195
-    del t194
-    below_alpha = np.maximum(t190, t173)
+    t182 = t181 / (t165 * t165 + v_2_beta * v_2_beta) * _runtime.sign(-t174)
+    del t165, t174, t181
+    t183 = _runtime.select(spent_along, t169 + whole_y * t182, t169)
+    del t169, t182
+    t184 = whole_y + t183
+    t185 = whole_y - t183
+    del t183, whole_y
+    below_beta = np.maximum(t184, t172)
+    above_beta = np.maximum(t185, t172)
+    t186 = 1.0 / (below_beta + above_beta)
+    t187 = (below_beta - above_beta) * t186
+    t188 = t168 - v_2_beta * t187
+    del t168, v_2_beta
+    t189 = L1 + t188
+    t190 = t180 & (t147 <= t184) & (t147 <= t185) & (t147 <= t189)
+    del t180, t184, t185
+    t191 = L1 - t188
+    unreachable = np.logical_not(t190 & (t147 <= t191))
     del t190
-    above_alpha = np.maximum(t192, t173)
-    del t192
-    t197 = 1.0 / (below_alpha + above_alpha)
-    t198 = (below_alpha - above_alpha) * t197
-    t199 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t192 = _runtime.poison(invalid | unreachable)
+    t193 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t194 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    del lean_alpha, lean_beta
+    t195 = t193 + t194
+    del t193
+    below_alpha = np.maximum(t189, t172)
+    del t189
+    above_alpha = np.maximum(t191, t172)
+    del t191
+    t196 = 1.0 / (below_alpha + above_alpha)
+    t197 = (below_alpha - above_alpha) * t196
+    t198 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t200 = np.arctan2(t198, t197 * t199)
-    del t197, t199
-    t201 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    t199 = np.arctan2(t197, t196 * t198)
+    del t196, t198
+    t200 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
     del turn_alpha, turn_beta
-    t202 = np.arctan2(s_lag, c_lag)
+    t201 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t203 = _runtime.select(short, 0.0, np.arctan2(t80, t89))
-    del t80, t89
-    t204 = t202 - t203
-    t205 = t201 - (t195 - t204)
-    del t195, t201
-    t206 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t202 = _runtime.select(short, 0.0, np.arctan2(t79, t88))
+    del t79, t88
+    t203 = t201 - t202
+    t204 = t200 - (t194 - t203)
+    del t194, t200
+    t205 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t207 = t200 - np.arctan2(t188, t187 * t206)
-    del t187, t206
-    t208 = _runtime.wrap(principal_pitch)
+    t206 = t199 - np.arctan2(t187, t186 * t205)
+    del t186, t205
+    t207 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    out_front_elbow_down = t79 + t82
-    del t79, t82
-    up_front_elbow_down = t83 - t84
-    del t83, t84
-    t209 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t210 = 1.0 / np.sqrt(t209)
+    out_front_elbow_down = t78 + t81
+    del t78, t81
+    up_front_elbow_down = t82 - t83
+    del t82, t83
+    t208 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t209 = 1.0 / np.sqrt(t208)
+    del t208
+    t210 = out_front_elbow_down * t209
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t210)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t209)
     del t209
-    t211 = out_front_elbow_down * t210
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t211)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t210)
-    del t210
-    t212 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t212
-    s_relative_front_elbow_down = t90 + t91
-    del t90, t91
-    c_relative_front_elbow_down = t92 - t93
-    del t92, t93
+    t211 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t211
+    s_relative_front_elbow_down = t89 + t90
+    del t89, t90
+    c_relative_front_elbow_down = t91 - t92
+    del t91, t92
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t213 = ahead * stheta2A_front_elbow_down
+    t212 = ahead * stheta2A_front_elbow_down
     del stheta2A_front_elbow_down
-    t214 = t213 - higher * ctheta2A_front_elbow_down
+    t213 = t212 - higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t215 = p_1_front_elbow_down * v_2_front_elbow_down + t214 * v_1_front_elbow_down
+    t214 = p_1_front_elbow_down * v_2_front_elbow_down + t213 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t216 = np.abs(whole_alpha_front_elbow_down)
-    t217 = np.abs(t215) - t216
-    t218 = np.maximum(t217 * 9.094947017729282e-13, -t217)
-    spent_alpha_front_elbow_down = t218 <= t100
-    del t218
-    t219 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t215 = np.abs(whole_alpha_front_elbow_down)
+    t216 = np.abs(t214) - t215
+    t217 = np.maximum(t216 * 9.094947017729282e-13, -t216)
+    spent_alpha_front_elbow_down = t217 <= t99
+    del t217
+    t218 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t220 = t219 * drawn_front_elbow_down
-    t221 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t214
-    t222 = t220 - _runtime.sign(-t215) * t221
-    del t215, t221
-    t223 = np.abs(t222)
-    t224 = 1.0 - t108 * drawn_front_elbow_down
-    t225 = t107 * np.sqrt(fore + L1 * (t224 * t224)) / 2000000.0
-    del fore, t107, t224
+    t219 = t218 * drawn_front_elbow_down
+    t220 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t213
+    t221 = t219 - _runtime.sign(-t214) * t220
+    del t214, t220
+    t222 = np.abs(t221)
+    t223 = 1.0 - t107 * drawn_front_elbow_down
+    t224 = t106 * np.sqrt(fore + L1 * (t223 * t223)) / 2000000.0
+    del fore, t106, t223
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t226 = t106 * (t225 + np.abs(tilt_front_elbow_down))
-    del t106, t225, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t223 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t219
-    del t219
-    t227 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t114, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t227 / heavy_1_alpha_front_elbow_down, 0.0)
-    t228 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t229 = _runtime.select(spent_alpha_front_elbow_down, t228, 0.0)
+    t225 = t105 * (t224 + np.abs(tilt_front_elbow_down))
+    del t105, t224, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t225, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t222 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t218
+    del t218
+    t226 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t113, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226 / heavy_1_alpha_front_elbow_down, 0.0)
+    t227 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t228 = _runtime.select(spent_alpha_front_elbow_down, t227, 0.0)
+    del t227
+    t229 = -(_runtime.FEASIBILITY * (t75 + t228)) <= -t216
     del t228
-    t230 = -(_runtime.FEASIBILITY * (t76 + t229)) <= -t217
-    del t229
-    t231 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    t230 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
     del gain_1_alpha_front_elbow_down
-    t232 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t231 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
     del gain_0_alpha_front_elbow_down
-    t233 = _runtime.select(-t217 < 0.0, t231 / (t120 + t231 + t232), 0.0)
-    del t231, t232
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t233, 0.0)
-    del t233
-    t234 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t232 = _runtime.select(-t216 < 0.0, t230 / (t119 + t230 + t231), 0.0)
+    del t230, t231
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t232, 0.0)
+    del t232
+    t233 = _runtime.sign(slope_aside_alpha_front_elbow_down)
     del slope_aside_alpha_front_elbow_down
-    t235 = t76 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    t234 = t75 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_front_elbow_down
-    t236 = t217 * share_alpha_front_elbow_down * t234 / (t227 + t235)
+    t235 = t216 * share_alpha_front_elbow_down * t233 / (t226 + t234)
+    del t234
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t235, 0.0)
     del t235
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t236, 0.0)
-    del t236
-    lack_alpha_front_elbow_down = t217 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t217
-    t237 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t238 = t76 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    lack_alpha_front_elbow_down = t216 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t216
+    t236 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t237 = t75 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t239 = 1.0 / (t223 + t238)
-    del t223, t238
-    t240 = lack_alpha_front_elbow_down * t239
+    t238 = 1.0 / (t222 + t237)
+    del t222, t237
+    t239 = lack_alpha_front_elbow_down * t238
     del lack_alpha_front_elbow_down
-    t241 = (t237 * t239 <= 9.094947017729282e-13) & (0.0 < t240)
-    del t237, t239
-    t242 = _runtime.sign(-t222) * _runtime.select(t241, t240, 0.0)
-    del t222, t240, t241
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t242, 0.0)
-    del t242
-    t243 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    t240 = (t236 * t238 <= 9.094947017729282e-13) & (0.0 < t239)
+    del t236, t238
+    t241 = _runtime.sign(-t221) * _runtime.select(t240, t239, 0.0)
+    del t221, t239, t240
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241, 0.0)
+    del t241
+    t242 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
     del aside_alpha_front_elbow_down
-    t244 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243 - t108 * t244, 0.0)
-    del t243, t244
-    t245 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t246 = np.sqrt(1.0 + t245)
-    del t245
-    t247 = 1.0 / t246
-    t248 = p_1_front_elbow_down * t247 - t214 * lean_alpha_front_elbow_down * t247
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248, p_1_front_elbow_down)
-    del t248
+    t243 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t242 - t107 * t243, 0.0)
+    del t242, t243
+    t244 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t245 = np.sqrt(1.0 + t244)
+    del t244
+    t246 = 1.0 / t245
+    t247 = p_1_front_elbow_down * t246 - t213 * lean_alpha_front_elbow_down * t246
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247, p_1_front_elbow_down)
+    del t247
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t249 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t250 = 1.0 / (t246 * np.sqrt(1.0 + t249))
-    del t246, t249
-    t251 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t252 = t250 + t250 * t251
-    del t251
-    t253 = lean_alpha_front_elbow_down * t250 - turn_alpha_front_elbow_down * t250
+    t248 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t249 = 1.0 / (t245 * np.sqrt(1.0 + t248))
+    del t245, t248
+    t250 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t251 = t249 + t249 * t250
     del t250
-    t254 = v_1_front_elbow_down * t252 + v_2_front_elbow_down * t253
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t254, v_1_front_elbow_down)
-    del t254
+    t252 = lean_alpha_front_elbow_down * t249 - turn_alpha_front_elbow_down * t249
+    del t249
+    t253 = v_1_front_elbow_down * t251 + v_2_front_elbow_down * t252
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t253, v_1_front_elbow_down)
+    del t253
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t255 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t256 = np.maximum(t255 * 9.094947017729282e-13, -t255)
-    spent_beta_front_elbow_down = t256 <= t138
+    t254 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t255 = np.maximum(t254 * 9.094947017729282e-13, -t254)
+    spent_beta_front_elbow_down = t255 <= t137
+    del t255
+    t256 = v_2_front_elbow_down * t251 - v_1_front_elbow_down * t252
+    del t251, t252
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t256, v_2_front_elbow_down)
     del t256
-    t257 = v_2_front_elbow_down * t252 - v_1_front_elbow_down * t253
-    del t252, t253
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t257, v_2_front_elbow_down)
-    del t257
-    t258 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t257 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    t259 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t258 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t260 = _runtime.select(spent_alpha_front_elbow_down, t247 * t259 + t214 * t247, t214)
-    del t214, t247, t259
-    t261 = t260 * _runtime.sign(part_beta_front_elbow_down)
+    t259 = _runtime.select(spent_alpha_front_elbow_down, t246 * t258 + t213 * t246, t213)
+    del t213, t246, t258
+    t260 = t259 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t262 = L1 - drawn_front_elbow_down
-    t263 = drawn_front_elbow_down * t258 - t261 * t262
-    t264 = np.abs(t263)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t226, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t258 + t261)
-    del t258, t261
-    t265 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t114, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t265 / heavy_1_beta_front_elbow_down, 0.0)
-    t266 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t267 = _runtime.select(spent_beta_front_elbow_down, t266, 0.0)
+    t261 = L1 - drawn_front_elbow_down
+    t262 = drawn_front_elbow_down * t257 - t260 * t261
+    t263 = np.abs(t262)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t225, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t263 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t257 + t260)
+    del t257, t260
+    t264 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t113, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264 / heavy_1_beta_front_elbow_down, 0.0)
+    t265 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t266 = _runtime.select(spent_beta_front_elbow_down, t265, 0.0)
+    del t265
+    t267 = -(_runtime.FEASIBILITY * (t116 + t266)) <= -t254
     del t266
-    t268 = -(_runtime.FEASIBILITY * (t117 + t267)) <= -t255
-    del t267
-    t269 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t268 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
     del gain_1_beta_front_elbow_down
-    t270 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t269 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down
-    t271 = _runtime.select(-t255 < 0.0, t269 / (t150 + t269 + t270), 0.0)
-    del t269, t270
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t271, 0.0)
-    del t271
-    lack_beta_front_elbow_down = t255 * (1.0 - share_beta_front_elbow_down)
-    t272 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t273 = t117 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t270 = _runtime.select(-t254 < 0.0, t268 / (t149 + t268 + t269), 0.0)
+    del t268, t269
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 0.0)
+    del t270
+    lack_beta_front_elbow_down = t254 * (1.0 - share_beta_front_elbow_down)
+    t271 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t272 = t116 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t274 = 1.0 / (t264 + t273)
-    del t264, t273
-    t275 = lack_beta_front_elbow_down * t274
+    t273 = 1.0 / (t263 + t272)
+    del t263, t272
+    t274 = lack_beta_front_elbow_down * t273
     del lack_beta_front_elbow_down
-    t276 = (t272 * t274 <= 9.094947017729282e-13) & (0.0 < t275)
-    del t272, t274
-    t277 = _runtime.sign(-t263) * _runtime.select(t276, t275, 0.0)
-    del t263, t275, t276
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t277, 0.0)
-    del t277
-    t278 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    t275 = (t271 * t273 <= 9.094947017729282e-13) & (0.0 < t274)
+    del t271, t273
+    t276 = _runtime.sign(-t262) * _runtime.select(t275, t274, 0.0)
+    del t262, t274, t275
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t276, 0.0)
+    del t276
+    t277 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t279 = t117 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t278 = t116 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t280 = t255 * share_beta_front_elbow_down * t278 / (t265 + t279)
-    del share_beta_front_elbow_down, t255, t265, t278, t279
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t280, 0.0)
-    del t280
-    t281 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    t279 = t254 * share_beta_front_elbow_down * t277 / (t264 + t278)
+    del share_beta_front_elbow_down, t254, t264, t277, t278
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t279, 0.0)
+    del t279
+    t280 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
     del aside_beta_front_elbow_down
-    t282 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t281 - t108 * t282, 0.0)
-    del t281, t282
-    t283 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t284 = np.sqrt(1.0 + t283)
-    del t283
-    t285 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t286 = 1.0 / (t284 * np.sqrt(1.0 + t285))
-    del t285
-    t287 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t288 = t286 + t286 * t287
-    del t287
-    t289 = lean_beta_front_elbow_down * t286 - turn_beta_front_elbow_down * t286
-    del t286
-    t290 = v_1_alpha_front_elbow_down * t288 + v_2_alpha_front_elbow_down * t289
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t290, v_1_alpha_front_elbow_down)
-    del t290
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t291 = 1.0 / t284
+    t281 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t280 - t107 * t281, 0.0)
+    del t280, t281
+    t282 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t283 = np.sqrt(1.0 + t282)
+    del t282
+    t284 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t285 = 1.0 / (t283 * np.sqrt(1.0 + t284))
     del t284
-    t292 = p_1_alpha_front_elbow_down * t291 - t260 * lean_beta_front_elbow_down * t291
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t292, p_1_alpha_front_elbow_down)
-    del t292
-    t293 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t294 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t286 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t287 = t285 + t285 * t286
+    del t286
+    t288 = lean_beta_front_elbow_down * t285 - turn_beta_front_elbow_down * t285
+    del t285
+    t289 = v_1_alpha_front_elbow_down * t287 + v_2_alpha_front_elbow_down * t288
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289, v_1_alpha_front_elbow_down)
+    del t289
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t290 = 1.0 / t283
+    del t283
+    t291 = p_1_alpha_front_elbow_down * t290 - t259 * lean_beta_front_elbow_down * t290
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291, p_1_alpha_front_elbow_down)
+    del t291
+    t292 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t293 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del sigma_uv_front_elbow_down
-    t295 = t74 & t230 & t268 & (t148 <= t293 - t294) & (t148 <= -(t294 + t293))
-    del t230, t268
-    t296 = v_2_alpha_front_elbow_down * t288 - v_1_alpha_front_elbow_down * t289
-    del t288, t289, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296, v_2_alpha_front_elbow_down)
-    del t296, v_2_alpha_front_elbow_down
-    t297 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t294 <= _runtime.VANISHING * (64.0 * t297)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t297, -t294)
-    t298 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t294 = t73 & t229 & t267 & (t147 <= t292 - t293) & (t147 <= -(t293 + t292))
+    del t229, t267
+    t295 = v_2_alpha_front_elbow_down * t287 - v_1_alpha_front_elbow_down * t288
+    del t287, t288, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t295, v_2_alpha_front_elbow_down)
+    del t295, v_2_alpha_front_elbow_down
+    t296 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t293 <= _runtime.VANISHING * (64.0 * t296)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t296, -t293)
+    t297 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t299 = _runtime.select(spent_beta_front_elbow_down, t291 * t298 + t260 * t291, t260)
-    del t260, t291, t298
-    t300 = t299 * _runtime.sign(v_2_beta_front_elbow_down)
-    t301 = _runtime.select(parallel_front_elbow_down, t300, t293)
-    del t293, t300
-    t302 = whole_y_front_elbow_down + t301
-    t303 = whole_y_front_elbow_down - t301
-    below_beta_0_front_elbow_down = np.maximum(t302, t173)
-    above_beta_0_front_elbow_down = np.maximum(t303, t173)
-    t304 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t298 = _runtime.select(spent_beta_front_elbow_down, t290 * t297 + t259 * t290, t259)
+    del t259, t290, t297
+    t299 = t298 * _runtime.sign(v_2_beta_front_elbow_down)
+    t300 = _runtime.select(parallel_front_elbow_down, t299, t292)
+    del t292, t299
+    t301 = whole_y_front_elbow_down + t300
+    t302 = whole_y_front_elbow_down - t300
+    below_beta_0_front_elbow_down = np.maximum(t301, t172)
+    above_beta_0_front_elbow_down = np.maximum(t302, t172)
+    t303 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t305 = v_2_beta_front_elbow_down * (t304 / total_beta_0_front_elbow_down)
-    del t304, total_beta_0_front_elbow_down
-    t306 = t299 - t305
-    del t305
-    left_along_front_elbow_down = L1 - np.abs(t306)
-    t307 = left_along_front_elbow_down * 9.094947017729282e-13
-    t308 = np.maximum(-t307, left_along_front_elbow_down)
+    t304 = v_2_beta_front_elbow_down * (t303 / total_beta_0_front_elbow_down)
+    del t303, total_beta_0_front_elbow_down
+    t305 = t298 - t304
+    del t304
+    left_along_front_elbow_down = L1 - np.abs(t305)
+    t306 = left_along_front_elbow_down * 9.094947017729282e-13
+    t307 = np.maximum(-t306, left_along_front_elbow_down)
+    del t306
+    spent_along_front_elbow_down = t307 <= t176
     del t307
-    spent_along_front_elbow_down = t308 <= t177
+    t308 = _runtime.select(spent_along_front_elbow_down, t296 / (t177 - t293), 0.0)
+    del t296
+    t309 = -(_runtime.FEASIBILITY * (play * (1.0 + t308)))
     del t308
-    t309 = _runtime.select(spent_along_front_elbow_down, t297 / (t178 - t294), 0.0)
-    del t297
-    t310 = -(_runtime.FEASIBILITY * (play * (1.0 + t309)))
-    del t309
-    t311 = t295 & (t148 <= t302) & (t148 <= t303) & (t310 <= left_along_front_elbow_down)
-    del t295, t302, t303, t310
-    t312 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    t310 = t294 & (t147 <= t301) & (t147 <= t302) & (t309 <= left_along_front_elbow_down)
+    del t294, t301, t302, t309
+    t311 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t313 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t314 = v_2_beta_front_elbow_down * t312 / (t294 * t294 + t313)
-    del t294, t312, t313
-    t315 = whole_y_front_elbow_down * (t314 * _runtime.sign(-t306))
-    del t306, t314
-    t316 = _runtime.select(spent_along_front_elbow_down, t301 + t315, t301)
-    del t301, t315
-    t317 = whole_y_front_elbow_down + t316
-    t318 = whole_y_front_elbow_down - t316
-    del t316, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t317, t173)
-    above_beta_front_elbow_down = np.maximum(t318, t173)
-    t319 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t312 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t313 = v_2_beta_front_elbow_down * t311 / (t293 * t293 + t312)
+    del t293, t311, t312
+    t314 = whole_y_front_elbow_down * (t313 * _runtime.sign(-t305))
+    del t305, t313
+    t315 = _runtime.select(spent_along_front_elbow_down, t300 + t314, t300)
+    del t300, t314
+    t316 = whole_y_front_elbow_down + t315
+    t317 = whole_y_front_elbow_down - t315
+    del t315, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t316, t172)
+    above_beta_front_elbow_down = np.maximum(t317, t172)
+    t318 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t320 = 1.0 / total_beta_front_elbow_down
+    t319 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t321 = t319 * t320
-    del t319
-    t322 = t299 - v_2_beta_front_elbow_down * t321
-    del t299, v_2_beta_front_elbow_down
-    t323 = L1 + t322
-    t324 = t311 & (t148 <= t317) & (t148 <= t318) & (t148 <= t323)
-    del t311, t317, t318
-    t325 = L1 - t322
-    unreachable_2 = np.logical_not(t324 & (t148 <= t325))
-    del t324
-    t326 = _runtime.poison(invalid | unreachable_2)
-    t327 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t328 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t329 = _runtime.select(folded, 0.0, t327) + t328
-    del t327
-    below_alpha_front_elbow_down = np.maximum(t323, t173)
+    t320 = t318 * t319
+    del t318
+    t321 = t298 - v_2_beta_front_elbow_down * t320
+    del t298, v_2_beta_front_elbow_down
+    t322 = L1 + t321
+    t323 = t310 & (t147 <= t316) & (t147 <= t317) & (t147 <= t322)
+    del t310, t316, t317
+    t324 = L1 - t321
+    unreachable_2 = np.logical_not(t323 & (t147 <= t324))
     del t323
-    above_alpha_front_elbow_down = np.maximum(t325, t173)
-    del t325
-    t330 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t325 = _runtime.poison(invalid | unreachable_2)
+    t326 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t327 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t328 = _runtime.select(folded, 0.0, t326) + t327
+    del t326
+    below_alpha_front_elbow_down = np.maximum(t322, t172)
+    del t322
+    above_alpha_front_elbow_down = np.maximum(t324, t172)
+    del t324
+    t329 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t331 = 1.0 / total_alpha_front_elbow_down
+    t330 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t332 = t330 * t331
-    del t330
-    t333 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t331 = t329 * t330
+    del t329
+    t332 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t334 = np.arctan2(t332, t331 * t333)
-    del t331, t333
-    t335 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    t333 = np.arctan2(t331, t330 * t332)
+    del t330, t332
+    t334 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t336 = t202 + t203
-    del t202, t203
-    t337 = t335 - (t328 - t336)
-    del t328, t335
-    t338 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t335 = t201 + t202
+    del t201, t202
+    t336 = t334 - (t327 - t335)
+    del t327, t334
+    t337 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t339 = t334 - np.arctan2(t321, t320 * t338)
-    del t320, t338
-    t340 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t55))
-    del t3, t55
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t86)
+    t338 = t333 - np.arctan2(t320, t319 * t337)
+    del t319, t337
+    t339 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t54))
+    del t3, t54
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t85)
+    del t85
+    p_1_rear_elbow_up = t86 + ahead * ctheta2A_rear_elbow_up
     del t86
-    p_1_rear_elbow_up = t87 + ahead * ctheta2A_rear_elbow_up
-    del t87
-    t341 = t94 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t94
-    t342 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t341
-    margin_alpha_rear_elbow_up = t216 - np.abs(t342)
-    del t216
-    t343 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t344 = np.maximum(-t343, margin_alpha_rear_elbow_up)
+    t340 = t93 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t93
+    t341 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t340
+    margin_alpha_rear_elbow_up = t215 - np.abs(t341)
+    del t215
+    t342 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t343 = np.maximum(-t342, margin_alpha_rear_elbow_up)
+    del t342
+    spent_alpha_rear_elbow_up = t343 <= t99
     del t343
-    spent_alpha_rear_elbow_up = t344 <= t100
-    del t344
-    t345 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t341
-    t346 = t220 - _runtime.sign(-t342) * t345
-    del t220, t342, t345
-    t347 = np.abs(t346)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t226, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t347 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t114, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t348 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t349 = _runtime.select(spent_alpha_rear_elbow_up, t348, 0.0)
+    t344 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t340
+    t345 = t219 - _runtime.sign(-t341) * t344
+    del t219, t341, t344
+    t346 = np.abs(t345)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t346 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t113, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t226 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t347 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t348 = _runtime.select(spent_alpha_rear_elbow_up, t347, 0.0)
+    del t347
+    t349 = -(_runtime.FEASIBILITY * (t75 + t348)) <= margin_alpha_rear_elbow_up
     del t348
-    t350 = -(_runtime.FEASIBILITY * (t76 + t349)) <= margin_alpha_rear_elbow_up
-    del t349
-    t351 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    t350 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     del gain_1_alpha_rear_elbow_up
-    t352 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t351 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up
-    t353 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t351 / (t120 + t351 + t352), 0.0)
-    del t351, t352
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t353, 0.0)
-    del t353
-    t354 = t234 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t234
-    t355 = t76 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t352 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t350 / (t119 + t350 + t351), 0.0)
+    del t350, t351
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352, 0.0)
+    del t352
+    t353 = t233 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t233
+    t354 = t75 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t354 / (t227 + t355)), 0.0)
-    del t227, t354, t355
-    t356 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t353 / (t226 + t354)), 0.0)
+    del t226, t353, t354
+    t355 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del margin_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t357 = t76 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t358 = 1.0 / (t347 + t357)
-    del t347, t357
-    t359 = -(heavy_0_alpha_rear_elbow_up * t356 * t358) <= 9.094947017729282e-13
+    t356 = t75 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t357 = 1.0 / (t346 + t356)
+    del t346, t356
+    t358 = -(heavy_0_alpha_rear_elbow_up * t355 * t357) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t360 = -(t356 * t358)
-    del t356, t358
-    t361 = _runtime.select(t359 & (0.0 < t360), t360, 0.0)
-    del t359, t360
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t346) * t361, 0.0)
-    del t346, t361
-    t362 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t359 = -(t355 * t357)
+    del t355, t357
+    t360 = _runtime.select(t358 & (0.0 < t359), t359, 0.0)
+    del t358, t359
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t345) * t360, 0.0)
+    del t345, t360
+    t361 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t363 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t362 - t108 * t363, 0.0)
-    del t362, t363
-    t364 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t365 = np.sqrt(1.0 + t364)
-    del t364
-    t366 = 1.0 / t365
-    t367 = p_1_rear_elbow_up * t366 - t341 * lean_alpha_rear_elbow_up * t366
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t367, p_1_rear_elbow_up)
-    del t367
+    t362 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t361 - t107 * t362, 0.0)
+    del t361, t362
+    t363 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t364 = np.sqrt(1.0 + t363)
+    del t363
+    t365 = 1.0 / t364
+    t366 = p_1_rear_elbow_up * t365 - t340 * lean_alpha_rear_elbow_up * t365
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t366, p_1_rear_elbow_up)
+    del t366
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t368 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t369 = 1.0 / (t365 * np.sqrt(1.0 + t368))
-    del t365, t368
-    t370 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t371 = t369 + t369 * t370
-    del t370
-    t372 = lean_alpha_rear_elbow_up * t369 - turn_alpha_rear_elbow_up * t369
+    t367 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t368 = 1.0 / (t364 * np.sqrt(1.0 + t367))
+    del t364, t367
+    t369 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t370 = t368 + t368 * t369
     del t369
-    t373 = v_1_front_elbow_down * t371 + v_2_front_elbow_down * t372
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t373, v_1_front_elbow_down)
-    del t373
+    t371 = lean_alpha_rear_elbow_up * t368 - turn_alpha_rear_elbow_up * t368
+    del t368
+    t372 = v_1_front_elbow_down * t370 + v_2_front_elbow_down * t371
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t372, v_1_front_elbow_down)
+    del t372
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t374 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t375 = np.maximum(t374 * 9.094947017729282e-13, -t374)
-    spent_beta_rear_elbow_up = t375 <= t138
-    del t375
-    t376 = v_2_front_elbow_down * t371 - v_1_front_elbow_down * t372
-    del t371, t372, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t376, v_2_front_elbow_down)
-    del t376, v_2_front_elbow_down
-    t377 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t373 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t374 = np.maximum(t373 * 9.094947017729282e-13, -t373)
+    spent_beta_rear_elbow_up = t374 <= t137
+    del t374
+    t375 = v_2_front_elbow_down * t370 - v_1_front_elbow_down * t371
+    del t370, t371, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t375, v_2_front_elbow_down)
+    del t375, v_2_front_elbow_down
+    t376 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    t378 = t366 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t377 = t365 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t379 = _runtime.select(spent_alpha_rear_elbow_up, t378 + t341 * t366, t341)
-    del t341, t366, t378
-    t380 = t379 * _runtime.sign(part_beta_rear_elbow_up)
+    t378 = _runtime.select(spent_alpha_rear_elbow_up, t377 + t340 * t365, t340)
+    del t340, t365, t377
+    t379 = t378 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t381 = drawn_front_elbow_down * t377 - t262 * t380
-    del t262
-    t382 = np.abs(t381)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t226, 1.0)
-    del t226
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t382 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t377 + t380)
-    del t377, t380
-    t383 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t114, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t383 / heavy_1_beta_rear_elbow_up, 0.0)
-    t384 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t385 = _runtime.select(spent_beta_rear_elbow_up, t384, 0.0)
+    t380 = drawn_front_elbow_down * t376 - t261 * t379
+    del t261
+    t381 = np.abs(t380)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t225, 1.0)
+    del t225
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t381 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t376 + t379)
+    del t376, t379
+    t382 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t113, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t382 / heavy_1_beta_rear_elbow_up, 0.0)
+    t383 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t384 = _runtime.select(spent_beta_rear_elbow_up, t383, 0.0)
+    del t383
+    t385 = -(_runtime.FEASIBILITY * (t116 + t384)) <= -t373
     del t384
-    t386 = -(_runtime.FEASIBILITY * (t117 + t385)) <= -t374
-    del t385
-    t387 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t386 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
     del gain_1_beta_rear_elbow_up
-    t388 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t387 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
     del gain_0_beta_rear_elbow_up
-    t389 = _runtime.select(-t374 < 0.0, t387 / (t150 + t387 + t388), 0.0)
-    del t387, t388
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t389, 0.0)
-    del t389
-    lack_beta_rear_elbow_up = t374 * (1.0 - share_beta_rear_elbow_up)
-    t390 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t391 = t117 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t388 = _runtime.select(-t373 < 0.0, t386 / (t149 + t386 + t387), 0.0)
+    del t386, t387
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388, 0.0)
+    del t388
+    lack_beta_rear_elbow_up = t373 * (1.0 - share_beta_rear_elbow_up)
+    t389 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t390 = t116 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t392 = 1.0 / (t382 + t391)
-    del t382, t391
-    t393 = lack_beta_rear_elbow_up * t392
+    t391 = 1.0 / (t381 + t390)
+    del t381, t390
+    t392 = lack_beta_rear_elbow_up * t391
     del lack_beta_rear_elbow_up
-    t394 = (t390 * t392 <= 9.094947017729282e-13) & (0.0 < t393)
-    del t390, t392
-    t395 = _runtime.sign(-t381) * _runtime.select(t394, t393, 0.0)
-    del t381, t393, t394
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t395, 0.0)
-    del t395
-    t396 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    t393 = (t389 * t391 <= 9.094947017729282e-13) & (0.0 < t392)
+    del t389, t391
+    t394 = _runtime.sign(-t380) * _runtime.select(t393, t392, 0.0)
+    del t380, t392, t393
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t394, 0.0)
+    del t394
+    t395 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t397 = t117 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t396 = t116 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t398 = t374 * share_beta_rear_elbow_up * t396 / (t383 + t397)
-    del share_beta_rear_elbow_up, t374, t383, t396, t397
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398, 0.0)
-    del t398
-    t399 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    t397 = t373 * share_beta_rear_elbow_up * t395 / (t382 + t396)
+    del share_beta_rear_elbow_up, t373, t382, t395, t396
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t397, 0.0)
+    del t397
+    t398 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
     del aside_beta_rear_elbow_up
-    t400 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    t399 = drawn_front_elbow_down * turn_beta_rear_elbow_up
     del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399 - t108 * t400, 0.0)
-    del t399, t400
-    t401 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t402 = np.sqrt(1.0 + t401)
-    del t401
-    t403 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t404 = 1.0 / (t402 * np.sqrt(1.0 + t403))
-    del t403
-    t405 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t406 = t404 + t404 * t405
-    del t405
-    t407 = lean_beta_rear_elbow_up * t404 - turn_beta_rear_elbow_up * t404
-    del t404
-    t408 = v_1_alpha_rear_elbow_up * t406 + v_2_alpha_rear_elbow_up * t407
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t408, v_1_alpha_rear_elbow_up)
-    del t408
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t409 = 1.0 / t402
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398 - t107 * t399, 0.0)
+    del t398, t399
+    t400 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t401 = np.sqrt(1.0 + t400)
+    del t400
+    t402 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t403 = 1.0 / (t401 * np.sqrt(1.0 + t402))
     del t402
-    t410 = p_1_alpha_rear_elbow_up * t409 - t379 * lean_beta_rear_elbow_up * t409
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t410, p_1_alpha_rear_elbow_up)
-    del t410
-    t411 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t412 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t404 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t405 = t403 + t403 * t404
+    del t404
+    t406 = lean_beta_rear_elbow_up * t403 - turn_beta_rear_elbow_up * t403
+    del t403
+    t407 = v_1_alpha_rear_elbow_up * t405 + v_2_alpha_rear_elbow_up * t406
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t407, v_1_alpha_rear_elbow_up)
+    del t407
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t408 = 1.0 / t401
+    del t401
+    t409 = p_1_alpha_rear_elbow_up * t408 - t378 * lean_beta_rear_elbow_up * t408
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t409, p_1_alpha_rear_elbow_up)
+    del t409
+    t410 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t411 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t413 = t74 & t350 & t386 & (t148 <= t411 - t412) & (t148 <= -(t412 + t411))
-    del t350, t386
-    t414 = v_2_alpha_rear_elbow_up * t406 - v_1_alpha_rear_elbow_up * t407
-    del t406, t407, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t414, v_2_alpha_rear_elbow_up)
-    del t414, v_2_alpha_rear_elbow_up
-    t415 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t412 <= _runtime.VANISHING * (64.0 * t415)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t415, -t412)
-    t416 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t412 = t73 & t349 & t385 & (t147 <= t410 - t411) & (t147 <= -(t411 + t410))
+    del t349, t385
+    t413 = v_2_alpha_rear_elbow_up * t405 - v_1_alpha_rear_elbow_up * t406
+    del t405, t406, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t413, v_2_alpha_rear_elbow_up)
+    del t413, v_2_alpha_rear_elbow_up
+    t414 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t411 <= _runtime.VANISHING * (64.0 * t414)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t414, -t411)
+    t415 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    t417 = _runtime.select(spent_beta_rear_elbow_up, t409 * t416 + t379 * t409, t379)
-    del t379, t409, t416
-    t418 = _runtime.select(parallel_rear_elbow_up, t417 * _runtime.sign(v_2_beta_rear_elbow_up), t411)
-    del t411
-    t419 = whole_y_rear_elbow_up + t418
-    t420 = whole_y_rear_elbow_up - t418
-    below_beta_0_rear_elbow_up = np.maximum(t419, t173)
-    above_beta_0_rear_elbow_up = np.maximum(t420, t173)
-    t421 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t416 = _runtime.select(spent_beta_rear_elbow_up, t408 * t415 + t378 * t408, t378)
+    del t378, t408, t415
+    t417 = _runtime.select(parallel_rear_elbow_up, t416 * _runtime.sign(v_2_beta_rear_elbow_up), t410)
+    del t410
+    t418 = whole_y_rear_elbow_up + t417
+    t419 = whole_y_rear_elbow_up - t417
+    below_beta_0_rear_elbow_up = np.maximum(t418, t172)
+    above_beta_0_rear_elbow_up = np.maximum(t419, t172)
+    t420 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t422 = v_2_beta_rear_elbow_up * (t421 / total_beta_0_rear_elbow_up)
-    del t421, total_beta_0_rear_elbow_up
-    t423 = t417 - t422
-    del t422
-    left_along_rear_elbow_up = L1 - np.abs(t423)
-    t424 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t424, left_along_rear_elbow_up) <= t177
+    t421 = v_2_beta_rear_elbow_up * (t420 / total_beta_0_rear_elbow_up)
+    del t420, total_beta_0_rear_elbow_up
+    t422 = t416 - t421
+    del t421
+    left_along_rear_elbow_up = L1 - np.abs(t422)
+    t423 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t423, left_along_rear_elbow_up) <= t176
+    del t423
+    t424 = _runtime.select(spent_along_rear_elbow_up, t414 / (t177 - t411), 0.0)
+    del t414
+    t425 = -(_runtime.FEASIBILITY * (play * (1.0 + t424)))
     del t424
-    t425 = _runtime.select(spent_along_rear_elbow_up, t415 / (t178 - t412), 0.0)
-    del t415
-    t426 = -(_runtime.FEASIBILITY * (play * (1.0 + t425)))
-    del t425
-    t427 = t413 & (t148 <= t419) & (t148 <= t420) & (t426 <= left_along_rear_elbow_up)
-    del t413, t419, t420, t426
-    t428 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t426 = t412 & (t147 <= t418) & (t147 <= t419) & (t425 <= left_along_rear_elbow_up)
+    del t412, t418, t419, t425
+    t427 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t429 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t430 = v_2_beta_rear_elbow_up * t428 / (t412 * t412 + t429)
-    del t412, t428, t429
-    t431 = whole_y_rear_elbow_up * (t430 * _runtime.sign(-t423))
-    del t423, t430
-    t432 = _runtime.select(spent_along_rear_elbow_up, t418 + t431, t418)
-    del t418, t431
-    t433 = whole_y_rear_elbow_up + t432
-    t434 = whole_y_rear_elbow_up - t432
-    del t432, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t433, t173)
-    above_beta_rear_elbow_up = np.maximum(t434, t173)
-    t435 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t428 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t429 = v_2_beta_rear_elbow_up * t427 / (t411 * t411 + t428)
+    del t411, t427, t428
+    t430 = whole_y_rear_elbow_up * (t429 * _runtime.sign(-t422))
+    del t422, t429
+    t431 = _runtime.select(spent_along_rear_elbow_up, t417 + t430, t417)
+    del t417, t430
+    t432 = whole_y_rear_elbow_up + t431
+    t433 = whole_y_rear_elbow_up - t431
+    del t431, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t432, t172)
+    above_beta_rear_elbow_up = np.maximum(t433, t172)
+    t434 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t436 = 1.0 / total_beta_rear_elbow_up
+    t435 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t437 = t435 * t436
-    del t435
-    t438 = t417 - v_2_beta_rear_elbow_up * t437
-    del t417, v_2_beta_rear_elbow_up
-    t439 = L1 + t438
-    t440 = t427 & (t148 <= t433) & (t148 <= t434) & (t148 <= t439)
-    del t427, t433, t434
-    t441 = L1 - t438
-    unreachable_3 = np.logical_not(t440 & (t148 <= t441))
-    del t440
-    t442 = _runtime.poison(invalid | unreachable_3)
-    t443 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t444 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t445 = t443 + t444
-    del t443
-    below_alpha_rear_elbow_up = np.maximum(t439, t173)
+    t436 = t434 * t435
+    del t434
+    t437 = t416 - v_2_beta_rear_elbow_up * t436
+    del t416, v_2_beta_rear_elbow_up
+    t438 = L1 + t437
+    t439 = t426 & (t147 <= t432) & (t147 <= t433) & (t147 <= t438)
+    del t426, t432, t433
+    t440 = L1 - t437
+    unreachable_3 = np.logical_not(t439 & (t147 <= t440))
     del t439
-    above_alpha_rear_elbow_up = np.maximum(t441, t173)
-    del t441
-    t446 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t441 = _runtime.poison(invalid | unreachable_3)
+    t442 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t443 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t444 = t442 + t443
+    del t442
+    below_alpha_rear_elbow_up = np.maximum(t438, t172)
+    del t438
+    above_alpha_rear_elbow_up = np.maximum(t440, t172)
+    del t440
+    t445 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t447 = 1.0 / total_alpha_rear_elbow_up
+    t446 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t448 = t446 * t447
-    del t446
-    t449 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t447 = t445 * t446
+    del t445
+    t448 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t450 = np.arctan2(t448, t447 * t449)
-    del t447, t449
-    t451 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    t449 = np.arctan2(t447, t446 * t448)
+    del t446, t448
+    t450 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t452 = t451 + (t336 - t444)
-    del t336, t444, t451
-    t453 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t451 = t450 + (t335 - t443)
+    del t335, t443, t450
+    t452 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t454 = t450 - np.arctan2(t437, t436 * t453)
-    del t436, t453
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t211)
-    del t211
-    p_1_rear_elbow_down = t212 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t212
-    t455 = t213 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t213
-    t456 = v_2 * p_1_rear_elbow_down + v_1 * t455
-    margin_alpha_rear_elbow_down = t97 - np.abs(t456)
-    del t97
-    t457 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t458 = np.maximum(-t457, margin_alpha_rear_elbow_down)
-    del t457
-    spent_alpha_rear_elbow_down = t458 <= t100
-    del t100, t458
-    t459 = _runtime.sign(-t456) * (v_1 * p_1_rear_elbow_down - v_2 * t455)
+    t453 = t449 - np.arctan2(t436, t435 * t452)
+    del t435, t452
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t210)
+    del t210
+    p_1_rear_elbow_down = t211 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t211
+    t454 = t212 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t212
+    t455 = v_2 * p_1_rear_elbow_down + v_1 * t454
+    margin_alpha_rear_elbow_down = t96 - np.abs(t455)
+    del t96
+    t456 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t457 = np.maximum(-t456, margin_alpha_rear_elbow_down)
     del t456
-    t460 = t102 - t459
-    del t102, t459
-    t461 = np.abs(t460)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t112, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t461 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t114, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t462 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t463 = _runtime.select(spent_alpha_rear_elbow_down, t462, 0.0)
+    spent_alpha_rear_elbow_down = t457 <= t99
+    del t457, t99
+    t458 = _runtime.sign(-t455) * (v_1 * p_1_rear_elbow_down - v_2 * t454)
+    del t455
+    t459 = t101 - t458
+    del t101, t458
+    t460 = np.abs(t459)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t111, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t460 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t112 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t461 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t462 = _runtime.select(spent_alpha_rear_elbow_down, t461, 0.0)
+    del t461
+    t463 = -(_runtime.FEASIBILITY * (t75 + t462)) <= margin_alpha_rear_elbow_down
     del t462
-    t464 = -(_runtime.FEASIBILITY * (t76 + t463)) <= margin_alpha_rear_elbow_down
-    del t463
-    t465 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t464 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     del gain_1_alpha_rear_elbow_down
-    t466 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t465 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down
-    t467 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t465 / (t120 + t465 + t466), 0.0)
-    del t120, t465, t466
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t467, 0.0)
-    del t467
-    t468 = t122 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t122
-    t469 = t76 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    t466 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t464 / (t119 + t464 + t465), 0.0)
+    del t119, t464, t465
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t466, 0.0)
+    del t466
+    t467 = t121 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t121
+    t468 = t75 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t468 / (t113 + t469)), 0.0)
-    del t113, t468, t469
-    t470 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t467 / (t112 + t468)), 0.0)
+    del t112, t467, t468
+    t469 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t471 = t76 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t76
-    t472 = 1.0 / (t461 + t471)
-    del t461, t471
-    t473 = -(heavy_0_alpha_rear_elbow_down * t470 * t472)
+    t470 = t75 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    del t75
+    t471 = 1.0 / (t460 + t470)
+    del t460, t470
+    t472 = -(heavy_0_alpha_rear_elbow_down * t469 * t471)
     del heavy_0_alpha_rear_elbow_down
-    t474 = -(t470 * t472)
-    del t470, t472
-    t475 = (t473 <= 9.094947017729282e-13) & (0.0 < t474)
-    del t473
-    t476 = _runtime.sign(-t460) * _runtime.select(t475, t474, 0.0)
-    del t460, t474, t475
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t476, 0.0)
-    del t476
-    t477 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    t473 = -(t469 * t471)
+    del t469, t471
+    t474 = (t472 <= 9.094947017729282e-13) & (0.0 < t473)
+    del t472
+    t475 = _runtime.sign(-t459) * _runtime.select(t474, t473, 0.0)
+    del t459, t473, t474
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t475, 0.0)
+    del t475
+    t476 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
     del aside_alpha_rear_elbow_down
-    t478 = t477 - t108 * (drawn * turn_alpha_rear_elbow_down)
+    t477 = t476 - t107 * (drawn * turn_alpha_rear_elbow_down)
+    del t476
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t477, 0.0)
     del t477
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t478, 0.0)
+    t478 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t479 = np.sqrt(1.0 + t478)
     del t478
-    t479 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t480 = np.sqrt(1.0 + t479)
-    del t479
-    t481 = 1.0 / t480
-    t482 = p_1_rear_elbow_down * t481 - t455 * lean_alpha_rear_elbow_down * t481
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t482, p_1_rear_elbow_down)
-    del t482
+    t480 = 1.0 / t479
+    t481 = p_1_rear_elbow_down * t480 - t454 * lean_alpha_rear_elbow_down * t480
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t481, p_1_rear_elbow_down)
+    del t481
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t483 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t484 = 1.0 / (t480 * np.sqrt(1.0 + t483))
-    del t480, t483
-    t485 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t486 = t484 + t484 * t485
-    del t485
-    t487 = lean_alpha_rear_elbow_down * t484 - turn_alpha_rear_elbow_down * t484
+    t482 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t483 = 1.0 / (t479 * np.sqrt(1.0 + t482))
+    del t479, t482
+    t484 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t485 = t483 + t483 * t484
     del t484
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t486 + v_2 * t487, v_1)
+    t486 = lean_alpha_rear_elbow_down * t483 - turn_alpha_rear_elbow_down * t483
+    del t483
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t485 + v_2 * t486, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t488 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t489 = np.maximum(t488 * 9.094947017729282e-13, -t488)
-    spent_beta_rear_elbow_down = t489 <= t138
-    del t138, t489
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t486 - v_1 * t487, v_2)
-    del t486, t487, v_1, v_2
-    t490 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    t487 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t488 = np.maximum(t487 * 9.094947017729282e-13, -t487)
+    spent_beta_rear_elbow_down = t488 <= t137
+    del t137, t488
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t485 - v_1 * t486, v_2)
+    del t485, t486, v_1, v_2
+    t489 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    t491 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t490 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t492 = _runtime.select(spent_alpha_rear_elbow_down, t481 * t491 + t455 * t481, t455)
-    del t455, t481, t491
-    t493 = t492 * _runtime.sign(part_beta_rear_elbow_down)
+    t491 = _runtime.select(spent_alpha_rear_elbow_down, t480 * t490 + t454 * t480, t454)
+    del t454, t480, t490
+    t492 = t491 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    t494 = drawn * t490 - t142 * t493
-    del t142
-    t495 = np.abs(t494)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t112, 1.0)
-    del t112
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t490 + t493)
-    del t490, t493
-    t496 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t114, 1.0)
-    del t114
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496 / heavy_1_beta_rear_elbow_down, 0.0)
-    t497 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t498 = _runtime.select(spent_beta_rear_elbow_down, t497, 0.0)
+    t493 = drawn * t489 - t141 * t492
+    del t141
+    t494 = np.abs(t493)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t111, 1.0)
+    del t111
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t489 + t492)
+    del t489, t492
+    t495 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t113, 1.0)
+    del t113
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495 / heavy_1_beta_rear_elbow_down, 0.0)
+    t496 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t497 = _runtime.select(spent_beta_rear_elbow_down, t496, 0.0)
+    del t496
+    t498 = -(_runtime.FEASIBILITY * (t116 + t497)) <= -t487
     del t497
-    t499 = -(_runtime.FEASIBILITY * (t117 + t498)) <= -t488
-    del t498
-    t500 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t499 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
     del gain_1_beta_rear_elbow_down
-    t501 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t500 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down
-    t502 = _runtime.select(-t488 < 0.0, t500 / (t150 + t500 + t501), 0.0)
-    del t150, t500, t501
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t502, 0.0)
-    del t502
-    lack_beta_rear_elbow_down = t488 * (1.0 - share_beta_rear_elbow_down)
-    t503 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t504 = t117 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t501 = _runtime.select(-t487 < 0.0, t499 / (t149 + t499 + t500), 0.0)
+    del t149, t499, t500
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t501, 0.0)
+    del t501
+    lack_beta_rear_elbow_down = t487 * (1.0 - share_beta_rear_elbow_down)
+    t502 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t503 = t116 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t505 = 1.0 / (t495 + t504)
-    del t495, t504
-    t506 = lack_beta_rear_elbow_down * t505
+    t504 = 1.0 / (t494 + t503)
+    del t494, t503
+    t505 = lack_beta_rear_elbow_down * t504
     del lack_beta_rear_elbow_down
-    t507 = (t503 * t505 <= 9.094947017729282e-13) & (0.0 < t506)
-    del t503, t505
-    t508 = _runtime.sign(-t494) * _runtime.select(t507, t506, 0.0)
-    del t494, t506, t507
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t508, 0.0)
-    del t508
-    t509 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    t506 = (t502 * t504 <= 9.094947017729282e-13) & (0.0 < t505)
+    del t502, t504
+    t507 = _runtime.sign(-t493) * _runtime.select(t506, t505, 0.0)
+    del t493, t505, t506
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t507, 0.0)
+    del t507
+    t508 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t510 = t117 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t117
-    t511 = t488 * share_beta_rear_elbow_down * t509 / (t496 + t510)
-    del share_beta_rear_elbow_down, t488, t496, t509, t510
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t511, 0.0)
-    del t511
-    t512 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    t509 = t116 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t116
+    t510 = t487 * share_beta_rear_elbow_down * t508 / (t495 + t509)
+    del share_beta_rear_elbow_down, t487, t495, t508, t509
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t510, 0.0)
+    del t510
+    t511 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
     del aside_beta_rear_elbow_down
-    t513 = t512 - t108 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t108, t512
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t513, 0.0)
+    t512 = t511 - t107 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t107, t511
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t512, 0.0)
+    del t512
+    t513 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t514 = np.sqrt(1.0 + t513)
     del t513
-    t514 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t515 = np.sqrt(1.0 + t514)
-    del t514
-    t516 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t517 = 1.0 / (t515 * np.sqrt(1.0 + t516))
-    del t516
-    t518 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t519 = t517 + t517 * t518
-    del t518
-    t520 = lean_beta_rear_elbow_down * t517 - turn_beta_rear_elbow_down * t517
-    del t517
-    t521 = v_1_alpha_rear_elbow_down * t519 + v_2_alpha_rear_elbow_down * t520
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t521, v_1_alpha_rear_elbow_down)
-    del t521
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t522 = 1.0 / t515
+    t515 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t516 = 1.0 / (t514 * np.sqrt(1.0 + t515))
     del t515
-    t523 = p_1_alpha_rear_elbow_down * t522 - t492 * lean_beta_rear_elbow_down * t522
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t523, p_1_alpha_rear_elbow_down)
-    del t523
-    t524 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t525 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t517 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t518 = t516 + t516 * t517
+    del t517
+    t519 = lean_beta_rear_elbow_down * t516 - turn_beta_rear_elbow_down * t516
+    del t516
+    t520 = v_1_alpha_rear_elbow_down * t518 + v_2_alpha_rear_elbow_down * t519
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t520, v_1_alpha_rear_elbow_down)
+    del t520
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t521 = 1.0 / t514
+    del t514
+    t522 = p_1_alpha_rear_elbow_down * t521 - t491 * lean_beta_rear_elbow_down * t521
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t522, p_1_alpha_rear_elbow_down)
+    del t522
+    t523 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t524 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t526 = t74 & t464 & t499 & (t148 <= t524 - t525) & (t148 <= -(t525 + t524))
-    del t464, t499, t74
-    t527 = v_2_alpha_rear_elbow_down * t519 - v_1_alpha_rear_elbow_down * t520
-    del t519, t520, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t527, v_2_alpha_rear_elbow_down)
-    del t527, v_2_alpha_rear_elbow_down
-    t528 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t525 <= _runtime.VANISHING * (64.0 * t528)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t528, -t525)
-    t529 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t525 = t73 & t463 & t498 & (t147 <= t523 - t524) & (t147 <= -(t524 + t523))
+    del t463, t498, t73
+    t526 = v_2_alpha_rear_elbow_down * t518 - v_1_alpha_rear_elbow_down * t519
+    del t518, t519, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t526, v_2_alpha_rear_elbow_down)
+    del t526, v_2_alpha_rear_elbow_down
+    t527 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t524 <= _runtime.VANISHING * (64.0 * t527)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t527, -t524)
+    t528 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t530 = _runtime.select(spent_beta_rear_elbow_down, t522 * t529 + t492 * t522, t492)
-    del t492, t522, t529
-    t531 = t530 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t532 = _runtime.select(parallel_rear_elbow_down, t531, t524)
-    del t524, t531
-    t533 = whole_y_rear_elbow_down + t532
-    t534 = whole_y_rear_elbow_down - t532
-    below_beta_0_rear_elbow_down = np.maximum(t533, t173)
-    above_beta_0_rear_elbow_down = np.maximum(t534, t173)
-    t535 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t529 = _runtime.select(spent_beta_rear_elbow_down, t521 * t528 + t491 * t521, t491)
+    del t491, t521, t528
+    t530 = t529 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t531 = _runtime.select(parallel_rear_elbow_down, t530, t523)
+    del t523, t530
+    t532 = whole_y_rear_elbow_down + t531
+    t533 = whole_y_rear_elbow_down - t531
+    below_beta_0_rear_elbow_down = np.maximum(t532, t172)
+    above_beta_0_rear_elbow_down = np.maximum(t533, t172)
+    t534 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t536 = v_2_beta_rear_elbow_down * (t535 / total_beta_0_rear_elbow_down)
-    del t535, total_beta_0_rear_elbow_down
-    t537 = t530 - t536
-    del t536
-    left_along_rear_elbow_down = L1 - np.abs(t537)
-    t538 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t539 = np.maximum(-t538, left_along_rear_elbow_down)
-    del t538
-    spent_along_rear_elbow_down = t539 <= t177
-    del t177, t539
-    t540 = _runtime.select(spent_along_rear_elbow_down, t528 / (t178 - t525), 0.0)
-    del t178, t528
-    t541 = -(_runtime.FEASIBILITY * (play * (1.0 + t540)))
-    del play, t540
-    t542 = t526 & (t148 <= t533) & (t148 <= t534) & (t541 <= left_along_rear_elbow_down)
-    del t526, t533, t534, t541
-    t543 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t535 = v_2_beta_rear_elbow_down * (t534 / total_beta_0_rear_elbow_down)
+    del t534, total_beta_0_rear_elbow_down
+    t536 = t529 - t535
+    del t535
+    left_along_rear_elbow_down = L1 - np.abs(t536)
+    t537 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t538 = np.maximum(-t537, left_along_rear_elbow_down)
+    del t537
+    spent_along_rear_elbow_down = t538 <= t176
+    del t176, t538
+    t539 = _runtime.select(spent_along_rear_elbow_down, t527 / (t177 - t524), 0.0)
+    del t177, t527
+    t540 = -(_runtime.FEASIBILITY * (play * (1.0 + t539)))
+    del play, t539
+    t541 = t525 & (t147 <= t532) & (t147 <= t533) & (t540 <= left_along_rear_elbow_down)
+    del t525, t532, t533, t540
+    t542 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t544 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t545 = v_2_beta_rear_elbow_down * t543 / (t525 * t525 + t544)
-    del t525, t543, t544
-    t546 = whole_y_rear_elbow_down * (t545 * _runtime.sign(-t537))
-    del t537, t545
-    t547 = _runtime.select(spent_along_rear_elbow_down, t532 + t546, t532)
-    del t532, t546
-    t548 = whole_y_rear_elbow_down + t547
-    t549 = whole_y_rear_elbow_down - t547
-    del t547, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t548, t173)
-    above_beta_rear_elbow_down = np.maximum(t549, t173)
-    t550 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t543 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t544 = v_2_beta_rear_elbow_down * t542 / (t524 * t524 + t543)
+    del t524, t542, t543
+    t545 = whole_y_rear_elbow_down * (t544 * _runtime.sign(-t536))
+    del t536, t544
+    t546 = _runtime.select(spent_along_rear_elbow_down, t531 + t545, t531)
+    del t531, t545
+    t547 = whole_y_rear_elbow_down + t546
+    t548 = whole_y_rear_elbow_down - t546
+    del t546, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t547, t172)
+    above_beta_rear_elbow_down = np.maximum(t548, t172)
+    t549 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t551 = 1.0 / total_beta_rear_elbow_down
+    t550 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t552 = t550 * t551
-    del t550
-    t553 = t530 - v_2_beta_rear_elbow_down * t552
-    del t530, v_2_beta_rear_elbow_down
-    t554 = L1 + t553
-    t555 = t542 & (t148 <= t548) & (t148 <= t549) & (t148 <= t554)
-    del t542, t548, t549
-    t556 = L1 - t553
-    unreachable_4 = np.logical_not(t555 & (t148 <= t556))
-    del t148, t555
-    t557 = _runtime.poison(invalid | unreachable_4)
-    t558 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t551 = t549 * t550
+    del t549
+    t552 = t529 - v_2_beta_rear_elbow_down * t551
+    del t529, v_2_beta_rear_elbow_down
+    t553 = L1 + t552
+    t554 = t541 & (t147 <= t547) & (t147 <= t548) & (t147 <= t553)
+    del t541, t547, t548
+    t555 = L1 - t552
+    unreachable_4 = np.logical_not(t554 & (t147 <= t555))
+    del t147, t554
+    t556 = _runtime.poison(invalid | unreachable_4)
+    t557 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t559 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t558 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t560 = _runtime.select(folded, 0.0, t558) + t559
-    del t558
-    below_alpha_rear_elbow_down = np.maximum(t554, t173)
-    del t554
-    above_alpha_rear_elbow_down = np.maximum(t556, t173)
-    del t173, t556
-    t561 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t559 = _runtime.select(folded, 0.0, t557) + t558
+    del t557
+    below_alpha_rear_elbow_down = np.maximum(t553, t172)
+    del t553
+    above_alpha_rear_elbow_down = np.maximum(t555, t172)
+    del t172, t555
+    t560 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t562 = 1.0 / total_alpha_rear_elbow_down
+    t561 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t563 = t561 * t562
-    del t561
-    t564 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t562 = t560 * t561
+    del t560
+    t563 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t565 = np.arctan2(t563, t562 * t564)
-    del t562, t564
-    t566 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    t564 = np.arctan2(t562, t561 * t563)
+    del t561, t563
+    t565 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t567 = t566 + (t204 - t559)
-    del t204, t559, t566
-    t568 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t566 = t565 + (t203 - t558)
+    del t203, t558, t565
+    t567 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t569 = t565 - np.arctan2(t552, t551 * t568)
-    del t551, t568
-    t570 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t568 = t564 - np.arctan2(t551, t550 * t567)
+    del t550, t567
+    t569 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t571 = t570 | folded | short
-    del folded, short, t570
-    t572 = spent_along | spent_alpha | spent_beta
+    t570 = t569 | folded | short
+    del folded, short, t569
+    t571 = spent_along | spent_alpha | spent_beta
     del spent_along, spent_alpha, spent_beta
-    t573 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t574 = t573 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    t572 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t573 = t572 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t572
+    t574 = t573 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
     del t573
-    t575 = t574 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t574
-    t576 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t575 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t577 = t575 * t576
-    del t575, t576
-    t578 = np.abs(p_1_beta + v_1_beta * t188) + np.abs(t189 - L1 * t198)
-    del p_1_beta, t188, t189, t198, v_1_beta
-    t579 = 1125899906842624.0 * _runtime.select(t572, t578, 0.0)
-    del t578
-    t580 = _runtime.select(t572, t577, 1.0) <= _runtime.DETERMINED * t579
-    del t572, t579
-    t581 = _runtime.status(invalid, unreachable, t571 | parallel | t580)
-    del parallel, t580, unreachable
-    t582 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t576 = t574 * t575
+    del t574, t575
+    t577 = np.abs(p_1_beta + v_1_beta * t187) + np.abs(t188 - L1 * t197)
+    del p_1_beta, t187, t188, t197, v_1_beta
+    t578 = 1125899906842624.0 * _runtime.select(t571, t577, 0.0)
+    del t577
+    t579 = _runtime.select(t571, t576, 1.0) <= _runtime.DETERMINED * t578
+    del t571, t578
+    t580 = _runtime.status(invalid, unreachable, t570 | parallel | t579)
+    del parallel, t579, unreachable
+    t581 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
     del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t583 = t582 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t582
-    t584 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t321
-    del p_1_beta_front_elbow_down, t321, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t583, np.abs(t584) + np.abs(t322 - L1 * t332), 0.0)
-    del t322, t332, t584
-    t585 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t582 = t581 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t581
+    t583 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t320
+    del p_1_beta_front_elbow_down, t320, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t582, np.abs(t583) + np.abs(t321 - L1 * t331), 0.0)
+    del t321, t331, t583
+    t584 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t586 = t571 | parallel_front_elbow_down | (_runtime.select(t583, t577, 1.0) <= t585)
-    del parallel_front_elbow_down, t583, t585
-    t587 = _runtime.status(invalid, unreachable_2, t586)
-    del t586, unreachable_2
-    t588 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t585 = t570 | parallel_front_elbow_down | (_runtime.select(t582, t576, 1.0) <= t584)
+    del parallel_front_elbow_down, t582, t584
+    t586 = _runtime.status(invalid, unreachable_2, t585)
+    del t585, unreachable_2
+    t587 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
     del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t589 = t588 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t588
-    t590 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t437
-    del p_1_beta_rear_elbow_up, t437, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t589, np.abs(t590) + np.abs(t438 - L1 * t448), 0.0)
-    del t438, t448, t590
-    t591 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t588 = t587 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t587
+    t589 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t436
+    del p_1_beta_rear_elbow_up, t436, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t588, np.abs(t589) + np.abs(t437 - L1 * t447), 0.0)
+    del t437, t447, t589
+    t590 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t592 = t571 | parallel_rear_elbow_up | (_runtime.select(t589, t577, 1.0) <= t591)
-    del parallel_rear_elbow_up, t589, t591
-    t593 = _runtime.status(invalid, unreachable_3, t592)
-    del t592, unreachable_3
-    t594 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t591 = t570 | parallel_rear_elbow_up | (_runtime.select(t588, t576, 1.0) <= t590)
+    del parallel_rear_elbow_up, t588, t590
+    t592 = _runtime.status(invalid, unreachable_3, t591)
+    del t591, unreachable_3
+    t593 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
     del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t595 = t594 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t594
-    t596 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t552
-    del p_1_beta_rear_elbow_down, t552, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t595, np.abs(t596) + np.abs(t553 - L1 * t563), 0.0)
-    del t553, t563, t596
-    t597 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t594 = t593 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t593
+    t595 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t551
+    del p_1_beta_rear_elbow_down, t551, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t594, np.abs(t595) + np.abs(t552 - L1 * t562), 0.0)
+    del t552, t562, t595
+    t596 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t598 = t571 | parallel_rear_elbow_down | (_runtime.select(t595, t577, 1.0) <= t597)
-    del parallel_rear_elbow_down, t571, t577, t595, t597
-    t599 = _runtime.status(invalid, unreachable_4, t598)
-    del invalid, t598, unreachable_4
+    t597 = t570 | parallel_rear_elbow_down | (_runtime.select(t594, t576, 1.0) <= t596)
+    del parallel_rear_elbow_down, t570, t576, t594, t596
+    t598 = _runtime.status(invalid, unreachable_4, t597)
+    del invalid, t597, unreachable_4
     return (
-        t56 + t193,
-        _runtime.wrap(t196 - t200) + t193,
-        _runtime.wrap(t205 + t207) + t193,
-        _runtime.wrap(t196 + t200) + t193,
-        _runtime.wrap(t205 - t207) + t193,
-        t208 + t193,
-        t56 + t326,
-        _runtime.wrap(t329 - t334) + t326,
-        _runtime.wrap(t337 + t339) + t326,
-        _runtime.wrap(t329 + t334) + t326,
-        _runtime.wrap(t337 - t339) + t326,
-        t208 + t326,
-        t340 + t442,
-        _runtime.wrap(t445 - t450) + t442,
-        _runtime.wrap(t452 + t454) + t442,
-        _runtime.wrap(t445 + t450) + t442,
-        _runtime.wrap(t452 - t454) + t442,
-        t208 + t442,
-        t340 + t557,
-        _runtime.wrap(t560 - t565) + t557,
-        _runtime.wrap(t567 + t569) + t557,
-        _runtime.wrap(t560 + t565) + t557,
-        _runtime.wrap(t567 - t569) + t557,
-        t208 + t557,
-        t581,
-        t587,
-        t593,
-        t599,
+        t55 + t192,
+        _runtime.wrap(t195 - t199) + t192,
+        _runtime.wrap(t204 + t206) + t192,
+        _runtime.wrap(t195 + t199) + t192,
+        _runtime.wrap(t204 - t206) + t192,
+        t207 + t192,
+        t55 + t325,
+        _runtime.wrap(t328 - t333) + t325,
+        _runtime.wrap(t336 + t338) + t325,
+        _runtime.wrap(t328 + t333) + t325,
+        _runtime.wrap(t336 - t338) + t325,
+        t207 + t325,
+        t339 + t441,
+        _runtime.wrap(t444 - t449) + t441,
+        _runtime.wrap(t451 + t453) + t441,
+        _runtime.wrap(t444 + t449) + t441,
+        _runtime.wrap(t451 - t453) + t441,
+        t207 + t441,
+        t339 + t556,
+        _runtime.wrap(t559 - t564) + t556,
+        _runtime.wrap(t566 + t568) + t556,
+        _runtime.wrap(t559 + t564) + t556,
+        _runtime.wrap(t566 - t568) + t556,
+        t207 + t556,
+        t580,
+        t586,
+        t592,
+        t598,
     )
 
 
@@ -2957,470 +2956,442 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t3)
     del t3
     lengths = L1 + d1 + d + loff + lp + t2 + t19
-    del t19
+    del t19, t2
     t_phi = s_phi / c_phi
     higher = d * t_phi
-    t25 = np.abs(t_phi * higher)
-    del t_phi
     t_psi = s_psi * t6
     del s_psi, t6
     ahead = d * t_psi
-    t26 = np.abs(t_psi * ahead)
-    del t_psi
-    t27 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t25 * 6.103515625e-05
-    t28 = al * (t2 + t25 + t26) / (t27 + t26 * 6.103515625e-05 + 512.0 * wrist)
-    del t2, t27
-    t29 = _runtime.select(wrist < al * 0.0009765625, t28, 0.0)
-    del t28
-    far_apart = t25 * 0.001953125 + t26 * 0.001953125 + t29
-    del t25, t26, t29
+    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
+    del t_phi, t_psi
     slack = lengths * 0.25 + far_apart
-    t30 = -(_runtime.FEASIBILITY * slack)
-    t31 = t24 & (t23 <= t4) & (t30 <= t11) & (t30 <= t10)
-    del t10, t11, t23, t24, t30, t4
+    t25 = -(_runtime.FEASIBILITY * slack)
+    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t10)
+    del t10, t11, t23, t24, t25, t4
     L_2W = L2 + c_psi * t7
     del c_psi, t7
     a_3W = a3 + c_phi * t1 + s_phi * t8
     del c_phi, s_phi, t1, t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t32 = 2.0 * fore
-    t33 = _runtime.FEASIBILITY * ((L1 * 2.0 + t32) * slack)
-    t34 = L1 + fore
-    t35 = t34 * t34
-    t36 = z - d1
-    square = t36 * t36 + root * root
-    t37 = t35 - square
-    t38 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t39 = L1 - fore
-    t40 = _runtime.FEASIBILITY * ((t38 + 2.0 * np.abs(t39)) * slack)
-    del t38
-    t41 = square - t39 * t39
+    t27 = 2.0 * fore
+    t28 = _runtime.FEASIBILITY * ((L1 * 2.0 + t27) * slack)
+    t29 = L1 + fore
+    t30 = t29 * t29
+    t31 = z - d1
+    square = t31 * t31 + root * root
+    t32 = t30 - square
+    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t34 = L1 - fore
+    t35 = _runtime.FEASIBILITY * ((t33 + 2.0 * np.abs(t34)) * slack)
+    del t33
+    t36 = square - t34 * t34
     del square
-    t42 = t31 & (-t33 <= t37) & (-t40 <= t41)
-    del t31, t33, t40
-    t43 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
-    play = t43 + far_apart + lengths * 0.00048828125
-    del far_apart, t43
+    t37 = t26 & (-t28 <= t32) & (-t35 <= t36)
+    del t26, t28, t35
+    t38 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
+    play = t38 + lengths * 0.00048828125 + far_apart
+    del far_apart, t38
     play_alpha = np.sqrt(L2 * L2 + a3 * a3) * play
-    t44 = -(_runtime.FEASIBILITY * play_alpha)
-    t45 = 1.0 / fore
-    c_lag = a_3W * t45
-    M = np.maximum(t41, 0.0)
-    del t41
-    N = np.maximum(t37, 0.0)
-    del t37
-    t46 = 1.0 / (M + N)
-    t47 = M - N
-    c_bend = t46 * t47
-    t48 = c_lag * c_bend
-    s_lag = L_2W * t45
-    del t45
-    t49 = 2.0 * np.sqrt(M * N)
+    t39 = -(_runtime.FEASIBILITY * play_alpha)
+    t40 = 1.0 / fore
+    c_lag = a_3W * t40
+    M = np.maximum(t36, 0.0)
+    del t36
+    N = np.maximum(t32, 0.0)
+    del t32
+    t41 = 1.0 / (M + N)
+    t42 = M - N
+    c_bend = t41 * t42
+    t43 = c_lag * c_bend
+    s_lag = L_2W * t40
+    del t40
+    t44 = 2.0 * np.sqrt(M * N)
     del N
-    s_bend_front_elbow_down = t46 * t49
-    t50 = s_lag * s_bend_front_elbow_down
-    c_relative = t48 + t50
-    t51 = s_lag * c_bend
+    s_bend_front_elbow_down = t41 * t44
+    t45 = s_lag * s_bend_front_elbow_down
+    c_relative = t43 + t45
+    t46 = s_lag * c_bend
     del c_bend, s_lag
-    t52 = c_lag * s_bend_front_elbow_down
+    t47 = c_lag * s_bend_front_elbow_down
     del c_lag
-    s_relative = t51 - t52
+    s_relative = t46 - t47
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
-    t53 = np.abs(whole_alpha)
-    t54 = fore * s_bend_front_elbow_down
+    t48 = np.abs(whole_alpha)
+    t49 = fore * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    t55 = root * t54
-    ahead_1 = t39 + t32 * M * t46
-    del M, t32, t39, t46
-    t56 = t36 * ahead_1
-    up = t55 + t56
-    t57 = t36 * t54
-    del t54
-    t58 = root * ahead_1
+    t50 = root * t49
+    ahead_1 = t34 + t27 * M * t41
+    del M, t27, t34, t41
+    t51 = t31 * ahead_1
+    up = t50 + t51
+    t52 = t31 * t49
+    del t49
+    t53 = root * ahead_1
     del ahead_1
-    out_rear_elbow_up = t57 - t58
-    t59 = out_rear_elbow_up * out_rear_elbow_up + up * up
-    t60 = 1.0 / np.sqrt(t59)
-    del t59
-    stheta2A = up * t60
-    t61 = ahead * stheta2A
-    t62 = out_rear_elbow_up * t60
-    del t60
-    t63 = higher * t62
-    t64 = t61 + t63
+    out_rear_elbow_up = t52 - t53
+    t54 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t55 = 1.0 / np.sqrt(t54)
+    del t54
+    stheta2A = up * t55
+    t56 = ahead * stheta2A
+    t57 = out_rear_elbow_up * t55
+    del t55
+    t58 = higher * t57
+    t59 = t56 + t58
     v_2 = L2 * s_relative + a3 * c_relative
     del c_relative, s_relative
-    t65 = ahead * t62
-    del t62
-    t66 = higher * stheta2A
+    t60 = ahead * t57
+    del t57
+    t61 = higher * stheta2A
     del stheta2A
-    t67 = t65 - t66
-    margin_alpha = t53 - np.abs(v_1 * t64 - v_2 * t67)
+    t62 = t60 - t61
+    margin_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
     play_beta = L1 * play
-    t68 = -(_runtime.FEASIBILITY * play_beta)
-    margin_beta = t53 - np.abs(-(L1 * t67))
-    t69 = t42 & (t44 <= margin_alpha) & (t68 <= margin_beta)
-    t70 = -(_runtime.FEASIBILITY * play)
+    t63 = -(_runtime.FEASIBILITY * play_beta)
+    margin_beta = t48 - np.abs(-(L1 * t62))
+    t64 = t37 & (t39 <= margin_alpha) & (t63 <= margin_beta)
+    t65 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t71 = v_1 * sigma_uv
-    p_across_u = sigma_uv * t67
-    del t67
-    t72 = -(t71 + p_across_u)
-    t73 = t70 <= t72
-    t74 = p_across_u - t71
+    t66 = v_1 * sigma_uv
+    p_across_u = sigma_uv * t62
+    del t62
+    t67 = -(t66 + p_across_u)
+    t68 = t65 <= t67
+    t69 = p_across_u - t66
     del p_across_u
-    t75 = t70 <= t74
-    t76 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t72, t76)
-    del t72
-    above_beta_0 = np.maximum(t74, t76)
-    del t74
-    t77 = 1.0 / (below_beta_0 + above_beta_0)
-    t78 = (below_beta_0 - above_beta_0) * t77
-    t79 = t64 - v_2 * t78
-    del t64
-    left_along = L1 - np.abs(t79)
-    t80 = t69 & t73 & t75 & t73 & t75 & (t70 <= left_along)
+    t70 = t65 <= t69
+    t71 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t67, t71)
+    del t67
+    above_beta_0 = np.maximum(t69, t71)
     del t69
-    t81 = L1 + t79
-    t82 = L1 - t79
+    t72 = below_beta_0 - above_beta_0
+    t73 = t59 - v_2 * (t72 / (below_beta_0 + above_beta_0))
+    del t59
+    left_along = L1 - np.abs(t73)
+    t74 = t64 & t68 & t70 & t68 & t70 & (t65 <= left_along)
+    del t64
+    t75 = L1 + t73
+    t76 = L1 - t73
+    del t73
+    t77 = t74 & t68 & t70 & (t65 <= t75) & (t65 <= t76)
+    del t68, t70, t74
+    unreachable = np.logical_not(t77)
+    del t77
+    t78 = _runtime.poison(invalid | unreachable)
+    t79 = np.arctan2(0.0, 1.0)
+    t80 = t79 + t79
     del t79
-    t83 = t80 & t73 & t75 & (t70 <= t81) & (t70 <= t82)
-    del t73, t75, t80
-    unreachable = np.logical_not(t83)
+    t81 = t80 + np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t75, t71)
+    del t75
+    above_alpha = np.maximum(t76, t71)
+    del t76
+    t82 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    del above_alpha, below_alpha
+    t83 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
+    del above_beta_0, below_beta_0, t72
+    t84 = t82 - t83
     del t83
-    t84 = _runtime.poison(invalid | unreachable)
-    t85 = np.arctan2(0.0, 1.0)
-    t86 = t85 + t85
-    del t85
-    t87 = t86 + np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t81, t76)
-    del t81
-    above_alpha = np.maximum(t82, t76)
-    del t82
-    t88 = 1.0 / (below_alpha + above_alpha)
-    t89 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t90 = np.arctan2((below_alpha - above_alpha) * t88, t88 * t89)
-    del above_alpha, below_alpha, t88, t89
-    t91 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
-    del above_beta_0, below_beta_0
-    t92 = t90 - np.arctan2(t78, t77 * t91)
-    del t77, t78, t91
-    t93 = np.arctan2(t49, t47)
-    del t47, t49
-    t94 = np.arctan2(L_2W, a_3W)
+    t85 = np.arctan2(t44, t42)
+    del t42, t44
+    t86 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t95 = t93 - t94
-    t96 = _runtime.wrap(principal_pitch)
+    t87 = t85 - t86
+    t88 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    c_relative_front_elbow_down = t48 - t50
-    del t48, t50
-    s_relative_front_elbow_down = t51 + t52
-    del t51, t52
+    c_relative_front_elbow_down = t43 - t45
+    del t43, t45
+    s_relative_front_elbow_down = t46 + t47
+    del t46, t47
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t97 = np.abs(whole_alpha_front_elbow_down)
+    t89 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    out_front_elbow_down = t57 + t58
-    del t57, t58
-    t98 = t55 - t56
-    del t55, t56
-    t99 = out_front_elbow_down * out_front_elbow_down + t98 * t98
-    t100 = 1.0 / np.sqrt(t99)
-    del t99
-    ctheta2A_front_elbow_down = out_front_elbow_down * t100
-    t101 = ahead * ctheta2A_front_elbow_down
-    t102 = t98 * t100
-    del t100
-    t103 = higher * t102
-    p_1_front_elbow_down = t101 - t103
-    t104 = ahead * t102
-    del ahead, t102
-    t105 = higher * ctheta2A_front_elbow_down
+    out_front_elbow_down = t52 + t53
+    del t52, t53
+    t90 = t50 - t51
+    del t50, t51
+    t91 = out_front_elbow_down * out_front_elbow_down + t90 * t90
+    t92 = 1.0 / np.sqrt(t91)
+    del t91
+    ctheta2A_front_elbow_down = out_front_elbow_down * t92
+    t93 = ahead * ctheta2A_front_elbow_down
+    t94 = t90 * t92
+    del t92
+    t95 = higher * t94
+    p_1_front_elbow_down = t93 - t95
+    t96 = ahead * t94
+    del ahead, t94
+    t97 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t106 = t104 + t105
-    t107 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t106
-    margin_alpha_front_elbow_down = t97 - np.abs(t107)
-    del t107
-    margin_beta_front_elbow_down = t97 - np.abs(L1 * p_1_front_elbow_down)
-    t108 = t42 & (t44 <= margin_alpha_front_elbow_down) & (t68 <= margin_beta_front_elbow_down)
+    t98 = t96 + t97
+    t99 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t98
+    margin_alpha_front_elbow_down = t89 - np.abs(t99)
+    del t99
+    margin_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
+    t100 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t109 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t101 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t110 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t111 = t109 - t110
-    t112 = t70 <= t111
-    t113 = -(t110 + t109)
-    del t109
-    t114 = t70 <= t113
-    below_beta_0_front_elbow_down = np.maximum(t111, t76)
-    del t111
-    above_beta_0_front_elbow_down = np.maximum(t113, t76)
-    del t113
-    t115 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t102 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t103 = t101 - t102
+    t104 = t65 <= t103
+    t105 = -(t102 + t101)
+    del t101
+    t106 = t65 <= t105
+    below_beta_0_front_elbow_down = np.maximum(t103, t71)
+    del t103
+    above_beta_0_front_elbow_down = np.maximum(t105, t71)
+    del t105
+    t107 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t116 = 1.0 / total_beta_0_front_elbow_down
+    t108 = v_2_front_elbow_down * (t107 / total_beta_0_front_elbow_down)
     del total_beta_0_front_elbow_down
-    t117 = t115 * t116
-    del t115
-    along_u_front_elbow_down = t106 + v_2_front_elbow_down * t117
-    del t106
+    along_u_front_elbow_down = t98 + t108
+    del t108, t98
     left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t118 = t108 & t112 & t114 & t112 & t114 & (t70 <= left_along_front_elbow_down)
-    del t108
-    t119 = L1 - along_u_front_elbow_down
-    t120 = L1 + along_u_front_elbow_down
+    t109 = t100 & t104 & t106 & t104 & t106 & (t65 <= left_along_front_elbow_down)
+    del t100
+    t110 = L1 - along_u_front_elbow_down
+    t111 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t121 = t118 & t112 & t114 & (t70 <= t119) & (t70 <= t120)
-    del t112, t114, t118
-    unreachable_2 = np.logical_not(t121)
-    del t121
-    t122 = _runtime.poison(invalid | unreachable_2)
-    t123 = t86 + np.arctan2(-t98, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t119, t76)
-    del t119
-    above_alpha_front_elbow_down = np.maximum(t120, t76)
-    del t120
-    t124 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t125 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
-    t126 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t112 = t109 & t104 & t106 & (t65 <= t110) & (t65 <= t111)
+    del t104, t106, t109
+    unreachable_2 = np.logical_not(t112)
+    del t112
+    t113 = _runtime.poison(invalid | unreachable_2)
+    t114 = t80 + np.arctan2(-t90, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t110, t71)
+    del t110
+    above_alpha_front_elbow_down = np.maximum(t111, t71)
+    del t111
+    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t116 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t127 = np.arctan2(t124 * t125, t125 * t126)
-    del t124, t125, t126
-    t128 = t93 + t94
-    del t93, t94
-    t129 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
+    t117 = np.arctan2(t115, 2.0 * np.sqrt(t116))
+    del t115, t116
+    t118 = t85 + t86
+    del t85, t86
+    t119 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t130 = t127 - np.arctan2(t117, t116 * t129)
-    del t116, t117, t129
-    t131 = _runtime.wrap(-(t13 + t12))
+    t120 = t117 - np.arctan2(t107, 2.0 * np.sqrt(t119))
+    del t107, t119
+    t121 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t132 = t65 + t66
-    del t65, t66
-    t133 = t61 - t63
-    del t61, t63
-    t134 = v_2_front_elbow_down * t132 + v_1_front_elbow_down * t133
+    t122 = t60 + t61
+    del t60, t61
+    t123 = t56 - t58
+    del t56, t58
+    t124 = v_2_front_elbow_down * t122 + v_1_front_elbow_down * t123
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t97 - np.abs(t134)
-    del t134
-    margin_beta_rear_elbow_up = t97 - np.abs(L1 * t132)
-    del t97
-    t135 = t42 & (t44 <= margin_alpha_rear_elbow_up) & (t68 <= margin_beta_rear_elbow_up)
-    t136 = sigma_uv_front_elbow_down * t132
-    del sigma_uv_front_elbow_down, t132
-    t137 = t136 - t110
-    t138 = t70 <= t137
-    t139 = -(t110 + t136)
-    del t136
-    t140 = t70 <= t139
-    below_beta_0_rear_elbow_up = np.maximum(t137, t76)
-    del t137
-    above_beta_0_rear_elbow_up = np.maximum(t139, t76)
-    del t139
-    t141 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    margin_alpha_rear_elbow_up = t89 - np.abs(t124)
+    del t124
+    margin_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
+    del t89
+    t125 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
+    t126 = sigma_uv_front_elbow_down * t122
+    del sigma_uv_front_elbow_down, t122
+    t127 = t126 - t102
+    t128 = t65 <= t127
+    t129 = -(t102 + t126)
+    del t126
+    t130 = t65 <= t129
+    below_beta_0_rear_elbow_up = np.maximum(t127, t71)
+    del t127
+    above_beta_0_rear_elbow_up = np.maximum(t129, t71)
+    del t129
+    t131 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t142 = 1.0 / total_beta_0_rear_elbow_up
+    t132 = v_2_front_elbow_down * (t131 / total_beta_0_rear_elbow_up)
     del total_beta_0_rear_elbow_up
-    t143 = t141 * t142
-    del t141
-    t144 = t133 - v_2_front_elbow_down * t143
+    t133 = t123 - t132
+    del t123, t132
+    left_along_rear_elbow_up = L1 - np.abs(t133)
+    t134 = t125 & t128 & t130 & t128 & t130 & (t65 <= left_along_rear_elbow_up)
+    del t125
+    t135 = L1 + t133
+    t136 = L1 - t133
     del t133
-    left_along_rear_elbow_up = L1 - np.abs(t144)
-    t145 = t135 & t138 & t140 & t138 & t140 & (t70 <= left_along_rear_elbow_up)
-    del t135
-    t146 = L1 + t144
-    t147 = L1 - t144
-    del t144
-    t148 = t145 & t138 & t140 & (t70 <= t146) & (t70 <= t147)
-    del t138, t140, t145
-    unreachable_3 = np.logical_not(t148)
-    del t148
-    t149 = _runtime.poison(invalid | unreachable_3)
-    t150 = t86 + np.arctan2(up, out_rear_elbow_up)
+    t137 = t134 & t128 & t130 & (t65 <= t135) & (t65 <= t136)
+    del t128, t130, t134
+    unreachable_3 = np.logical_not(t137)
+    del t137
+    t138 = _runtime.poison(invalid | unreachable_3)
+    t139 = t80 + np.arctan2(up, out_rear_elbow_up)
     del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t146, t76)
-    del t146
-    above_alpha_rear_elbow_up = np.maximum(t147, t76)
-    del t147
-    t151 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t152 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t153 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    below_alpha_rear_elbow_up = np.maximum(t135, t71)
+    del t135
+    above_alpha_rear_elbow_up = np.maximum(t136, t71)
+    del t136
+    t140 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t141 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t154 = np.arctan2(t151 * t152, t152 * t153)
-    del t151, t152, t153
-    t155 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
+    t142 = np.arctan2(t140, 2.0 * np.sqrt(t141))
+    del t140, t141
+    t143 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t156 = t154 - np.arctan2(t143, t142 * t155)
-    del t142, t143, t155
-    t157 = t101 + t103
-    del t101, t103
-    t158 = t104 - t105
-    del t104, t105
-    margin_alpha_rear_elbow_down = t53 - np.abs(-(v_2 * t157 + v_1 * t158))
+    t144 = t142 - np.arctan2(t131, 2.0 * np.sqrt(t143))
+    del t131, t143
+    t145 = t93 + t95
+    del t93, t95
+    t146 = t96 - t97
+    del t96, t97
+    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
     del v_1
-    margin_beta_rear_elbow_down = t53 - np.abs(-(L1 * t157))
-    del t53
-    t159 = t42 & (t44 <= margin_alpha_rear_elbow_down) & (t68 <= margin_beta_rear_elbow_down)
-    del t42, t44, t68
-    p_across_u_rear_elbow_down = sigma_uv * t157
-    del sigma_uv, t157
-    t160 = -(t71 + p_across_u_rear_elbow_down)
-    t161 = t70 <= t160
-    t162 = p_across_u_rear_elbow_down - t71
+    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
+    del t48
+    t147 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
+    del t37, t39, t63
+    p_across_u_rear_elbow_down = sigma_uv * t145
+    del sigma_uv, t145
+    t148 = -(t66 + p_across_u_rear_elbow_down)
+    t149 = t65 <= t148
+    t150 = p_across_u_rear_elbow_down - t66
     del p_across_u_rear_elbow_down
-    t163 = t70 <= t162
-    below_beta_0_rear_elbow_down = np.maximum(t160, t76)
-    del t160
-    above_beta_0_rear_elbow_down = np.maximum(t162, t76)
-    del t162
-    t164 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t151 = t65 <= t150
+    below_beta_0_rear_elbow_down = np.maximum(t148, t71)
+    del t148
+    above_beta_0_rear_elbow_down = np.maximum(t150, t71)
+    del t150
+    t152 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    t165 = 1.0 / total_beta_0_rear_elbow_down
-    del total_beta_0_rear_elbow_down
-    t166 = t164 * t165
-    del t164
-    along_u_rear_elbow_down = t158 + v_2 * t166
-    del t158
+    along_u_rear_elbow_down = t146 + v_2 * (t152 / total_beta_0_rear_elbow_down)
+    del t146, total_beta_0_rear_elbow_down
     left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t167 = t159 & t161 & t163 & t161 & t163 & (t70 <= left_along_rear_elbow_down)
-    del t159
-    t168 = L1 - along_u_rear_elbow_down
-    t169 = L1 + along_u_rear_elbow_down
+    t153 = t147 & t149 & t151 & t149 & t151 & (t65 <= left_along_rear_elbow_down)
+    del t147
+    t154 = L1 - along_u_rear_elbow_down
+    t155 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t170 = t167 & t161 & t163 & (t70 <= t168) & (t70 <= t169)
-    del t161, t163, t167, t70
-    unreachable_4 = np.logical_not(t170)
-    del t170
-    t171 = _runtime.poison(invalid | unreachable_4)
-    t172 = t86 + np.arctan2(-t98, -out_front_elbow_down)
-    del out_front_elbow_down, t86, t98
-    below_alpha_rear_elbow_down = np.maximum(t168, t76)
-    del t168
-    above_alpha_rear_elbow_down = np.maximum(t169, t76)
-    del t169, t76
-    t173 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t174 = 1.0 / total_alpha_rear_elbow_down
-    del total_alpha_rear_elbow_down
-    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t156 = t153 & t149 & t151 & (t65 <= t154) & (t65 <= t155)
+    del t149, t151, t153, t65
+    unreachable_4 = np.logical_not(t156)
+    del t156
+    t157 = _runtime.poison(invalid | unreachable_4)
+    t158 = t80 + np.arctan2(-t90, -out_front_elbow_down)
+    del out_front_elbow_down, t80, t90
+    below_alpha_rear_elbow_down = np.maximum(t154, t71)
+    del t154
+    above_alpha_rear_elbow_down = np.maximum(t155, t71)
+    del t155, t71
+    t159 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t160 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t176 = np.arctan2(t173 * t174, t174 * t175)
-    del t173, t174, t175
-    t177 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
+    t161 = np.arctan2(t159, 2.0 * np.sqrt(t160))
+    del t159, t160
+    t162 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t178 = t176 - np.arctan2(t166, t165 * t177)
-    del t165, t166, t177
-    t179 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
-    del wrist
-    t180 = _runtime.status(invalid, unreachable_2, t179)
+    t163 = t161 - np.arctan2(t152, 2.0 * np.sqrt(t162))
+    del t152, t162
+    t164 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
+    t165 = _runtime.status(invalid, unreachable_2, t164)
     del unreachable_2
-    t181 = _runtime.status(invalid, unreachable_3, t179)
+    t166 = _runtime.status(invalid, unreachable_3, t164)
     del unreachable_3
-    t182 = _runtime.status(invalid, unreachable_4, t179)
+    t167 = _runtime.status(invalid, unreachable_4, t164)
     del unreachable_4
-    t183 = h * slack
+    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
+    del wrist
+    t168 = h * slack
     del slack
-    tangent = 4.0 * root * t34 - t183 * 0.00390625 <= _runtime.VANISHING * t183
-    del t183
-    t184 = tangent | (h <= _runtime.VANISHING * lengths)
-    del h, lengths, tangent
-    t185 = t184 | (L1 * fore <= _runtime.VANISHING * t35)
-    del t184, t35
-    t186 = _runtime.VANISHING * t34
-    del t34
-    t187 = t185 | (np.abs(t36) + np.abs(root) <= t186) | (fore <= t186)
-    del fore, root, t185, t186, t36
-    t188 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    tangent = 4.0 * root * t29 - t168 * 0.00390625 <= _runtime.VANISHING * t168
+    del t168
+    t169 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, stretched, tangent
+    t170 = t169 | (L1 * fore <= _runtime.VANISHING * t30)
+    del t169, t30
+    t171 = _runtime.VANISHING * t29
+    del t29
+    t172 = t170 | (np.abs(t31) + np.abs(root) <= t171) | (fore <= t171)
+    del fore, root, t170, t171, t31
+    t173 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t189 = _runtime.VANISHING * play_alpha
+    t174 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t190 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t175 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t191 = _runtime.VANISHING * play_beta
+    t176 = _runtime.VANISHING * play_beta
     del play_beta
-    parallel = -t71 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t71, v_2
-    t192 = t187 | (t188 <= t189) | (t190 <= t191) | parallel
-    del parallel, t187, t188, t190
-    t193 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t66, v_2
+    t177 = t172 | (t173 <= t174) | (t175 <= t176) | parallel
+    del parallel, t172, t173, t175
+    t178 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t194 = _runtime.VANISHING * play
+    t179 = _runtime.VANISHING * play
     del play
-    t195 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t196 = np.maximum(-t195, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t195
-    t197 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t198 = np.maximum(-t197, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t197
-    t199 = t192 | (t193 <= t194) | (t196 <= t189) | (t198 <= t191)
-    del t192, t193, t196, t198
-    t200 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t180
+    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t182
+    t184 = t177 | (t178 <= t179) | (t181 <= t174) | (t183 <= t176)
+    del t177, t178, t181, t183
+    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t201 = left_along_front_elbow_down * 9.094947017729282e-13
-    t202 = np.maximum(-t201, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t201
-    t203 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t204 = np.maximum(-t203, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t203
-    t205 = t199 | (-t110 <= t200) | (t202 <= t194) | (t204 <= t189)
-    del t110, t199, t200, t202, t204
-    t206 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t206, margin_beta_rear_elbow_up) <= t191
-    del margin_beta_rear_elbow_up, t206
-    t207 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t207, left_along_rear_elbow_up) <= t194
-    del left_along_rear_elbow_up, t207
-    t208 = t205 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t205
-    t209 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t210 = np.maximum(-t209, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t209
-    t211 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t212 = np.maximum(-t211, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t211
-    t213 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t214 = np.maximum(-t213, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t213
-    t215 = t208 | (t210 <= t189) | (t212 <= t191) | (t214 <= t194)
-    del t189, t191, t194, t208, t210, t212, t214
+    t186 = left_along_front_elbow_down * 9.094947017729282e-13
+    t187 = np.maximum(-t186, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t186
+    t188 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t189 = np.maximum(-t188, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t188
+    t190 = t184 | (-t102 <= t185) | (t187 <= t179) | (t189 <= t174)
+    del t102, t184, t185, t187, t189
+    t191 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t191, margin_beta_rear_elbow_up) <= t176
+    del margin_beta_rear_elbow_up, t191
+    t192 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t192, left_along_rear_elbow_up) <= t179
+    del left_along_rear_elbow_up, t192
+    t193 = t190 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t190
+    t194 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t195 = np.maximum(-t194, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t194
+    t196 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t197 = np.maximum(-t196, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t196
+    t198 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t199 = np.maximum(-t198, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t198
+    t200 = t193 | (t195 <= t174) | (t197 <= t176) | (t199 <= t179)
+    del t174, t176, t179, t193, t195, t197, t199
     return (
-        t14 + t84,
-        _runtime.wrap(t87 - t90) + t84,
-        _runtime.wrap(t92 - t95) + t84,
-        _runtime.wrap(t87 + t90) + t84,
-        _runtime.wrap(-(t95 + t92)) + t84,
-        t96 + t84,
-        t14 + t122,
-        _runtime.wrap(t123 - t127) + t122,
-        _runtime.wrap(t128 + t130) + t122,
-        _runtime.wrap(t123 + t127) + t122,
-        _runtime.wrap(t128 - t130) + t122,
-        t96 + t122,
-        t131 + t149,
-        _runtime.wrap(t150 - t154) + t149,
-        _runtime.wrap(t128 + t156) + t149,
-        _runtime.wrap(t150 + t154) + t149,
-        _runtime.wrap(t128 - t156) + t149,
-        t96 + t149,
-        t131 + t171,
-        _runtime.wrap(t172 - t176) + t171,
-        _runtime.wrap(t178 - t95) + t171,
-        _runtime.wrap(t172 + t176) + t171,
-        _runtime.wrap(-(t95 + t178)) + t171,
-        t96 + t171,
-        _runtime.status(invalid, unreachable, t179),
-        t180,
-        t181,
-        t182,
-        t215,
+        t14 + t78,
+        _runtime.wrap(t81 - t82) + t78,
+        _runtime.wrap(t84 - t87) + t78,
+        _runtime.wrap(t81 + t82) + t78,
+        _runtime.wrap(-(t87 + t84)) + t78,
+        t88 + t78,
+        t14 + t113,
+        _runtime.wrap(t114 - t117) + t113,
+        _runtime.wrap(t118 + t120) + t113,
+        _runtime.wrap(t114 + t117) + t113,
+        _runtime.wrap(t118 - t120) + t113,
+        t88 + t113,
+        t121 + t138,
+        _runtime.wrap(t139 - t142) + t138,
+        _runtime.wrap(t118 + t144) + t138,
+        _runtime.wrap(t139 + t142) + t138,
+        _runtime.wrap(t118 - t144) + t138,
+        t88 + t138,
+        t121 + t157,
+        _runtime.wrap(t158 - t161) + t157,
+        _runtime.wrap(t163 - t87) + t157,
+        _runtime.wrap(t158 + t161) + t157,
+        _runtime.wrap(-(t87 + t163)) + t157,
+        t88 + t157,
+        _runtime.status(invalid, unreachable, t164),
+        t165,
+        t166,
+        t167,
+        t200,
     )
 
 

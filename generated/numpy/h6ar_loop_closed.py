@@ -12,9 +12,9 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 865 compare and select, 641 add, 28 atan2, 161 divide, 911 multiply, 1 reduce to a turn, 3
+#   ik: 865 compare and select, 642 add, 28 atan2, 161 divide, 912 multiply, 1 reduce to a turn, 3
 #     sincos, 41 sqrt
-#   ik where nothing vanishes: 285 compare and select, 269 add, 23 atan2, 41 divide, 339 multiply,
+#   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 338 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -2085,2090 +2085,2089 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del s_psi
     t19 = np.abs(t_psi * base)
     del base
+    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     t20 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t18 * 6.103515625e-05
     t21 = al * (t1 + t18 + t19) / (t20 + t19 * 6.103515625e-05 + 512.0 * wrist)
     del t20
-    t22 = _runtime.select(wrist < al * 0.0009765625, t21, 0.0)
-    del t21
-    far_apart = t18 * 0.001953125 + t19 * 0.001953125 + t22
-    del t18, t19, t22
+    far_apart = t18 * 0.001953125 + t19 * 0.001953125 + _runtime.select(stretched, t21, 0.0)
+    del stretched, t18, t19, t21
     slack = lengths * 0.25 + far_apart
-    t23 = h * slack
+    t22 = h * slack
     del h
-    tangent = 4.0 * root * t16 - t23 * 0.00390625 <= _runtime.VANISHING * t23
-    t24 = L1 - fore
-    t25 = t24 * t24
-    t26 = z - d1
-    t27 = t26 * t26
-    t28 = t16 * t16
-    wanted = np.maximum(np.maximum(0.0, t25 - t27), np.minimum(t15, t28 - t27))
-    t29 = 8796093022208.0 * np.abs(t15 - wanted) <= t23
-    del t23
-    t30 = np.sqrt(_runtime.select(t29, wanted, t15))
-    del t15, t29, wanted
-    t31 = _runtime.select(tangent, np.arctan2(t30, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    tangent = 4.0 * root * t16 - t22 * 0.00390625 <= _runtime.VANISHING * t22
+    t23 = L1 - fore
+    t24 = t23 * t23
+    t25 = z - d1
+    t26 = t25 * t25
+    t27 = t16 * t16
+    wanted = np.maximum(np.maximum(0.0, t24 - t26), np.minimum(t15, t27 - t26))
+    t28 = 8796093022208.0 * np.abs(t15 - wanted) <= t22
+    del t22
+    t29 = np.sqrt(_runtime.select(t28, wanted, t15))
+    del t15, t28, wanted
+    t30 = _runtime.select(tangent, np.arctan2(t29, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below
-    t32 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t31))
-    t33 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t34 = t33 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t31 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t30))
+    t32 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t33 = t32 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t32
+    t34 = t33 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t33
-    t35 = t34 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t34
-    t36 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t37 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    t35 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t36 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
     del t2
-    t38 = t35 & (0.0 <= loff) & (0.0 <= lp) & t36 & (t37 <= _runtime.ROTATION)
-    del t35, t36, t37
-    invalid = np.logical_not(t38)
-    del t38
-    t39 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t5) * 0.001953125
+    t37 = t34 & (0.0 <= loff) & (0.0 <= lp) & t35 & (t36 <= _runtime.ROTATION)
+    del t34, t35, t36
+    invalid = np.logical_not(t37)
+    del t37
+    t38 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t5) * 0.001953125
     del c_psi, s_phi, t5
-    t40 = _runtime.FEASIBILITY * (t1 * (t39 + 1.015625 * t6))
-    del t1, t39, t6
-    t41 = (-_runtime.FEASIBILITY <= c_phi) & (-t40 <= t8)
+    t39 = _runtime.FEASIBILITY * (t1 * (t38 + 1.015625 * t6))
+    del t1, t38, t6
+    t40 = (-_runtime.FEASIBILITY <= c_phi) & (-t39 <= t8)
     del c_phi, t8
-    t42 = -(_runtime.FEASIBILITY * slack)
-    t43 = t41 & (-t40 <= t9) & (t42 <= t14) & (t42 <= t13)
-    del t13, t14, t40, t41, t42, t9
-    t44 = L1 * 2.0
-    t45 = 2.0 * fore
-    t46 = -(_runtime.FEASIBILITY * ((t44 + t45) * slack))
-    in_reach = _runtime.select(tangent, t30, root)
-    del root, t30, tangent
-    square = t27 + in_reach * in_reach
-    del t27
-    t47 = t28 - square
-    t48 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t49 = _runtime.FEASIBILITY * ((t48 + 2.0 * np.abs(t24)) * slack)
-    del t48
-    t50 = square - t25
-    del square, t25
-    t51 = t43 & (t46 <= t47) & (-t49 <= t50)
-    del t43, t46, t49
+    t41 = -(_runtime.FEASIBILITY * slack)
+    t42 = t40 & (-t39 <= t9) & (t41 <= t14) & (t41 <= t13)
+    del t13, t14, t39, t40, t41, t9
+    t43 = L1 * 2.0
+    t44 = 2.0 * fore
+    t45 = -(_runtime.FEASIBILITY * ((t43 + t44) * slack))
+    in_reach = _runtime.select(tangent, t29, root)
+    del root, t29, tangent
+    square = t26 + in_reach * in_reach
+    del t26
+    t46 = t27 - square
+    t47 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t48 = _runtime.FEASIBILITY * ((t47 + 2.0 * np.abs(t23)) * slack)
+    del t47
+    t49 = square - t24
+    del square, t24
+    t50 = t42 & (t45 <= t46) & (-t48 <= t49)
+    del t42, t45, t48
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     play = d * 0.25 + far_apart + lengths * 0.00048828125
     del far_apart
-    t52 = size * play
-    t53 = size * size
-    t54 = _runtime.VANISHING * t16
-    folded = np.abs(t26) + np.abs(in_reach) <= t54
-    short = L1 * fore <= _runtime.VANISHING * t28
-    del t28
-    M = np.maximum(t50, 0.0)
-    del t50
-    N = np.maximum(t47, 0.0)
-    del t47
-    t55 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t16, t24 + t45 * M * t55)
-    del t16, t24, t45
-    t56 = t26 * ahead_1
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t55 * (2.0 * np.sqrt(M * N)))
-    t57 = fore * s_bend_front_elbow_down_alike
-    t58 = in_reach * t57
-    up = t56 + t58
-    t59 = in_reach * ahead_1
+    t51 = size * play
+    t52 = size * size
+    t53 = _runtime.VANISHING * t16
+    folded = np.abs(t25) + np.abs(in_reach) <= t53
+    short = L1 * fore <= _runtime.VANISHING * t27
+    del t27
+    M = np.maximum(t49, 0.0)
+    del t49
+    N = np.maximum(t46, 0.0)
+    del t46
+    t54 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t16, t23 + t44 * M * t54)
+    del t16, t23, t44
+    t55 = t25 * ahead_1
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t54 * (2.0 * np.sqrt(M * N)))
+    t56 = fore * s_bend_front_elbow_down_alike
+    t57 = in_reach * t56
+    up = t55 + t57
+    t58 = in_reach * ahead_1
     del ahead_1, in_reach
-    t60 = t26 * t57
-    del t26, t57
-    out_2 = t59 - t60
-    t61 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    stheta2A = _runtime.select(folded, 0.0, up * t61)
+    t59 = t25 * t56
+    del t25, t56
+    out_2 = t58 - t59
+    t60 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    stheta2A = _runtime.select(folded, 0.0, up * t60)
     del up
     elbow_21 = L1 * stheta2A
-    t62 = out_2 * t61
-    del out_2, t61
-    ctheta2A = _runtime.select(folded, 1.0, t62)
-    bare = fore <= t54
-    del t54
-    t63 = 1.0 / fore
-    c_lag = _runtime.select(bare, 1.0, a_3W * t63)
-    c_bend = _runtime.select(short, 1.0, t55 * (M - N))
-    del M, N, t55
-    t64 = c_lag * c_bend
-    s_lag = _runtime.select(bare, 0.0, L_2W * t63)
-    del bare, t63
-    t65 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t64 + t65
-    t66 = s_lag * c_bend
+    t61 = out_2 * t60
+    del out_2, t60
+    ctheta2A = _runtime.select(folded, 1.0, t61)
+    bare = fore <= t53
+    del t53
+    t62 = 1.0 / fore
+    c_lag = _runtime.select(bare, 1.0, a_3W * t62)
+    c_bend = _runtime.select(short, 1.0, t54 * (M - N))
+    del M, N, t54
+    t63 = c_lag * c_bend
+    s_lag = _runtime.select(bare, 0.0, L_2W * t62)
+    del bare, t62
+    t64 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t63 + t64
+    t65 = s_lag * c_bend
     del c_bend, s_lag
-    t67 = c_lag * s_bend_front_elbow_down_alike
+    t66 = c_lag * s_bend_front_elbow_down_alike
     del c_lag, s_bend_front_elbow_down_alike
-    s_relative = t66 - t67
+    s_relative = t65 - t66
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     point_21 = elbow_21 - L2 * ctheta23A + a3 * stheta23A
-    t68 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A
-    t69 = d * t68
-    del t68
-    h_right_0 = point_21 - t69
+    t67 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A
+    t68 = d * t67
+    del t67
+    h_right_0 = point_21 - t68
     elbow_11 = L1 * ctheta2A
     point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A
-    t70 = t_phi * ctheta23A - t17 * (t_psi * stheta23A)
+    t69 = t_phi * ctheta23A - t17 * (t_psi * stheta23A)
     del ctheta23A, stheta23A
-    t71 = d * t70
-    del t70
-    r_right_0 = point_11 - t71
-    t72 = h_right_0 * h_right_0 + r_right_0 * r_right_0
-    gap = t71 * t71 + t69 * t69
-    t73 = gap * gap
-    t74 = L1 - fore_arm
-    t75 = t74 * t74
+    t70 = d * t69
+    del t69
+    r_right_0 = point_11 - t70
+    t71 = h_right_0 * h_right_0 + r_right_0 * r_right_0
+    gap = t70 * t70 + t68 * t68
+    t72 = gap * gap
+    t73 = L1 - fore_arm
+    t74 = t73 * t73
     straight_mid = L2 * s_relative + a3 * c_relative
-    t76 = 0.0 <= straight_mid
+    t75 = 0.0 <= straight_mid
     large_mid = fore_arm + np.abs(straight_mid)
-    t77 = L2 * c_relative - a3 * s_relative
-    small_mid = t77 * t77 / large_mid
-    M_mid = t44 * _runtime.select(t76, large_mid, small_mid)
-    t78 = gap + M_mid
-    t79 = 2.0 * point_11 * t71 + 2.0 * point_21 * t69
-    farther_right = _runtime.select(t53 * t72 < t73, t72 - t75, t78 - t79)
-    del t72
-    N_mid = t44 * _runtime.select(t76, small_mid, large_mid)
-    del large_mid, small_mid, t76
-    t80 = gap - N_mid
-    nearer_right = t79 - t80
+    t76 = L2 * c_relative - a3 * s_relative
+    small_mid = t76 * t76 / large_mid
+    M_mid = t43 * _runtime.select(t75, large_mid, small_mid)
+    t77 = gap + M_mid
+    t78 = 2.0 * point_11 * t70 + 2.0 * point_21 * t68
+    farther_right = _runtime.select(t52 * t71 < t72, t71 - t74, t77 - t78)
+    del t71
+    N_mid = t43 * _runtime.select(t75, small_mid, large_mid)
+    del large_mid, small_mid, t75
+    t79 = gap - N_mid
+    nearer_right = t78 - t79
     margin_right = np.minimum(farther_right, nearer_right)
-    t81 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
-    t82 = _runtime.VANISHING * t52
-    spent_right = t81 <= t82
-    del t81
-    t83 = _runtime.select(nearer_right <= farther_right, 1.0, -1.0)
-    t84 = (ctheta2A * h_right_0 - stheta2A * r_right_0) * t83
+    t80 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    t81 = _runtime.VANISHING * t51
+    spent_right = t80 <= t81
+    del t80
+    t82 = _runtime.select(nearer_right <= farther_right, 1.0, -1.0)
+    t83 = (ctheta2A * h_right_0 - stheta2A * r_right_0) * t82
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t85 = 2.0 * drawn
-    slope_right = t84 * t85
-    t86 = 1.4142135623730951 * np.sqrt(slack)
-    t87 = 1.0 / L1
-    t88 = 1.0 - t87 * drawn
-    t89 = t86 * np.sqrt(fore + L1 * (t88 * t88)) / 2000000.0
-    del t88
-    t90 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t91 = 1.0 / slack
+    t84 = 2.0 * drawn
+    slope_right = t83 * t84
+    t85 = 1.4142135623730951 * np.sqrt(slack)
+    t86 = 1.0 / L1
+    t87 = 1.0 - t86 * drawn
+    t88 = t85 * np.sqrt(fore + L1 * (t87 * t87)) / 2000000.0
+    del t87
+    t89 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t90 = 1.0 / slack
     del slack
-    t92 = (t89 + t90) * t91
-    del t89, t90
-    heavy_0_right = _runtime.select(spent_right, t92, 1.0)
+    t91 = (t88 + t89) * t90
+    del t88, t89
+    heavy_0_right = _runtime.select(spent_right, t91, 1.0)
     gain_0_right = _runtime.select(spent_right, np.abs(slope_right) / heavy_0_right, 0.0)
-    t93 = t44 * t84
-    del t84
-    t94 = np.abs(t93)
-    t95 = t91 * (L1 + np.sqrt(L1) * t86 / 2000000.0)
-    heavy_1_right = _runtime.select(spent_right, t95, 1.0)
-    gain_1_right = _runtime.select(spent_right, t94 / heavy_1_right, 0.0)
-    t96 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
-    t97 = -(_runtime.FEASIBILITY * (t52 + t96)) <= margin_right
-    del t96
-    h_left_0 = point_21 + t69
-    del point_21, t69
-    r_left_0 = point_11 + t71
-    del point_11, t71
-    t98 = h_left_0 * h_left_0 + r_left_0 * r_left_0
-    farther_left = _runtime.select(t53 * t98 < t73, t98 - t75, t78 + t79)
-    del t73, t78, t98
-    t99 = t79 + t80
-    del t79, t80
-    margin_left = np.minimum(farther_left, -t99)
-    t100 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
-    spent_left = t100 <= t82
-    del t100
-    t101 = _runtime.select(-t99 <= farther_left, 1.0, -1.0)
-    t102 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t101
-    slope_left = t85 * t102
-    heavy_0_left = _runtime.select(spent_left, t92, 1.0)
-    gain_0_left = _runtime.select(spent_left, np.abs(slope_left) / heavy_0_left, 0.0)
-    t103 = t44 * t102
-    del t102
-    t104 = np.abs(t103)
-    heavy_1_left = _runtime.select(spent_left, t95, 1.0)
-    gain_1_left = _runtime.select(spent_left, t104 / heavy_1_left, 0.0)
-    t105 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
-    t106 = -(_runtime.FEASIBILITY * (t52 + t105)) <= margin_left
-    del t105
-    t107 = -(_runtime.FEASIBILITY * t52)
-    t108 = spent_left | spent_right
-    t109 = gain_1_left * gain_1_left
-    del gain_1_left
-    t110 = t53 * (play * play)
-    del play
-    t111 = t109 / (t109 + t110 + gain_0_left * gain_0_left)
-    del gain_0_left, t109
-    t112 = _runtime.select(margin_left < 0.0, t111, 0.0)
-    del t111
-    share_left = _runtime.select(spent_left, t112, 0.0)
-    del t112
-    t113 = margin_left * (1.0 - share_left)
-    t114 = heavy_0_left * t113
-    t115 = drawn * drawn
-    t116 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
-    t117 = t87 * (t101 * t115 * t116)
-    del t101, t116
-    t118 = np.maximum(0.0, 4.0 * t113 * t117 + slope_left * slope_left)
-    root_on_1_both = _runtime.select(t108, np.sqrt(t118), 0.0)
-    del t118
-    t119 = slope_left - root_on_1_both
-    t120 = t52 * heavy_0_left
-    t121 = t120 * 5.960464477539063e-08
-    t122 = 1.0 / (t119 - t121)
-    t123 = (t114 * t122 <= 4.547473508864641e-13) & (0.0 < t113 * t122)
-    t124 = 2.0 * t113
-    t125 = 0.0 < -t113
-    t126 = slope_left + root_on_1_both
-    del root_on_1_both
-    t127 = t120 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t117)
-    del t120
-    t128 = 1.0 / t127
-    del t127
-    t129 = heavy_0_left * t126 * t128 <= 9.094947017729282e-13
-    t130 = t126 * t128
-    t131 = _runtime.select(t129 & (0.0 < t130), t130, 0.0)
-    del t129, t130
-    far_back_1_both = _runtime.select(t108, t131, 0.0)
-    del t131
-    t132 = _runtime.select(slope_left <= 0.0, _runtime.select(t123, t122 * t124, 0.0), _runtime.select(t125, far_back_1_both, 0.0))
-    del t122, t123
-    t133 = gain_1_right * gain_1_right
-    del gain_1_right
-    t134 = t133 / (t110 + t133 + gain_0_right * gain_0_right)
-    del gain_0_right, t133
-    t135 = _runtime.select(margin_right < 0.0, t134, 0.0)
-    del t134
-    share_right = _runtime.select(spent_right, t135, 0.0)
-    del t135
-    t136 = margin_right * (1.0 - share_right)
-    t137 = heavy_0_right * t136
-    t138 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
-    t139 = t87 * (t83 * t115 * t138)
-    del t138, t83
-    t140 = 4.0 * t136 * t139 + slope_right * slope_right
-    root_on_0_both = _runtime.select(t108, np.sqrt(np.maximum(0.0, t140)), 0.0)
-    del t140
-    t141 = slope_right - root_on_0_both
-    t142 = t52 * heavy_0_right
-    t143 = t142 * 5.960464477539063e-08
-    t144 = 1.0 / (t141 - t143)
-    t145 = (t137 * t144 <= 4.547473508864641e-13) & (0.0 < t136 * t144)
-    t146 = 2.0 * t136
-    t147 = 0.0 < -t136
-    t148 = slope_right + root_on_0_both
-    del root_on_0_both
-    t149 = t142 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t139)
-    del t142
-    t150 = 1.0 / t149
-    del t149
-    t151 = heavy_0_right * t148 * t150 <= 9.094947017729282e-13
-    t152 = t148 * t150
-    t153 = _runtime.select(t151 & (0.0 < t152), t152, 0.0)
-    del t151, t152
-    far_back_0_both = _runtime.select(t108, t153, 0.0)
-    del t153
-    t154 = _runtime.select(slope_right <= 0.0, _runtime.select(t145, t144 * t146, 0.0), _runtime.select(t147, far_back_0_both, 0.0))
-    del t144, t145
-    near_back_both = _runtime.select(t108, np.maximum(np.maximum(0.0, t132), t154), 0.0)
-    del t132, t154
-    t155 = near_back_both * (slope_right + t139 * near_back_both)
-    t156 = _runtime.select(0.0 < t155 - t136, far_back_0_both, 0.0)
-    del far_back_0_both, t155
-    t157 = near_back_both * (slope_left + t117 * near_back_both)
-    t158 = _runtime.select(0.0 < t157 - t113, far_back_1_both, 0.0)
-    del far_back_1_both, t157
-    t159 = np.maximum(np.maximum(near_back_both, t156), t158)
-    del near_back_both, t156, t158
-    turn_back_both = _runtime.select(t108, t159, 0.0)
-    del t159
-    t160 = turn_back_both * (slope_left + t117 * turn_back_both)
-    t161 = turn_back_both * (slope_right + t139 * turn_back_both)
-    left_back_both = _runtime.select(t108, np.minimum(t113 - t160, t136 - t161), 0.0)
-    del t160, t161
-    t162 = 1.0 / (t121 + t126)
-    del t121, t126
-    t163 = (-(t114 * t162) <= 4.547473508864641e-13) & (0.0 < -(t113 * t162))
-    del t114
-    t164 = -(t128 * (heavy_0_left * t119)) <= 9.094947017729282e-13
-    del heavy_0_left
-    t165 = -(t119 * t128)
-    del t119, t128
-    t166 = _runtime.select(t164 & (0.0 < t165), t165, 0.0)
-    del t164, t165
-    far_on_1_both = _runtime.select(t108, t166, 0.0)
-    del t166
-    t167 = _runtime.select(0.0 <= slope_left, _runtime.select(t163, -(t124 * t162), 0.0), _runtime.select(t125, far_on_1_both, 0.0))
-    del t124, t125, t162, t163
-    t168 = 1.0 / (t143 + t148)
-    del t143, t148
-    t169 = (-(t137 * t168) <= 4.547473508864641e-13) & (0.0 < -(t136 * t168))
-    del t137
-    t170 = -(t150 * (heavy_0_right * t141)) <= 9.094947017729282e-13
-    del heavy_0_right
-    t171 = -(t141 * t150)
-    del t141, t150
-    t172 = _runtime.select(t170 & (0.0 < t171), t171, 0.0)
-    del t170, t171
-    far_on_0_both = _runtime.select(t108, t172, 0.0)
-    del t172
-    t173 = _runtime.select(0.0 <= slope_right, _runtime.select(t169, -(t146 * t168), 0.0), _runtime.select(t147, far_on_0_both, 0.0))
-    del t146, t147, t168, t169
-    near_on_both = _runtime.select(t108, np.maximum(np.maximum(0.0, t167), t173), 0.0)
-    del t167, t173
-    t174 = near_on_both * (slope_right - t139 * near_on_both)
-    t175 = _runtime.select(0.0 < -(t136 + t174), far_on_0_both, 0.0)
-    del far_on_0_both, t174
-    t176 = near_on_both * (slope_left - t117 * near_on_both)
-    t177 = _runtime.select(0.0 < -(t113 + t176), far_on_1_both, 0.0)
-    del far_on_1_both, t176
-    t178 = np.maximum(np.maximum(near_on_both, t175), t177)
-    del near_on_both, t175, t177
-    turn_on_both = _runtime.select(t108, t178, 0.0)
-    del t178
-    t179 = turn_on_both * (slope_left - t117 * turn_on_both)
-    del slope_left, t117
-    t180 = turn_on_both * (slope_right - t139 * turn_on_both)
-    del slope_right, t139
-    left_on_both = _runtime.select(t108, np.minimum(t113 + t179, t136 + t180), 0.0)
-    del t113, t136, t179, t180
-    t181 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
-    del left_back_both, left_on_both, turn_back_both, turn_on_both
-    turn_both = _runtime.select(t108, t181, 0.0)
-    del t181
-    t182 = margin_left * share_left * _runtime.sign(-t103)
-    del margin_left, share_left, t103
-    t183 = t104 + t52 * heavy_1_left * 5.960464477539063e-08
-    del heavy_1_left, t104
-    aside_left = _runtime.select(spent_left, -(t182 / t183), 0.0)
-    del spent_left, t182, t183
-    t184 = margin_right * share_right * _runtime.sign(-t93)
-    del margin_right, share_right, t93
-    t185 = t94 + t52 * heavy_1_right * 5.960464477539063e-08
-    del heavy_1_right, t94
-    aside_right = _runtime.select(spent_right, -(t184 / t185), 0.0)
-    del spent_right, t184, t185
-    t186 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
-    del aside_left, aside_right
-    lean = _runtime.select(t108, turn_both + t186 - t87 * (drawn * turn_both), 0.0)
-    del t186
-    t187 = lean * lean
-    t188 = 1.0 + t187
-    t189 = 1.0 / np.sqrt(t188)
-    t190 = 1.0 / (t188 * (1.0 + t189))
-    del t188
-    t191 = elbow_11 * t187 * t190 + t189 * (elbow_21 * lean)
-    t192 = turn_both * turn_both
-    t193 = elbow_11 - r_right_0
-    t194 = 1.0 + t192
-    t195 = 1.0 / np.sqrt(t194)
-    t196 = 1.0 / (t194 * (1.0 + t195))
-    del t194
-    t197 = elbow_21 - h_right_0
-    t198 = t191 - t192 * t193 * t196 - t195 * (turn_both * t197)
-    swing_21 = t189 * (elbow_11 * lean) - t190 * (elbow_21 * t187)
-    del t187, t189, t190
-    more_right_21 = swing_21 + t196 * (t192 * t197) - t195 * (turn_both * t193)
-    del t193, t197
-    t199 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
-    change_right = _runtime.select(t108, t198 * (t198 - 2.0 * r_right_0) + t199, 0.0)
-    del t199
-    t200 = nearer_right - change_right
-    del nearer_right
-    t201 = farther_right + change_right
-    del change_right, farther_right
-    t202 = t51 & t97 & t106 & (t107 <= t200) & (t107 <= t201)
-    del t106, t97
-    t203 = elbow_11 - r_left_0
-    del elbow_11
-    t204 = elbow_21 - h_left_0
-    t205 = t191 - t196 * (t192 * t203) - t195 * (turn_both * t204)
-    del t191
-    more_left_21 = swing_21 + t196 * (t192 * t204) - t195 * (turn_both * t203)
-    del swing_21, t192, t195, t196, t203, t204
-    t206 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
-    change_left = _runtime.select(t108, t205 * (t205 - 2.0 * r_left_0) + t206, 0.0)
-    del t206
-    t207 = -(t99 + change_left)
+    t92 = t43 * t83
+    del t83
+    t93 = np.abs(t92)
+    t94 = t90 * (L1 + np.sqrt(L1) * t85 / 2000000.0)
+    heavy_1_right = _runtime.select(spent_right, t94, 1.0)
+    gain_1_right = _runtime.select(spent_right, t93 / heavy_1_right, 0.0)
+    t95 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
+    t96 = -(_runtime.FEASIBILITY * (t51 + t95)) <= margin_right
+    del t95
+    h_left_0 = point_21 + t68
+    del point_21, t68
+    r_left_0 = point_11 + t70
+    del point_11, t70
+    t97 = h_left_0 * h_left_0 + r_left_0 * r_left_0
+    farther_left = _runtime.select(t52 * t97 < t72, t97 - t74, t77 + t78)
+    del t72, t77, t97
+    t98 = t78 + t79
+    del t78, t79
+    margin_left = np.minimum(farther_left, -t98)
+    t99 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    spent_left = t99 <= t81
     del t99
-    t208 = farther_left + change_left
+    t100 = _runtime.select(-t98 <= farther_left, 1.0, -1.0)
+    t101 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t100
+    slope_left = t84 * t101
+    heavy_0_left = _runtime.select(spent_left, t91, 1.0)
+    gain_0_left = _runtime.select(spent_left, np.abs(slope_left) / heavy_0_left, 0.0)
+    t102 = t43 * t101
+    del t101
+    t103 = np.abs(t102)
+    heavy_1_left = _runtime.select(spent_left, t94, 1.0)
+    gain_1_left = _runtime.select(spent_left, t103 / heavy_1_left, 0.0)
+    t104 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
+    t105 = -(_runtime.FEASIBILITY * (t51 + t104)) <= margin_left
+    del t104
+    t106 = -(_runtime.FEASIBILITY * t51)
+    t107 = spent_left | spent_right
+    t108 = gain_1_left * gain_1_left
+    del gain_1_left
+    t109 = t52 * (play * play)
+    del play
+    t110 = t108 / (t108 + t109 + gain_0_left * gain_0_left)
+    del gain_0_left, t108
+    t111 = _runtime.select(margin_left < 0.0, t110, 0.0)
+    del t110
+    share_left = _runtime.select(spent_left, t111, 0.0)
+    del t111
+    t112 = margin_left * (1.0 - share_left)
+    t113 = heavy_0_left * t112
+    t114 = drawn * drawn
+    t115 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
+    t116 = t86 * (t100 * t114 * t115)
+    del t100, t115
+    t117 = np.maximum(0.0, 4.0 * t112 * t116 + slope_left * slope_left)
+    root_on_1_both = _runtime.select(t107, np.sqrt(t117), 0.0)
+    del t117
+    t118 = slope_left - root_on_1_both
+    t119 = t51 * heavy_0_left
+    t120 = t119 * 5.960464477539063e-08
+    t121 = 1.0 / (t118 - t120)
+    t122 = (t113 * t121 <= 4.547473508864641e-13) & (0.0 < t112 * t121)
+    t123 = 2.0 * t112
+    t124 = 0.0 < -t112
+    t125 = slope_left + root_on_1_both
+    del root_on_1_both
+    t126 = t119 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t116)
+    del t119
+    t127 = 1.0 / t126
+    del t126
+    t128 = heavy_0_left * t125 * t127 <= 9.094947017729282e-13
+    t129 = t125 * t127
+    t130 = _runtime.select(t128 & (0.0 < t129), t129, 0.0)
+    del t128, t129
+    far_back_1_both = _runtime.select(t107, t130, 0.0)
+    del t130
+    t131 = _runtime.select(slope_left <= 0.0, _runtime.select(t122, t121 * t123, 0.0), _runtime.select(t124, far_back_1_both, 0.0))
+    del t121, t122
+    t132 = gain_1_right * gain_1_right
+    del gain_1_right
+    t133 = t132 / (t109 + t132 + gain_0_right * gain_0_right)
+    del gain_0_right, t132
+    t134 = _runtime.select(margin_right < 0.0, t133, 0.0)
+    del t133
+    share_right = _runtime.select(spent_right, t134, 0.0)
+    del t134
+    t135 = margin_right * (1.0 - share_right)
+    t136 = heavy_0_right * t135
+    t137 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
+    t138 = t86 * (t82 * t114 * t137)
+    del t137, t82
+    t139 = 4.0 * t135 * t138 + slope_right * slope_right
+    root_on_0_both = _runtime.select(t107, np.sqrt(np.maximum(0.0, t139)), 0.0)
+    del t139
+    t140 = slope_right - root_on_0_both
+    t141 = t51 * heavy_0_right
+    t142 = t141 * 5.960464477539063e-08
+    t143 = 1.0 / (t140 - t142)
+    t144 = (t136 * t143 <= 4.547473508864641e-13) & (0.0 < t135 * t143)
+    t145 = 2.0 * t135
+    t146 = 0.0 < -t135
+    t147 = slope_right + root_on_0_both
+    del root_on_0_both
+    t148 = t141 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t138)
+    del t141
+    t149 = 1.0 / t148
+    del t148
+    t150 = heavy_0_right * t147 * t149 <= 9.094947017729282e-13
+    t151 = t147 * t149
+    t152 = _runtime.select(t150 & (0.0 < t151), t151, 0.0)
+    del t150, t151
+    far_back_0_both = _runtime.select(t107, t152, 0.0)
+    del t152
+    t153 = _runtime.select(slope_right <= 0.0, _runtime.select(t144, t143 * t145, 0.0), _runtime.select(t146, far_back_0_both, 0.0))
+    del t143, t144
+    near_back_both = _runtime.select(t107, np.maximum(np.maximum(0.0, t131), t153), 0.0)
+    del t131, t153
+    t154 = near_back_both * (slope_right + t138 * near_back_both)
+    t155 = _runtime.select(0.0 < t154 - t135, far_back_0_both, 0.0)
+    del far_back_0_both, t154
+    t156 = near_back_both * (slope_left + t116 * near_back_both)
+    t157 = _runtime.select(0.0 < t156 - t112, far_back_1_both, 0.0)
+    del far_back_1_both, t156
+    t158 = np.maximum(np.maximum(near_back_both, t155), t157)
+    del near_back_both, t155, t157
+    turn_back_both = _runtime.select(t107, t158, 0.0)
+    del t158
+    t159 = turn_back_both * (slope_left + t116 * turn_back_both)
+    t160 = turn_back_both * (slope_right + t138 * turn_back_both)
+    left_back_both = _runtime.select(t107, np.minimum(t112 - t159, t135 - t160), 0.0)
+    del t159, t160
+    t161 = 1.0 / (t120 + t125)
+    del t120, t125
+    t162 = (-(t113 * t161) <= 4.547473508864641e-13) & (0.0 < -(t112 * t161))
+    del t113
+    t163 = -(t127 * (heavy_0_left * t118)) <= 9.094947017729282e-13
+    del heavy_0_left
+    t164 = -(t118 * t127)
+    del t118, t127
+    t165 = _runtime.select(t163 & (0.0 < t164), t164, 0.0)
+    del t163, t164
+    far_on_1_both = _runtime.select(t107, t165, 0.0)
+    del t165
+    t166 = _runtime.select(0.0 <= slope_left, _runtime.select(t162, -(t123 * t161), 0.0), _runtime.select(t124, far_on_1_both, 0.0))
+    del t123, t124, t161, t162
+    t167 = 1.0 / (t142 + t147)
+    del t142, t147
+    t168 = (-(t136 * t167) <= 4.547473508864641e-13) & (0.0 < -(t135 * t167))
+    del t136
+    t169 = -(t149 * (heavy_0_right * t140)) <= 9.094947017729282e-13
+    del heavy_0_right
+    t170 = -(t140 * t149)
+    del t140, t149
+    t171 = _runtime.select(t169 & (0.0 < t170), t170, 0.0)
+    del t169, t170
+    far_on_0_both = _runtime.select(t107, t171, 0.0)
+    del t171
+    t172 = _runtime.select(0.0 <= slope_right, _runtime.select(t168, -(t145 * t167), 0.0), _runtime.select(t146, far_on_0_both, 0.0))
+    del t145, t146, t167, t168
+    near_on_both = _runtime.select(t107, np.maximum(np.maximum(0.0, t166), t172), 0.0)
+    del t166, t172
+    t173 = near_on_both * (slope_right - t138 * near_on_both)
+    t174 = _runtime.select(0.0 < -(t135 + t173), far_on_0_both, 0.0)
+    del far_on_0_both, t173
+    t175 = near_on_both * (slope_left - t116 * near_on_both)
+    t176 = _runtime.select(0.0 < -(t112 + t175), far_on_1_both, 0.0)
+    del far_on_1_both, t175
+    t177 = np.maximum(np.maximum(near_on_both, t174), t176)
+    del near_on_both, t174, t176
+    turn_on_both = _runtime.select(t107, t177, 0.0)
+    del t177
+    t178 = turn_on_both * (slope_left - t116 * turn_on_both)
+    del slope_left, t116
+    t179 = turn_on_both * (slope_right - t138 * turn_on_both)
+    del slope_right, t138
+    left_on_both = _runtime.select(t107, np.minimum(t112 + t178, t135 + t179), 0.0)
+    del t112, t135, t178, t179
+    t180 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
+    del left_back_both, left_on_both, turn_back_both, turn_on_both
+    turn_both = _runtime.select(t107, t180, 0.0)
+    del t180
+    t181 = margin_left * share_left * _runtime.sign(-t102)
+    del margin_left, share_left, t102
+    t182 = t103 + t51 * heavy_1_left * 5.960464477539063e-08
+    del heavy_1_left, t103
+    aside_left = _runtime.select(spent_left, -(t181 / t182), 0.0)
+    del spent_left, t181, t182
+    t183 = margin_right * share_right * _runtime.sign(-t92)
+    del margin_right, share_right, t92
+    t184 = t93 + t51 * heavy_1_right * 5.960464477539063e-08
+    del heavy_1_right, t93
+    aside_right = _runtime.select(spent_right, -(t183 / t184), 0.0)
+    del spent_right, t183, t184
+    t185 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
+    del aside_left, aside_right
+    lean = _runtime.select(t107, turn_both + t185 - t86 * (drawn * turn_both), 0.0)
+    del t185
+    t186 = lean * lean
+    t187 = 1.0 + t186
+    t188 = 1.0 / np.sqrt(t187)
+    t189 = 1.0 / (t187 * (1.0 + t188))
+    del t187
+    t190 = elbow_11 * t186 * t189 + t188 * (elbow_21 * lean)
+    t191 = turn_both * turn_both
+    t192 = elbow_11 - r_right_0
+    t193 = 1.0 + t191
+    t194 = 1.0 / np.sqrt(t193)
+    t195 = 1.0 / (t193 * (1.0 + t194))
+    del t193
+    t196 = elbow_21 - h_right_0
+    t197 = t190 - t191 * t192 * t195 - t194 * (turn_both * t196)
+    swing_21 = t188 * (elbow_11 * lean) - t189 * (elbow_21 * t186)
+    del t186, t188, t189
+    more_right_21 = swing_21 + t195 * (t191 * t196) - t194 * (turn_both * t192)
+    del t192, t196
+    t198 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
+    change_right = _runtime.select(t107, t197 * (t197 - 2.0 * r_right_0) + t198, 0.0)
+    del t198
+    t199 = nearer_right - change_right
+    del nearer_right
+    t200 = farther_right + change_right
+    del change_right, farther_right
+    t201 = t50 & t96 & t105 & (t106 <= t199) & (t106 <= t200)
+    del t105, t96
+    t202 = elbow_11 - r_left_0
+    del elbow_11
+    t203 = elbow_21 - h_left_0
+    t204 = t190 - t195 * (t191 * t202) - t194 * (turn_both * t203)
+    del t190
+    more_left_21 = swing_21 + t195 * (t191 * t203) - t194 * (turn_both * t202)
+    del swing_21, t191, t194, t195, t202, t203
+    t205 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
+    change_left = _runtime.select(t107, t204 * (t204 - 2.0 * r_left_0) + t205, 0.0)
+    del t205
+    t206 = -(t98 + change_left)
+    del t98
+    t207 = farther_left + change_left
     del change_left, farther_left
-    unreachable = np.logical_not(t202 & (t107 <= t207) & (t107 <= t208))
-    del t202
-    t209 = _runtime.poison(invalid | unreachable)
-    t210 = t32 + t209
-    h_right = _runtime.select(t108, h_right_0 + more_right_21, h_right_0)
-    del h_right_0, more_right_21
-    r_right = _runtime.select(t108, r_right_0 - t198, r_right_0)
-    del r_right_0, t198
-    t211 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(h_right) + np.abs(r_right) <= t211
-    t212 = np.arctan2(stheta2A, ctheta2A)
-    del ctheta2A
-    t213 = L1 * fore_arm
-    short_right = t213 <= _runtime.VANISHING * t53
-    t214 = 2.0 * fore_arm
-    t215 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t213))
-    M_right = np.maximum(t201, t215)
+    unreachable = np.logical_not(t201 & (t106 <= t206) & (t106 <= t207))
     del t201
-    N_right = np.maximum(t200, t215)
+    t208 = _runtime.poison(invalid | unreachable)
+    t209 = t31 + t208
+    h_right = _runtime.select(t107, h_right_0 + more_right_21, h_right_0)
+    del h_right_0, more_right_21
+    r_right = _runtime.select(t107, r_right_0 - t197, r_right_0)
+    del r_right_0, t197
+    t210 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(h_right) + np.abs(r_right) <= t210
+    t211 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A
+    t212 = L1 * fore_arm
+    short_right = t212 <= _runtime.VANISHING * t52
+    t213 = 2.0 * fore_arm
+    t214 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t212))
+    M_right = np.maximum(t200, t214)
     del t200
-    t216 = 1.0 / (M_right + N_right)
-    ahead_1_right = _runtime.select(short_right, size, t74 + t214 * M_right * t216)
-    t217 = t77 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    N_right = np.maximum(t199, t214)
+    del t199
+    t215 = 1.0 / (M_right + N_right)
+    ahead_1_right = _runtime.select(short_right, size, t73 + t213 * M_right * t215)
+    t216 = t76 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
     del lean, turn_both
-    t218 = _runtime.select(t108, t217, t77)
-    del t217
-    sigma_right = _runtime.sign(-t218)
-    t219 = 2.0 * sigma_right
-    t220 = np.sqrt(M_right * N_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t216 * (t219 * t220))
+    t217 = _runtime.select(t107, t216, t76)
     del t216
-    t221 = fore_arm * s_bend_right
+    sigma_right = _runtime.sign(-t217)
+    t218 = 2.0 * sigma_right
+    t219 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t215 * (t218 * t219))
+    del t215
+    t220 = fore_arm * s_bend_right
     del s_bend_right
-    t222 = np.arctan2(h_right * ahead_1_right - r_right * t221, r_right * ahead_1_right + h_right * t221)
-    del ahead_1_right, h_right, r_right, t221
-    t223 = _runtime.wrap_cut(_runtime.select(folded_right, t212, t222))
+    t221 = np.arctan2(h_right * ahead_1_right - r_right * t220, r_right * ahead_1_right + h_right * t220)
+    del ahead_1_right, h_right, r_right, t220
+    t222 = _runtime.wrap_cut(_runtime.select(folded_right, t211, t221))
+    del t221
+    t223 = t222 + t208
     del t222
-    t224 = t223 + t209
-    del t223
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t225 = 1.0 / fore_arm
-    t226 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t225), _runtime.select(bare_right, 1.0, a3 * t225))
-    del bare_right, t225
-    t227 = sigma_right * np.arctan2(2.0 * t220, M_right - N_right)
-    del t220
-    t228 = t226 + _runtime.select(short_right, 0.0, t227)
+    t224 = 1.0 / fore_arm
+    t225 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t224), _runtime.select(bare_right, 1.0, a3 * t224))
+    del bare_right, t224
+    t226 = sigma_right * np.arctan2(2.0 * t219, M_right - N_right)
+    del t219
+    t227 = t225 + _runtime.select(short_right, 0.0, t226)
+    del t226
+    t228 = _runtime.wrap(t227) + t208
     del t227
-    t229 = _runtime.wrap(t228) + t209
-    del t228
-    h_left = _runtime.select(t108, h_left_0 + more_left_21, h_left_0)
+    h_left = _runtime.select(t107, h_left_0 + more_left_21, h_left_0)
     del h_left_0, more_left_21
-    r_left = _runtime.select(t108, r_left_0 - t205, r_left_0)
-    del r_left_0, t205
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t211
-    M_left = np.maximum(t208, 0.0)
-    del t208
-    N_left = np.maximum(t207, 0.0)
+    r_left = _runtime.select(t107, r_left_0 - t204, r_left_0)
+    del r_left_0, t204
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t210
+    M_left = np.maximum(t207, 0.0)
     del t207
-    t230 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t74 + t214 * M_left * t230)
-    t231 = h_left * ahead_1_left
-    t232 = np.sqrt(M_left * N_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t230 * (t219 * t232))
-    del t219, t230
-    t233 = fore_arm * s_bend_left
+    N_left = np.maximum(t206, 0.0)
+    del t206
+    t229 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t73 + t213 * M_left * t229)
+    t230 = h_left * ahead_1_left
+    t231 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t229 * (t218 * t231))
+    del t218, t229
+    t232 = fore_arm * s_bend_left
     del s_bend_left
-    t234 = r_left * t233
-    t235 = r_left * ahead_1_left
+    t233 = r_left * t232
+    t234 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t236 = h_left * t233
-    del h_left, t233
-    t237 = _runtime.select(folded_left, t212, np.arctan2(t231 - t234, t235 + t236))
-    t238 = sigma_right * np.arctan2(2.0 * t232, M_left - N_left)
-    del t232
-    t239 = _runtime.select(short_right, 0.0, t238)
-    del t238
-    t240 = _runtime.wrap(principal_pitch)
+    t235 = h_left * t232
+    del h_left, t232
+    t236 = _runtime.select(folded_left, t211, np.arctan2(t230 - t233, t234 + t235))
+    t237 = sigma_right * np.arctan2(2.0 * t231, M_left - N_left)
+    del t231
+    t238 = _runtime.select(short_right, 0.0, t237)
+    del t237
+    t239 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t241 = t240 + t209
-    t242 = _runtime.select(folded_left, t212, np.arctan2(t231 + t234, t235 - t236))
-    del t212, t231, t234, t235, t236
-    up_front_elbow_down_alike = t56 - t58
-    del t56, t58
-    out_front_elbow_down_alike = t59 + t60
-    del t59, t60
-    t243 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t244 = up_front_elbow_down_alike * up_front_elbow_down_alike
-    t245 = 1.0 / np.sqrt(t243 + t244)
-    del t243, t244
-    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t245)
+    t240 = t239 + t208
+    t241 = _runtime.select(folded_left, t211, np.arctan2(t230 + t233, t234 - t235))
+    del t211, t230, t233, t234, t235
+    up_front_elbow_down_alike = t55 - t57
+    del t55, t57
+    out_front_elbow_down_alike = t58 + t59
+    del t58, t59
+    t242 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t243 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t244 = 1.0 / np.sqrt(t242 + t243)
+    del t242, t243
+    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t244)
     del up_front_elbow_down_alike
     elbow_21_front_elbow_down_alike = L1 * stheta2A_front_elbow_down_alike
-    t246 = out_front_elbow_down_alike * t245
-    del out_front_elbow_down_alike, t245
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t246)
-    c_relative_front_elbow_down_alike = t64 - t65
-    del t64, t65
-    t247 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t66 + t67
-    del t66, t67
-    t248 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t247 - t248
-    del t247, t248
-    t249 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t250 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t251 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t250 + t251
-    del t250, t251
-    point_21_front_elbow_down_alike = t249 + a3 * stheta23A_front_elbow_down_alike
-    del t249
-    t252 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t253 = t252 + t_phi * stheta23A_front_elbow_down_alike
+    t245 = out_front_elbow_down_alike * t244
+    del out_front_elbow_down_alike, t244
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t245)
+    c_relative_front_elbow_down_alike = t63 - t64
+    del t63, t64
+    t246 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t65 + t66
+    del t65, t66
+    t247 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t246 - t247
+    del t246, t247
+    t248 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t249 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t250 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t249 + t250
+    del t249, t250
+    point_21_front_elbow_down_alike = t248 + a3 * stheta23A_front_elbow_down_alike
+    del t248
+    t251 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t252 = t251 + t_phi * stheta23A_front_elbow_down_alike
+    del t251
+    t253 = d * t252
     del t252
-    t254 = d * t253
-    del t253
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t254
-    t255 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t253
+    t254 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    t256 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t256 + a3 * ctheta23A_front_elbow_down_alike
-    del t256
-    t257 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
+    t255 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t255 + a3 * ctheta23A_front_elbow_down_alike
+    del t255
+    t256 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
     del stheta23A_front_elbow_down_alike
-    t258 = t_phi * ctheta23A_front_elbow_down_alike - t257
-    del ctheta23A_front_elbow_down_alike, t257
-    t259 = d * t258
-    del t258
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t259
-    t260 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t261 = t255 + t260
-    del t255, t260
-    gap_front_elbow_down_alike = t259 * t259 + t254 * t254
-    t262 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t257 = t_phi * ctheta23A_front_elbow_down_alike - t256
+    del ctheta23A_front_elbow_down_alike, t256
+    t258 = d * t257
+    del t257
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t258
+    t259 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t260 = t254 + t259
+    del t254, t259
+    gap_front_elbow_down_alike = t258 * t258 + t253 * t253
+    t261 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t263 = 0.0 <= straight_mid_front_elbow_down_alike
+    t262 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
-    t264 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t264 * t264 / large_mid_front_elbow_down_alike
-    t265 = _runtime.select(t263, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t44 * t265
-    del t265
-    t266 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
-    t267 = 2.0 * point_11_front_elbow_down_alike * t259 + 2.0 * point_21_front_elbow_down_alike * t254
-    farther_right_front_elbow_down_alike = _runtime.select(t53 * t261 < t262, t261 - t75, t266 - t267)
-    del t261
-    t268 = _runtime.select(t263, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t263
-    N_mid_front_elbow_down_alike = t44 * t268
-    del t268
-    t269 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t267 - t269
+    t263 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t263 * t263 / large_mid_front_elbow_down_alike
+    t264 = _runtime.select(t262, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t43 * t264
+    del t264
+    t265 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
+    t266 = 2.0 * point_11_front_elbow_down_alike * t258 + 2.0 * point_21_front_elbow_down_alike * t253
+    farther_right_front_elbow_down_alike = _runtime.select(t52 * t260 < t261, t260 - t74, t265 - t266)
+    del t260
+    t267 = _runtime.select(t262, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t262
+    N_mid_front_elbow_down_alike = t43 * t267
+    del t267
+    t268 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t266 - t268
     margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t270 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
-    t271 = np.maximum(-t270, margin_right_front_elbow_down_alike)
+    t269 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t270 = np.maximum(-t269, margin_right_front_elbow_down_alike)
+    del t269
+    spent_right_front_elbow_down_alike = t270 <= t81
     del t270
-    spent_right_front_elbow_down_alike = t271 <= t82
-    del t271
-    t272 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t273 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t274 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
-    t275 = _runtime.select(t274, 1.0, -1.0)
-    del t274
-    t276 = (t272 - t273) * t275
-    del t272, t273
-    t277 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t277 + a_3W * c_relative_front_elbow_down_alike
-    del t277
-    t278 = 2.0 * drawn_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t276 * t278
-    t279 = 1.0 - t87 * drawn_front_elbow_down_alike
-    t280 = t86 * np.sqrt(fore + L1 * (t279 * t279)) / 2000000.0
-    del fore, t279, t86
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t281 = t91 * (t280 + np.abs(tilt_front_elbow_down_alike))
-    del t280, t91, tilt_front_elbow_down_alike
-    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t281, 1.0)
-    t282 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
-    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t282, 0.0)
-    del t282
-    t283 = t44 * t276
+    t271 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t272 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t273 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
+    t274 = _runtime.select(t273, 1.0, -1.0)
+    del t273
+    t275 = (t271 - t272) * t274
+    del t271, t272
+    t276 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t276 + a_3W * c_relative_front_elbow_down_alike
     del t276
-    t284 = np.abs(t283)
-    heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t95, 1.0)
-    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t284 / heavy_1_right_front_elbow_down_alike, 0.0)
-    t285 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
-    t286 = _runtime.select(spent_right_front_elbow_down_alike, t285, 0.0)
-    del t285
-    t287 = -(_runtime.FEASIBILITY * (t52 + t286)) <= margin_right_front_elbow_down_alike
-    del t286
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t254
-    del point_21_front_elbow_down_alike, t254
-    t288 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t259
-    del point_11_front_elbow_down_alike, t259
-    t289 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t290 = t288 + t289
-    del t288, t289
-    farther_left_front_elbow_down_alike = _runtime.select(t53 * t290 < t262, t290 - t75, t266 + t267)
-    del t262, t266, t290
-    t291 = t267 + t269
-    del t267, t269
-    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t291)
-    t292 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
-    t293 = np.maximum(-t292, margin_left_front_elbow_down_alike)
-    del t292
-    spent_left_front_elbow_down_alike = t293 <= t82
-    del t293
-    t294 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t295 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t296 = _runtime.select(-t291 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
-    t297 = (t294 - t295) * t296
-    del t294, t295
-    slope_left_front_elbow_down_alike = t278 * t297
-    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t281, 1.0)
-    t298 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
-    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t298, 0.0)
-    del t298
-    t299 = t44 * t297
-    del t297
-    t300 = np.abs(t299)
-    heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t95, 1.0)
-    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t300 / heavy_1_left_front_elbow_down_alike, 0.0)
-    t301 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
-    t302 = _runtime.select(spent_left_front_elbow_down_alike, t301, 0.0)
-    del t301
-    t303 = -(_runtime.FEASIBILITY * (t52 + t302)) <= margin_left_front_elbow_down_alike
-    del t302
-    t304 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
-    t305 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
-    del gain_1_left_front_elbow_down_alike
-    t306 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
-    del gain_0_left_front_elbow_down_alike
-    t307 = _runtime.select(margin_left_front_elbow_down_alike < 0.0, t305 / (t110 + t305 + t306), 0.0)
-    del t305, t306
-    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t307, 0.0)
-    del t307
-    t308 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
-    t309 = heavy_0_left_front_elbow_down_alike * t308
-    t310 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
-    t311 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t312 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t313 = t87 * (t296 * t310 * (L1 - t311 - t312))
-    del t296, t311, t312
-    t314 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t315 = np.sqrt(np.maximum(0.0, 4.0 * t308 * t313 + t314))
-    del t314
-    root_on_1_both_front_elbow_down_alike = _runtime.select(t304, t315, 0.0)
-    del t315
-    t316 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
-    t317 = t52 * heavy_0_left_front_elbow_down_alike
-    t318 = t317 * 5.960464477539063e-08
-    t319 = 1.0 / (t316 - t318)
-    t320 = (t309 * t319 <= 4.547473508864641e-13) & (0.0 < t308 * t319)
-    t321 = 2.0 * t308
-    t322 = 0.0 < -t308
-    t323 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
-    del root_on_1_both_front_elbow_down_alike
-    t324 = t317 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t313)
-    del t317
-    t325 = 1.0 / t324
-    del t324
-    t326 = heavy_0_left_front_elbow_down_alike * t323 * t325
-    t327 = t323 * t325
-    t328 = (t326 <= 9.094947017729282e-13) & (0.0 < t327)
-    del t326
-    far_back_1_both_front_elbow_down_alike = _runtime.select(t304, _runtime.select(t328, t327, 0.0), 0.0)
-    del t327, t328
-    t329 = _runtime.select(t322, far_back_1_both_front_elbow_down_alike, 0.0)
-    t330 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t320, t319 * t321, 0.0), t329)
-    del t319, t320, t329
-    t331 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
-    del gain_1_right_front_elbow_down_alike
-    t332 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
-    del gain_0_right_front_elbow_down_alike
-    t333 = _runtime.select(margin_right_front_elbow_down_alike < 0.0, t331 / (t110 + t331 + t332), 0.0)
-    del t331, t332
-    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t333, 0.0)
-    del t333
-    t334 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
-    t335 = heavy_0_right_front_elbow_down_alike * t334
-    t336 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t337 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t338 = t87 * (t275 * t310 * (L1 - t336 - t337))
-    del t275, t336, t337
-    t339 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t340 = np.sqrt(np.maximum(0.0, 4.0 * t334 * t338 + t339))
-    del t339
-    root_on_0_both_front_elbow_down_alike = _runtime.select(t304, t340, 0.0)
-    del t340
-    t341 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
-    t342 = t52 * heavy_0_right_front_elbow_down_alike
-    t343 = t342 * 5.960464477539063e-08
-    t344 = 1.0 / (t341 - t343)
-    t345 = (t335 * t344 <= 4.547473508864641e-13) & (0.0 < t334 * t344)
-    t346 = 2.0 * t334
-    t347 = 0.0 < -t334
-    t348 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
-    del root_on_0_both_front_elbow_down_alike
-    t349 = t342 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t338)
-    del t342
-    t350 = 1.0 / t349
-    del t349
-    t351 = heavy_0_right_front_elbow_down_alike * t348 * t350
-    t352 = t348 * t350
-    t353 = (t351 <= 9.094947017729282e-13) & (0.0 < t352)
-    del t351
-    far_back_0_both_front_elbow_down_alike = _runtime.select(t304, _runtime.select(t353, t352, 0.0), 0.0)
-    del t352, t353
-    t354 = _runtime.select(t347, far_back_0_both_front_elbow_down_alike, 0.0)
-    t355 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t345, t344 * t346, 0.0), t354)
-    del t344, t345, t354
-    near_back_both_front_elbow_down_alike = _runtime.select(t304, np.maximum(np.maximum(0.0, t330), t355), 0.0)
-    del t330, t355
-    t356 = slope_right_front_elbow_down_alike + t338 * near_back_both_front_elbow_down_alike
-    t357 = near_back_both_front_elbow_down_alike * t356 - t334
-    del t356
-    t358 = _runtime.select(0.0 < t357, far_back_0_both_front_elbow_down_alike, 0.0)
-    del far_back_0_both_front_elbow_down_alike, t357
-    t359 = np.maximum(near_back_both_front_elbow_down_alike, t358)
-    del t358
-    t360 = slope_left_front_elbow_down_alike + t313 * near_back_both_front_elbow_down_alike
-    t361 = near_back_both_front_elbow_down_alike * t360 - t308
-    del near_back_both_front_elbow_down_alike, t360
-    t362 = _runtime.select(0.0 < t361, far_back_1_both_front_elbow_down_alike, 0.0)
-    del far_back_1_both_front_elbow_down_alike, t361
-    turn_back_both_front_elbow_down_alike = _runtime.select(t304, np.maximum(t359, t362), 0.0)
-    del t359, t362
-    t363 = slope_left_front_elbow_down_alike + t313 * turn_back_both_front_elbow_down_alike
-    t364 = t308 - turn_back_both_front_elbow_down_alike * t363
-    del t363
-    t365 = slope_right_front_elbow_down_alike + t338 * turn_back_both_front_elbow_down_alike
-    t366 = t334 - turn_back_both_front_elbow_down_alike * t365
-    del t365
-    left_back_both_front_elbow_down_alike = _runtime.select(t304, np.minimum(t364, t366), 0.0)
-    del t364, t366
-    t367 = 1.0 / (t318 + t323)
-    del t318, t323
-    t368 = (-(t309 * t367) <= 4.547473508864641e-13) & (0.0 < -(t308 * t367))
-    del t309
-    t369 = t325 * (heavy_0_left_front_elbow_down_alike * t316)
-    del heavy_0_left_front_elbow_down_alike
-    t370 = -(t316 * t325)
-    del t316, t325
-    t371 = (-t369 <= 9.094947017729282e-13) & (0.0 < t370)
-    del t369
-    far_on_1_both_front_elbow_down_alike = _runtime.select(t304, _runtime.select(t371, t370, 0.0), 0.0)
-    del t370, t371
-    t372 = _runtime.select(t322, far_on_1_both_front_elbow_down_alike, 0.0)
-    del t322
-    t373 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t368, -(t321 * t367), 0.0), t372)
-    del t321, t367, t368, t372
-    t374 = 1.0 / (t343 + t348)
-    del t343, t348
-    t375 = (-(t335 * t374) <= 4.547473508864641e-13) & (0.0 < -(t334 * t374))
-    del t335
-    t376 = t350 * (heavy_0_right_front_elbow_down_alike * t341)
-    del heavy_0_right_front_elbow_down_alike
-    t377 = -(t341 * t350)
-    del t341, t350
-    t378 = (-t376 <= 9.094947017729282e-13) & (0.0 < t377)
-    del t376
-    far_on_0_both_front_elbow_down_alike = _runtime.select(t304, _runtime.select(t378, t377, 0.0), 0.0)
-    del t377, t378
-    t379 = _runtime.select(t347, far_on_0_both_front_elbow_down_alike, 0.0)
-    del t347
-    t380 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t375, -(t346 * t374), 0.0), t379)
-    del t346, t374, t375, t379
-    near_on_both_front_elbow_down_alike = _runtime.select(t304, np.maximum(np.maximum(0.0, t373), t380), 0.0)
-    del t373, t380
-    t381 = slope_right_front_elbow_down_alike - t338 * near_on_both_front_elbow_down_alike
-    t382 = t334 + near_on_both_front_elbow_down_alike * t381
-    del t381
-    t383 = _runtime.select(0.0 < -t382, far_on_0_both_front_elbow_down_alike, 0.0)
-    del far_on_0_both_front_elbow_down_alike, t382
-    t384 = np.maximum(near_on_both_front_elbow_down_alike, t383)
-    del t383
-    t385 = slope_left_front_elbow_down_alike - t313 * near_on_both_front_elbow_down_alike
-    t386 = t308 + near_on_both_front_elbow_down_alike * t385
-    del near_on_both_front_elbow_down_alike, t385
-    t387 = _runtime.select(0.0 < -t386, far_on_1_both_front_elbow_down_alike, 0.0)
-    del far_on_1_both_front_elbow_down_alike, t386
-    turn_on_both_front_elbow_down_alike = _runtime.select(t304, np.maximum(t384, t387), 0.0)
-    del t384, t387
-    t388 = slope_left_front_elbow_down_alike - t313 * turn_on_both_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike, t313
-    t389 = t308 + turn_on_both_front_elbow_down_alike * t388
-    del t308, t388
-    t390 = slope_right_front_elbow_down_alike - t338 * turn_on_both_front_elbow_down_alike
-    del slope_right_front_elbow_down_alike, t338
-    t391 = t334 + turn_on_both_front_elbow_down_alike * t390
-    del t334, t390
-    left_on_both_front_elbow_down_alike = _runtime.select(t304, np.minimum(t389, t391), 0.0)
-    del t389, t391
-    t392 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
-    del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
-    t393 = _runtime.select(t392, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
-    del t392, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
-    turn_both_front_elbow_down_alike = _runtime.select(t304, t393, 0.0)
-    del t393
-    t394 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
-    del margin_left_front_elbow_down_alike, share_left_front_elbow_down_alike
-    t395 = t52 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_left_front_elbow_down_alike
-    t396 = -(t394 * _runtime.sign(-t299) / (t300 + t395))
-    del t299, t300, t394, t395
-    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t396, 0.0)
-    del spent_left_front_elbow_down_alike, t396
-    t397 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
-    del margin_right_front_elbow_down_alike, share_right_front_elbow_down_alike
-    t398 = t52 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_right_front_elbow_down_alike
-    t399 = -(t397 * _runtime.sign(-t283) / (t284 + t398))
-    del t283, t284, t397, t398
-    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t399, 0.0)
-    del spent_right_front_elbow_down_alike, t399
-    t400 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
-    t401 = _runtime.select(t400, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
-    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t400
-    t402 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t403 = turn_both_front_elbow_down_alike + t401 - t87 * t402
-    del t401, t402
-    lean_front_elbow_down_alike = _runtime.select(t304, t403, 0.0)
-    del t403
-    t404 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
-    t405 = 1.0 + t404
-    t406 = 1.0 / np.sqrt(t405)
-    t407 = 1.0 / (t405 * (1.0 + t406))
-    del t405
-    t408 = elbow_11_front_elbow_down_alike * t404 * t407
-    t409 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
-    t410 = t408 + t406 * t409
-    del t408, t409
-    t411 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t412 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
-    t413 = 1.0 + t411
-    t414 = 1.0 / np.sqrt(t413)
-    t415 = 1.0 / (t413 * (1.0 + t414))
-    del t413
-    t416 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
-    t417 = t414 * (turn_both_front_elbow_down_alike * t416)
-    t418 = t410 - t411 * t412 * t415 - t417
-    del t417
-    t419 = t418 - 2.0 * r_right_0_front_elbow_down_alike
-    t420 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
-    t421 = t407 * (elbow_21_front_elbow_down_alike * t404)
-    del t404, t407
-    swing_21_front_elbow_down_alike = t406 * t420 - t421
-    del t406, t420, t421
-    t422 = swing_21_front_elbow_down_alike + t415 * (t411 * t416)
-    del t416
-    t423 = t414 * (turn_both_front_elbow_down_alike * t412)
-    del t412
-    more_right_21_front_elbow_down_alike = t422 - t423
-    del t422, t423
-    t424 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
-    t425 = t418 * t419 + more_right_21_front_elbow_down_alike * t424
-    del t419, t424
-    change_right_front_elbow_down_alike = _runtime.select(t304, t425, 0.0)
-    del t425
-    t426 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
-    del nearer_right_front_elbow_down_alike
-    t427 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
-    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
-    t428 = t51 & t287 & t303 & (t107 <= t426) & (t107 <= t427)
-    del t287, t303
-    t429 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
-    del elbow_11_front_elbow_down_alike
-    t430 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
-    t431 = t414 * (turn_both_front_elbow_down_alike * t430)
-    t432 = t410 - t415 * (t411 * t429) - t431
-    del t410, t431
-    t433 = t432 * (t432 - 2.0 * r_left_0_front_elbow_down_alike)
-    t434 = swing_21_front_elbow_down_alike + t415 * (t411 * t430)
-    del swing_21_front_elbow_down_alike, t411, t415, t430
-    t435 = t414 * (turn_both_front_elbow_down_alike * t429)
-    del t414, t429
-    more_left_21_front_elbow_down_alike = t434 - t435
-    del t434, t435
-    t436 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
-    t437 = t433 + more_left_21_front_elbow_down_alike * t436
-    del t433, t436
-    change_left_front_elbow_down_alike = _runtime.select(t304, t437, 0.0)
-    del t437
-    t438 = -(t291 + change_left_front_elbow_down_alike)
-    del t291
-    t439 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
-    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t428 & (t107 <= t438) & (t107 <= t439))
-    del t428
-    t440 = _runtime.poison(invalid | unreachable_2)
-    t441 = t32 + t440
-    del t32
-    t442 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
-    del more_right_21_front_elbow_down_alike
-    h_right_front_elbow_down_alike = _runtime.select(t304, t442, h_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, t442
-    r_right_front_elbow_down_alike = _runtime.select(t304, r_right_0_front_elbow_down_alike - t418, r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t418
-    t443 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
-    folded_right_front_elbow_down_alike = t443 <= t211
-    del t443
-    t444 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike
-    M_right_front_elbow_down_alike = np.maximum(t427, t215)
-    del t427
-    N_right_front_elbow_down_alike = np.maximum(t426, t215)
-    del t426
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t445 = 1.0 / whole_right_front_elbow_down_alike
-    del whole_right_front_elbow_down_alike
-    t446 = t74 + t214 * M_right_front_elbow_down_alike * t445
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t446)
-    del t446
-    t447 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t448 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
-    t449 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
-    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
-    t450 = t264 * (1.0 + t448) - straight_mid_front_elbow_down_alike * t449
-    del t448, t449
-    t451 = _runtime.select(t304, t450, t264)
-    del t450
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t451)
-    t452 = 2.0 * sigma_right_front_elbow_down_alike
-    t453 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t454 = np.sqrt(t453)
-    del t453
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t445 * (t452 * t454))
-    del t445
-    t455 = fore_arm * s_bend_right_front_elbow_down_alike
-    del s_bend_right_front_elbow_down_alike
-    t456 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    del ahead_1_right_front_elbow_down_alike
-    t457 = np.arctan2(t447 - r_right_front_elbow_down_alike * t455, t456 + h_right_front_elbow_down_alike * t455)
-    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t447, t455, t456
-    t458 = _runtime.select(folded_right_front_elbow_down_alike, t444, t457)
-    del t457
-    t459 = _runtime.wrap_cut(t458) + t440
-    del t458
-    t460 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    t461 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t454, t460)
-    del t454, t460
-    t462 = t226 + _runtime.select(short_right, 0.0, t461)
-    del t461
-    t463 = _runtime.wrap(t462) + t440
-    del t462
-    t464 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
-    del more_left_21_front_elbow_down_alike
-    h_left_front_elbow_down_alike = _runtime.select(t304, t464, h_left_0_front_elbow_down_alike)
-    del h_left_0_front_elbow_down_alike, t464
-    r_left_front_elbow_down_alike = _runtime.select(t304, r_left_0_front_elbow_down_alike - t432, r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t432
-    t465 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t465 <= t211
-    del t465
-    M_left_front_elbow_down_alike = np.maximum(t439, 0.0)
-    del t439
-    N_left_front_elbow_down_alike = np.maximum(t438, 0.0)
-    del t438
-    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t466 = 1.0 / whole_left_front_elbow_down_alike
-    del whole_left_front_elbow_down_alike
-    t467 = t74 + t214 * M_left_front_elbow_down_alike * t466
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t467)
-    del t467
-    t468 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t469 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t470 = np.sqrt(t469)
-    del t469
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t466 * (t452 * t470))
-    del t452, t466
-    t471 = fore_arm * s_bend_left_front_elbow_down_alike
-    del s_bend_left_front_elbow_down_alike
-    t472 = r_left_front_elbow_down_alike * t471
-    t473 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t474 = h_left_front_elbow_down_alike * t471
-    del h_left_front_elbow_down_alike, t471
-    t475 = _runtime.select(folded_left_front_elbow_down_alike, t444, np.arctan2(t468 - t472, t473 + t474))
-    t476 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    t477 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t470, t476)
-    del t470, t476
-    t478 = _runtime.select(short_right, 0.0, t477)
-    del t477
-    t479 = t240 + t440
-    t480 = _runtime.select(folded_left_front_elbow_down_alike, t444, np.arctan2(t468 + t472, t473 - t474))
-    del t444, t468, t472, t473, t474
-    t481 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t31))
-    del t3, t31
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t62)
-    del t62
-    t482 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t482 - stheta2A * s_relative_front_elbow_down_alike
-    del t482
-    t483 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
-    t484 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    del s_relative_front_elbow_down_alike
-    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t484
-    del c_relative_front_elbow_down_alike, t484
-    point_21_rear_elbow_up_alike = t483 + a3 * stheta23A_rear_elbow_up_alike
-    del t483
-    t485 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
-    t486 = d * (t485 + t_phi * stheta23A_rear_elbow_up_alike)
-    del t485
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t486
-    t487 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
-    t488 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t488 + a3 * ctheta23A_rear_elbow_up_alike
-    del t488
-    t489 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
-    del stheta23A_rear_elbow_up_alike
-    t490 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t489)
-    del ctheta23A_rear_elbow_up_alike, t489
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t490
-    t491 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t492 = t487 + t491
-    del t487, t491
-    gap_rear_elbow_up_alike = t490 * t490 + t486 * t486
-    t493 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t494 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t495 = 2.0 * point_11_rear_elbow_up_alike * t490 + 2.0 * point_21_rear_elbow_up_alike * t486
-    farther_right_rear_elbow_up_alike = _runtime.select(t53 * t492 < t493, t492 - t75, t494 - t495)
-    del t492
-    t496 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
-    del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t495 + t496
-    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t497 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t498 = np.maximum(-t497, margin_right_rear_elbow_up_alike)
-    del t497
-    spent_right_rear_elbow_up_alike = t498 <= t82
-    del t498
-    t499 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t500 = t499 - stheta2A * r_right_0_rear_elbow_up_alike
-    del t499
-    t501 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
-    t502 = _runtime.select(t501, 1.0, -1.0)
-    del t501
-    t503 = t500 * t502
-    del t500
-    slope_right_rear_elbow_up_alike = t278 * t503
-    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t281, 1.0)
-    t504 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
-    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t504, 0.0)
-    del t504
-    t505 = t44 * t503
-    del t503
-    t506 = np.abs(t505)
-    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t95, 1.0)
-    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t506 / heavy_1_right_rear_elbow_up_alike, 0.0)
-    t507 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
-    t508 = _runtime.select(spent_right_rear_elbow_up_alike, t507, 0.0)
-    del t507
-    t509 = -(_runtime.FEASIBILITY * (t52 + t508)) <= margin_right_rear_elbow_up_alike
-    del t508
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t486
-    del point_21_rear_elbow_up_alike, t486
-    t510 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t490
-    del point_11_rear_elbow_up_alike, t490
-    t511 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t512 = t510 + t511
-    del t510, t511
-    farther_left_rear_elbow_up_alike = _runtime.select(t53 * t512 < t493, t512 - t75, t494 + t495)
-    del t493, t494, t512
-    t513 = t495 - t496
-    del t495, t496
-    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t513)
-    t514 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t515 = np.maximum(-t514, margin_left_rear_elbow_up_alike)
-    del t514
-    spent_left_rear_elbow_up_alike = t515 <= t82
-    del t515
-    t516 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    t517 = t516 - stheta2A * r_left_0_rear_elbow_up_alike
-    del t516
-    t518 = _runtime.select(-t513 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
-    t519 = t517 * t518
-    del t517
-    slope_left_rear_elbow_up_alike = t278 * t519
-    del t278
-    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t281, 1.0)
+    t277 = 2.0 * drawn_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t275 * t277
+    t278 = 1.0 - t86 * drawn_front_elbow_down_alike
+    t279 = t85 * np.sqrt(fore + L1 * (t278 * t278)) / 2000000.0
+    del fore, t278, t85
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t280 = t90 * (t279 + np.abs(tilt_front_elbow_down_alike))
+    del t279, t90, tilt_front_elbow_down_alike
+    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t280, 1.0)
+    t281 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
+    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t281, 0.0)
     del t281
-    t520 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
-    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t520, 0.0)
-    del t520
-    t521 = t44 * t519
-    del t519
-    t522 = np.abs(t521)
-    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t95, 1.0)
-    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t522 / heavy_1_left_rear_elbow_up_alike, 0.0)
-    t523 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
-    t524 = _runtime.select(spent_left_rear_elbow_up_alike, t523, 0.0)
-    del t523
-    t525 = -(_runtime.FEASIBILITY * (t52 + t524)) <= margin_left_rear_elbow_up_alike
-    del t524
-    t526 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
-    t527 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
-    del gain_1_left_rear_elbow_up_alike
-    t528 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
-    del gain_0_left_rear_elbow_up_alike
-    t529 = _runtime.select(margin_left_rear_elbow_up_alike < 0.0, t527 / (t110 + t527 + t528), 0.0)
-    del t527, t528
-    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t529, 0.0)
-    del t529
-    t530 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
-    t531 = heavy_0_left_rear_elbow_up_alike * t530
-    t532 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t533 = L1 - t532 - stheta2A * h_left_0_rear_elbow_up_alike
-    del t532
-    t534 = t87 * (t310 * t518 * t533)
-    del t518, t533
-    t535 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t536 = np.sqrt(np.maximum(0.0, 4.0 * t530 * t534 + t535))
-    del t535
-    root_on_1_both_rear_elbow_up_alike = _runtime.select(t526, t536, 0.0)
-    del t536
-    t537 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
-    t538 = t52 * heavy_0_left_rear_elbow_up_alike
-    t539 = t538 * 5.960464477539063e-08
-    t540 = 1.0 / (t537 - t539)
-    t541 = (t531 * t540 <= 4.547473508864641e-13) & (0.0 < t530 * t540)
-    t542 = 2.0 * t530
-    t543 = 0.0 < -t530
-    t544 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
-    del root_on_1_both_rear_elbow_up_alike
-    t545 = t538 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t534)
-    del t538
-    t546 = 1.0 / t545
-    del t545
-    t547 = heavy_0_left_rear_elbow_up_alike * t544 * t546
-    t548 = t544 * t546
-    t549 = (t547 <= 9.094947017729282e-13) & (0.0 < t548)
-    del t547
-    far_back_1_both_rear_elbow_up_alike = _runtime.select(t526, _runtime.select(t549, t548, 0.0), 0.0)
-    del t548, t549
-    t550 = _runtime.select(t543, far_back_1_both_rear_elbow_up_alike, 0.0)
-    t551 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t541, t540 * t542, 0.0), t550)
-    del t540, t541, t550
-    t552 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
-    del gain_1_right_rear_elbow_up_alike
-    t553 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
-    del gain_0_right_rear_elbow_up_alike
-    t554 = _runtime.select(margin_right_rear_elbow_up_alike < 0.0, t552 / (t110 + t552 + t553), 0.0)
-    del t552, t553
-    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t554, 0.0)
-    del t554
-    t555 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
-    t556 = heavy_0_right_rear_elbow_up_alike * t555
-    t557 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t558 = L1 - t557 - stheta2A * h_right_0_rear_elbow_up_alike
-    del t557
-    t559 = t87 * (t310 * t502 * t558)
-    del t310, t502, t558
-    t560 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t561 = np.sqrt(np.maximum(0.0, 4.0 * t555 * t559 + t560))
-    del t560
-    root_on_0_both_rear_elbow_up_alike = _runtime.select(t526, t561, 0.0)
-    del t561
-    t562 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
-    t563 = t52 * heavy_0_right_rear_elbow_up_alike
-    t564 = t563 * 5.960464477539063e-08
-    t565 = 1.0 / (t562 - t564)
-    t566 = (t556 * t565 <= 4.547473508864641e-13) & (0.0 < t555 * t565)
-    t567 = 2.0 * t555
-    t568 = 0.0 < -t555
-    t569 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
-    del root_on_0_both_rear_elbow_up_alike
-    t570 = t563 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t559)
-    del t563
-    t571 = 1.0 / t570
-    del t570
-    t572 = heavy_0_right_rear_elbow_up_alike * t569 * t571
-    t573 = t569 * t571
-    t574 = (t572 <= 9.094947017729282e-13) & (0.0 < t573)
-    del t572
-    far_back_0_both_rear_elbow_up_alike = _runtime.select(t526, _runtime.select(t574, t573, 0.0), 0.0)
-    del t573, t574
-    t575 = _runtime.select(t568, far_back_0_both_rear_elbow_up_alike, 0.0)
-    t576 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t566, t565 * t567, 0.0), t575)
-    del t565, t566, t575
-    near_back_both_rear_elbow_up_alike = _runtime.select(t526, np.maximum(np.maximum(0.0, t551), t576), 0.0)
-    del t551, t576
-    t577 = slope_right_rear_elbow_up_alike + t559 * near_back_both_rear_elbow_up_alike
-    t578 = near_back_both_rear_elbow_up_alike * t577 - t555
-    del t577
-    t579 = _runtime.select(0.0 < t578, far_back_0_both_rear_elbow_up_alike, 0.0)
-    del far_back_0_both_rear_elbow_up_alike, t578
-    t580 = np.maximum(near_back_both_rear_elbow_up_alike, t579)
-    del t579
-    t581 = slope_left_rear_elbow_up_alike + t534 * near_back_both_rear_elbow_up_alike
-    t582 = near_back_both_rear_elbow_up_alike * t581 - t530
-    del near_back_both_rear_elbow_up_alike, t581
-    t583 = _runtime.select(0.0 < t582, far_back_1_both_rear_elbow_up_alike, 0.0)
-    del far_back_1_both_rear_elbow_up_alike, t582
-    turn_back_both_rear_elbow_up_alike = _runtime.select(t526, np.maximum(t580, t583), 0.0)
-    del t580, t583
-    t584 = slope_left_rear_elbow_up_alike + t534 * turn_back_both_rear_elbow_up_alike
-    t585 = t530 - turn_back_both_rear_elbow_up_alike * t584
-    del t584
-    t586 = slope_right_rear_elbow_up_alike + t559 * turn_back_both_rear_elbow_up_alike
-    t587 = t555 - turn_back_both_rear_elbow_up_alike * t586
-    del t586
-    left_back_both_rear_elbow_up_alike = _runtime.select(t526, np.minimum(t585, t587), 0.0)
-    del t585, t587
-    t588 = 1.0 / (t539 + t544)
-    del t539, t544
-    t589 = (-(t531 * t588) <= 4.547473508864641e-13) & (0.0 < -(t530 * t588))
-    del t531
-    t590 = t546 * (heavy_0_left_rear_elbow_up_alike * t537)
-    del heavy_0_left_rear_elbow_up_alike
-    t591 = -(t537 * t546)
-    del t537, t546
-    t592 = (-t590 <= 9.094947017729282e-13) & (0.0 < t591)
-    del t590
-    far_on_1_both_rear_elbow_up_alike = _runtime.select(t526, _runtime.select(t592, t591, 0.0), 0.0)
-    del t591, t592
-    t593 = _runtime.select(t543, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del t543
-    t594 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t589, -(t542 * t588), 0.0), t593)
-    del t542, t588, t589, t593
-    t595 = 1.0 / (t564 + t569)
-    del t564, t569
-    t596 = (-(t556 * t595) <= 4.547473508864641e-13) & (0.0 < -(t555 * t595))
-    del t556
-    t597 = t571 * (heavy_0_right_rear_elbow_up_alike * t562)
-    del heavy_0_right_rear_elbow_up_alike
-    t598 = -(t562 * t571)
-    del t562, t571
-    t599 = (-t597 <= 9.094947017729282e-13) & (0.0 < t598)
-    del t597
-    far_on_0_both_rear_elbow_up_alike = _runtime.select(t526, _runtime.select(t599, t598, 0.0), 0.0)
-    del t598, t599
-    t600 = _runtime.select(t568, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del t568
-    t601 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t596, -(t567 * t595), 0.0), t600)
-    del t567, t595, t596, t600
-    near_on_both_rear_elbow_up_alike = _runtime.select(t526, np.maximum(np.maximum(0.0, t594), t601), 0.0)
-    del t594, t601
-    t602 = slope_right_rear_elbow_up_alike - t559 * near_on_both_rear_elbow_up_alike
-    t603 = t555 + near_on_both_rear_elbow_up_alike * t602
-    del t602
-    t604 = _runtime.select(0.0 < -t603, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del far_on_0_both_rear_elbow_up_alike, t603
-    t605 = np.maximum(near_on_both_rear_elbow_up_alike, t604)
-    del t604
-    t606 = slope_left_rear_elbow_up_alike - t534 * near_on_both_rear_elbow_up_alike
-    t607 = t530 + near_on_both_rear_elbow_up_alike * t606
-    del near_on_both_rear_elbow_up_alike, t606
-    t608 = _runtime.select(0.0 < -t607, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del far_on_1_both_rear_elbow_up_alike, t607
-    turn_on_both_rear_elbow_up_alike = _runtime.select(t526, np.maximum(t605, t608), 0.0)
-    del t605, t608
-    t609 = slope_left_rear_elbow_up_alike - t534 * turn_on_both_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike, t534
-    t610 = t530 + turn_on_both_rear_elbow_up_alike * t609
-    del t530, t609
-    t611 = slope_right_rear_elbow_up_alike - t559 * turn_on_both_rear_elbow_up_alike
-    del slope_right_rear_elbow_up_alike, t559
-    t612 = t555 + turn_on_both_rear_elbow_up_alike * t611
-    del t555, t611
-    left_on_both_rear_elbow_up_alike = _runtime.select(t526, np.minimum(t610, t612), 0.0)
-    del t610, t612
-    t613 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
-    del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
-    t614 = _runtime.select(t613, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
-    del t613, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
-    turn_both_rear_elbow_up_alike = _runtime.select(t526, t614, 0.0)
-    del t614
-    t615 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
-    del margin_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
-    t616 = t52 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
-    del heavy_1_left_rear_elbow_up_alike
-    t617 = -(t615 * _runtime.sign(-t521) / (t522 + t616))
-    del t521, t522, t615, t616
-    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t617, 0.0)
-    del spent_left_rear_elbow_up_alike, t617
-    t618 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
-    del margin_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
-    t619 = t52 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
-    del heavy_1_right_rear_elbow_up_alike
-    t620 = -(t618 * _runtime.sign(-t505) / (t506 + t619))
-    del t505, t506, t618, t619
-    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t620, 0.0)
-    del spent_right_rear_elbow_up_alike, t620
-    t621 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
-    t622 = _runtime.select(t621, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
-    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t621
-    t623 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
-    del drawn_front_elbow_down_alike
-    t624 = turn_both_rear_elbow_up_alike + t622 - t87 * t623
-    del t622, t623
-    lean_rear_elbow_up_alike = _runtime.select(t526, t624, 0.0)
-    del t624
-    t625 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t626 = 1.0 + t625
-    t627 = 1.0 / np.sqrt(t626)
-    t628 = 1.0 / (t626 * (1.0 + t627))
-    del t626
-    t629 = elbow_11_rear_elbow_up_alike * t625 * t628 + t627 * (elbow_21 * lean_rear_elbow_up_alike)
-    t630 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
-    t631 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
-    t632 = 1.0 + t630
-    t633 = 1.0 / np.sqrt(t632)
-    t634 = 1.0 / (t632 * (1.0 + t633))
-    del t632
-    t635 = elbow_21 - h_right_0_rear_elbow_up_alike
-    t636 = t633 * (turn_both_rear_elbow_up_alike * t635)
-    t637 = t629 - t630 * t631 * t634 - t636
-    del t636
-    t638 = t637 * (t637 - 2.0 * r_right_0_rear_elbow_up_alike)
-    t639 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    swing_21_rear_elbow_up_alike = t627 * t639 - t628 * (elbow_21 * t625)
-    del t625, t627, t628, t639
-    t640 = swing_21_rear_elbow_up_alike + t634 * (t630 * t635)
-    del t635
-    t641 = t633 * (turn_both_rear_elbow_up_alike * t631)
-    del t631
-    more_right_21_rear_elbow_up_alike = t640 - t641
-    del t640, t641
-    t642 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
-    t643 = t638 + more_right_21_rear_elbow_up_alike * t642
-    del t638, t642
-    change_right_rear_elbow_up_alike = _runtime.select(t526, t643, 0.0)
-    del t643
-    t644 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
-    del nearer_right_rear_elbow_up_alike
-    t645 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
-    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
-    t646 = t51 & t509 & t525 & (t107 <= t644) & (t107 <= t645)
-    del t509, t525
-    t647 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
-    del elbow_11_rear_elbow_up_alike
-    t648 = elbow_21 - h_left_0_rear_elbow_up_alike
-    del elbow_21
-    t649 = t633 * (turn_both_rear_elbow_up_alike * t648)
-    t650 = t629 - t634 * (t630 * t647) - t649
-    del t629, t649
-    t651 = t650 * (t650 - 2.0 * r_left_0_rear_elbow_up_alike)
-    t652 = swing_21_rear_elbow_up_alike + t634 * (t630 * t648)
-    del swing_21_rear_elbow_up_alike, t630, t634, t648
-    t653 = t633 * (turn_both_rear_elbow_up_alike * t647)
-    del t633, t647
-    more_left_21_rear_elbow_up_alike = t652 - t653
-    del t652, t653
-    t654 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
-    t655 = t651 + more_left_21_rear_elbow_up_alike * t654
-    del t651, t654
-    change_left_rear_elbow_up_alike = _runtime.select(t526, t655, 0.0)
-    del t655
-    t656 = -(t513 + change_left_rear_elbow_up_alike)
+    t282 = t43 * t275
+    del t275
+    t283 = np.abs(t282)
+    heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t94, 1.0)
+    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t283 / heavy_1_right_front_elbow_down_alike, 0.0)
+    t284 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
+    t285 = _runtime.select(spent_right_front_elbow_down_alike, t284, 0.0)
+    del t284
+    t286 = -(_runtime.FEASIBILITY * (t51 + t285)) <= margin_right_front_elbow_down_alike
+    del t285
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t253
+    del point_21_front_elbow_down_alike, t253
+    t287 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t258
+    del point_11_front_elbow_down_alike, t258
+    t288 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t289 = t287 + t288
+    del t287, t288
+    farther_left_front_elbow_down_alike = _runtime.select(t52 * t289 < t261, t289 - t74, t265 + t266)
+    del t261, t265, t289
+    t290 = t266 + t268
+    del t266, t268
+    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t290)
+    t291 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t292 = np.maximum(-t291, margin_left_front_elbow_down_alike)
+    del t291
+    spent_left_front_elbow_down_alike = t292 <= t81
+    del t292
+    t293 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t294 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t295 = _runtime.select(-t290 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
+    t296 = (t293 - t294) * t295
+    del t293, t294
+    slope_left_front_elbow_down_alike = t277 * t296
+    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t280, 1.0)
+    t297 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
+    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t297, 0.0)
+    del t297
+    t298 = t43 * t296
+    del t296
+    t299 = np.abs(t298)
+    heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t94, 1.0)
+    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t299 / heavy_1_left_front_elbow_down_alike, 0.0)
+    t300 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
+    t301 = _runtime.select(spent_left_front_elbow_down_alike, t300, 0.0)
+    del t300
+    t302 = -(_runtime.FEASIBILITY * (t51 + t301)) <= margin_left_front_elbow_down_alike
+    del t301
+    t303 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
+    t304 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
+    del gain_1_left_front_elbow_down_alike
+    t305 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
+    del gain_0_left_front_elbow_down_alike
+    t306 = _runtime.select(margin_left_front_elbow_down_alike < 0.0, t304 / (t109 + t304 + t305), 0.0)
+    del t304, t305
+    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t306, 0.0)
+    del t306
+    t307 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t308 = heavy_0_left_front_elbow_down_alike * t307
+    t309 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
+    t310 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t311 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t312 = t86 * (t295 * t309 * (L1 - t310 - t311))
+    del t295, t310, t311
+    t313 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t314 = np.sqrt(np.maximum(0.0, 4.0 * t307 * t312 + t313))
+    del t313
+    root_on_1_both_front_elbow_down_alike = _runtime.select(t303, t314, 0.0)
+    del t314
+    t315 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
+    t316 = t51 * heavy_0_left_front_elbow_down_alike
+    t317 = t316 * 5.960464477539063e-08
+    t318 = 1.0 / (t315 - t317)
+    t319 = (t308 * t318 <= 4.547473508864641e-13) & (0.0 < t307 * t318)
+    t320 = 2.0 * t307
+    t321 = 0.0 < -t307
+    t322 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
+    del root_on_1_both_front_elbow_down_alike
+    t323 = t316 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t312)
+    del t316
+    t324 = 1.0 / t323
+    del t323
+    t325 = heavy_0_left_front_elbow_down_alike * t322 * t324
+    t326 = t322 * t324
+    t327 = (t325 <= 9.094947017729282e-13) & (0.0 < t326)
+    del t325
+    far_back_1_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t327, t326, 0.0), 0.0)
+    del t326, t327
+    t328 = _runtime.select(t321, far_back_1_both_front_elbow_down_alike, 0.0)
+    t329 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t319, t318 * t320, 0.0), t328)
+    del t318, t319, t328
+    t330 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
+    del gain_1_right_front_elbow_down_alike
+    t331 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
+    del gain_0_right_front_elbow_down_alike
+    t332 = _runtime.select(margin_right_front_elbow_down_alike < 0.0, t330 / (t109 + t330 + t331), 0.0)
+    del t330, t331
+    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t332, 0.0)
+    del t332
+    t333 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t334 = heavy_0_right_front_elbow_down_alike * t333
+    t335 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t336 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t337 = t86 * (t274 * t309 * (L1 - t335 - t336))
+    del t274, t335, t336
+    t338 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t339 = np.sqrt(np.maximum(0.0, 4.0 * t333 * t337 + t338))
+    del t338
+    root_on_0_both_front_elbow_down_alike = _runtime.select(t303, t339, 0.0)
+    del t339
+    t340 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
+    t341 = t51 * heavy_0_right_front_elbow_down_alike
+    t342 = t341 * 5.960464477539063e-08
+    t343 = 1.0 / (t340 - t342)
+    t344 = (t334 * t343 <= 4.547473508864641e-13) & (0.0 < t333 * t343)
+    t345 = 2.0 * t333
+    t346 = 0.0 < -t333
+    t347 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
+    del root_on_0_both_front_elbow_down_alike
+    t348 = t341 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t337)
+    del t341
+    t349 = 1.0 / t348
+    del t348
+    t350 = heavy_0_right_front_elbow_down_alike * t347 * t349
+    t351 = t347 * t349
+    t352 = (t350 <= 9.094947017729282e-13) & (0.0 < t351)
+    del t350
+    far_back_0_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t352, t351, 0.0), 0.0)
+    del t351, t352
+    t353 = _runtime.select(t346, far_back_0_both_front_elbow_down_alike, 0.0)
+    t354 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t344, t343 * t345, 0.0), t353)
+    del t343, t344, t353
+    near_back_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(np.maximum(0.0, t329), t354), 0.0)
+    del t329, t354
+    t355 = slope_right_front_elbow_down_alike + t337 * near_back_both_front_elbow_down_alike
+    t356 = near_back_both_front_elbow_down_alike * t355 - t333
+    del t355
+    t357 = _runtime.select(0.0 < t356, far_back_0_both_front_elbow_down_alike, 0.0)
+    del far_back_0_both_front_elbow_down_alike, t356
+    t358 = np.maximum(near_back_both_front_elbow_down_alike, t357)
+    del t357
+    t359 = slope_left_front_elbow_down_alike + t312 * near_back_both_front_elbow_down_alike
+    t360 = near_back_both_front_elbow_down_alike * t359 - t307
+    del near_back_both_front_elbow_down_alike, t359
+    t361 = _runtime.select(0.0 < t360, far_back_1_both_front_elbow_down_alike, 0.0)
+    del far_back_1_both_front_elbow_down_alike, t360
+    turn_back_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(t358, t361), 0.0)
+    del t358, t361
+    t362 = slope_left_front_elbow_down_alike + t312 * turn_back_both_front_elbow_down_alike
+    t363 = t307 - turn_back_both_front_elbow_down_alike * t362
+    del t362
+    t364 = slope_right_front_elbow_down_alike + t337 * turn_back_both_front_elbow_down_alike
+    t365 = t333 - turn_back_both_front_elbow_down_alike * t364
+    del t364
+    left_back_both_front_elbow_down_alike = _runtime.select(t303, np.minimum(t363, t365), 0.0)
+    del t363, t365
+    t366 = 1.0 / (t317 + t322)
+    del t317, t322
+    t367 = (-(t308 * t366) <= 4.547473508864641e-13) & (0.0 < -(t307 * t366))
+    del t308
+    t368 = t324 * (heavy_0_left_front_elbow_down_alike * t315)
+    del heavy_0_left_front_elbow_down_alike
+    t369 = -(t315 * t324)
+    del t315, t324
+    t370 = (-t368 <= 9.094947017729282e-13) & (0.0 < t369)
+    del t368
+    far_on_1_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t370, t369, 0.0), 0.0)
+    del t369, t370
+    t371 = _runtime.select(t321, far_on_1_both_front_elbow_down_alike, 0.0)
+    del t321
+    t372 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t367, -(t320 * t366), 0.0), t371)
+    del t320, t366, t367, t371
+    t373 = 1.0 / (t342 + t347)
+    del t342, t347
+    t374 = (-(t334 * t373) <= 4.547473508864641e-13) & (0.0 < -(t333 * t373))
+    del t334
+    t375 = t349 * (heavy_0_right_front_elbow_down_alike * t340)
+    del heavy_0_right_front_elbow_down_alike
+    t376 = -(t340 * t349)
+    del t340, t349
+    t377 = (-t375 <= 9.094947017729282e-13) & (0.0 < t376)
+    del t375
+    far_on_0_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t377, t376, 0.0), 0.0)
+    del t376, t377
+    t378 = _runtime.select(t346, far_on_0_both_front_elbow_down_alike, 0.0)
+    del t346
+    t379 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t374, -(t345 * t373), 0.0), t378)
+    del t345, t373, t374, t378
+    near_on_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(np.maximum(0.0, t372), t379), 0.0)
+    del t372, t379
+    t380 = slope_right_front_elbow_down_alike - t337 * near_on_both_front_elbow_down_alike
+    t381 = t333 + near_on_both_front_elbow_down_alike * t380
+    del t380
+    t382 = _runtime.select(0.0 < -t381, far_on_0_both_front_elbow_down_alike, 0.0)
+    del far_on_0_both_front_elbow_down_alike, t381
+    t383 = np.maximum(near_on_both_front_elbow_down_alike, t382)
+    del t382
+    t384 = slope_left_front_elbow_down_alike - t312 * near_on_both_front_elbow_down_alike
+    t385 = t307 + near_on_both_front_elbow_down_alike * t384
+    del near_on_both_front_elbow_down_alike, t384
+    t386 = _runtime.select(0.0 < -t385, far_on_1_both_front_elbow_down_alike, 0.0)
+    del far_on_1_both_front_elbow_down_alike, t385
+    turn_on_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(t383, t386), 0.0)
+    del t383, t386
+    t387 = slope_left_front_elbow_down_alike - t312 * turn_on_both_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike, t312
+    t388 = t307 + turn_on_both_front_elbow_down_alike * t387
+    del t307, t387
+    t389 = slope_right_front_elbow_down_alike - t337 * turn_on_both_front_elbow_down_alike
+    del slope_right_front_elbow_down_alike, t337
+    t390 = t333 + turn_on_both_front_elbow_down_alike * t389
+    del t333, t389
+    left_on_both_front_elbow_down_alike = _runtime.select(t303, np.minimum(t388, t390), 0.0)
+    del t388, t390
+    t391 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
+    del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
+    t392 = _runtime.select(t391, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
+    del t391, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
+    turn_both_front_elbow_down_alike = _runtime.select(t303, t392, 0.0)
+    del t392
+    t393 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    del margin_left_front_elbow_down_alike, share_left_front_elbow_down_alike
+    t394 = t51 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_left_front_elbow_down_alike
+    t395 = -(t393 * _runtime.sign(-t298) / (t299 + t394))
+    del t298, t299, t393, t394
+    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t395, 0.0)
+    del spent_left_front_elbow_down_alike, t395
+    t396 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    del margin_right_front_elbow_down_alike, share_right_front_elbow_down_alike
+    t397 = t51 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_front_elbow_down_alike
+    t398 = -(t396 * _runtime.sign(-t282) / (t283 + t397))
+    del t282, t283, t396, t397
+    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t398, 0.0)
+    del spent_right_front_elbow_down_alike, t398
+    t399 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
+    t400 = _runtime.select(t399, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
+    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t399
+    t401 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t402 = turn_both_front_elbow_down_alike + t400 - t86 * t401
+    del t400, t401
+    lean_front_elbow_down_alike = _runtime.select(t303, t402, 0.0)
+    del t402
+    t403 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
+    t404 = 1.0 + t403
+    t405 = 1.0 / np.sqrt(t404)
+    t406 = 1.0 / (t404 * (1.0 + t405))
+    del t404
+    t407 = elbow_11_front_elbow_down_alike * t403 * t406
+    t408 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
+    t409 = t407 + t405 * t408
+    del t407, t408
+    t410 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t411 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
+    t412 = 1.0 + t410
+    t413 = 1.0 / np.sqrt(t412)
+    t414 = 1.0 / (t412 * (1.0 + t413))
+    del t412
+    t415 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
+    t416 = t413 * (turn_both_front_elbow_down_alike * t415)
+    t417 = t409 - t410 * t411 * t414 - t416
+    del t416
+    t418 = t417 - 2.0 * r_right_0_front_elbow_down_alike
+    t419 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
+    t420 = t406 * (elbow_21_front_elbow_down_alike * t403)
+    del t403, t406
+    swing_21_front_elbow_down_alike = t405 * t419 - t420
+    del t405, t419, t420
+    t421 = swing_21_front_elbow_down_alike + t414 * (t410 * t415)
+    del t415
+    t422 = t413 * (turn_both_front_elbow_down_alike * t411)
+    del t411
+    more_right_21_front_elbow_down_alike = t421 - t422
+    del t421, t422
+    t423 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
+    t424 = t417 * t418 + more_right_21_front_elbow_down_alike * t423
+    del t418, t423
+    change_right_front_elbow_down_alike = _runtime.select(t303, t424, 0.0)
+    del t424
+    t425 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
+    del nearer_right_front_elbow_down_alike
+    t426 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
+    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
+    t427 = t50 & t286 & t302 & (t106 <= t425) & (t106 <= t426)
+    del t286, t302
+    t428 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
+    del elbow_11_front_elbow_down_alike
+    t429 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
+    t430 = t413 * (turn_both_front_elbow_down_alike * t429)
+    t431 = t409 - t414 * (t410 * t428) - t430
+    del t409, t430
+    t432 = t431 * (t431 - 2.0 * r_left_0_front_elbow_down_alike)
+    t433 = swing_21_front_elbow_down_alike + t414 * (t410 * t429)
+    del swing_21_front_elbow_down_alike, t410, t414, t429
+    t434 = t413 * (turn_both_front_elbow_down_alike * t428)
+    del t413, t428
+    more_left_21_front_elbow_down_alike = t433 - t434
+    del t433, t434
+    t435 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
+    t436 = t432 + more_left_21_front_elbow_down_alike * t435
+    del t432, t435
+    change_left_front_elbow_down_alike = _runtime.select(t303, t436, 0.0)
+    del t436
+    t437 = -(t290 + change_left_front_elbow_down_alike)
+    del t290
+    t438 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
+    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t427 & (t106 <= t437) & (t106 <= t438))
+    del t427
+    t439 = _runtime.poison(invalid | unreachable_2)
+    t440 = t31 + t439
+    del t31
+    t441 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
+    del more_right_21_front_elbow_down_alike
+    h_right_front_elbow_down_alike = _runtime.select(t303, t441, h_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, t441
+    r_right_front_elbow_down_alike = _runtime.select(t303, r_right_0_front_elbow_down_alike - t417, r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t417
+    t442 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
+    folded_right_front_elbow_down_alike = t442 <= t210
+    del t442
+    t443 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(t426, t214)
+    del t426
+    N_right_front_elbow_down_alike = np.maximum(t425, t214)
+    del t425
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t444 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    t445 = t73 + t213 * M_right_front_elbow_down_alike * t444
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t445)
+    del t445
+    t446 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t447 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t448 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
+    t449 = t263 * (1.0 + t447) - straight_mid_front_elbow_down_alike * t448
+    del t447, t448
+    t450 = _runtime.select(t303, t449, t263)
+    del t449
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t450)
+    t451 = 2.0 * sigma_right_front_elbow_down_alike
+    t452 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t453 = np.sqrt(t452)
+    del t452
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t444 * (t451 * t453))
+    del t444
+    t454 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
+    t455 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    t456 = np.arctan2(t446 - r_right_front_elbow_down_alike * t454, t455 + h_right_front_elbow_down_alike * t454)
+    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t446, t454, t455
+    t457 = _runtime.select(folded_right_front_elbow_down_alike, t443, t456)
+    del t456
+    t458 = _runtime.wrap_cut(t457) + t439
+    del t457
+    t459 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t460 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t453, t459)
+    del t453, t459
+    t461 = t225 + _runtime.select(short_right, 0.0, t460)
+    del t460
+    t462 = _runtime.wrap(t461) + t439
+    del t461
+    t463 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
+    del more_left_21_front_elbow_down_alike
+    h_left_front_elbow_down_alike = _runtime.select(t303, t463, h_left_0_front_elbow_down_alike)
+    del h_left_0_front_elbow_down_alike, t463
+    r_left_front_elbow_down_alike = _runtime.select(t303, r_left_0_front_elbow_down_alike - t431, r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t431
+    t464 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t464 <= t210
+    del t464
+    M_left_front_elbow_down_alike = np.maximum(t438, 0.0)
+    del t438
+    N_left_front_elbow_down_alike = np.maximum(t437, 0.0)
+    del t437
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t465 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
+    t466 = t73 + t213 * M_left_front_elbow_down_alike * t465
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t466)
+    del t466
+    t467 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t468 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t469 = np.sqrt(t468)
+    del t468
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t465 * (t451 * t469))
+    del t451, t465
+    t470 = fore_arm * s_bend_left_front_elbow_down_alike
+    del s_bend_left_front_elbow_down_alike
+    t471 = r_left_front_elbow_down_alike * t470
+    t472 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
+    t473 = h_left_front_elbow_down_alike * t470
+    del h_left_front_elbow_down_alike, t470
+    t474 = _runtime.select(folded_left_front_elbow_down_alike, t443, np.arctan2(t467 - t471, t472 + t473))
+    t475 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t476 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t469, t475)
+    del t469, t475
+    t477 = _runtime.select(short_right, 0.0, t476)
+    del t476
+    t478 = t239 + t439
+    t479 = _runtime.select(folded_left_front_elbow_down_alike, t443, np.arctan2(t467 + t471, t472 - t473))
+    del t443, t467, t471, t472, t473
+    t480 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t30))
+    del t3, t30
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t61)
+    del t61
+    t481 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t481 - stheta2A * s_relative_front_elbow_down_alike
+    del t481
+    t482 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
+    t483 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    del s_relative_front_elbow_down_alike
+    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t483
+    del c_relative_front_elbow_down_alike, t483
+    point_21_rear_elbow_up_alike = t482 + a3 * stheta23A_rear_elbow_up_alike
+    del t482
+    t484 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t485 = d * (t484 + t_phi * stheta23A_rear_elbow_up_alike)
+    del t484
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t485
+    t486 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
+    t487 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t487 + a3 * ctheta23A_rear_elbow_up_alike
+    del t487
+    t488 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
+    del stheta23A_rear_elbow_up_alike
+    t489 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t488)
+    del ctheta23A_rear_elbow_up_alike, t488
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t489
+    t490 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t491 = t486 + t490
+    del t486, t490
+    gap_rear_elbow_up_alike = t489 * t489 + t485 * t485
+    t492 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t493 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t494 = 2.0 * point_11_rear_elbow_up_alike * t489 + 2.0 * point_21_rear_elbow_up_alike * t485
+    farther_right_rear_elbow_up_alike = _runtime.select(t52 * t491 < t492, t491 - t74, t493 - t494)
+    del t491
+    t495 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    nearer_right_rear_elbow_up_alike = t494 + t495
+    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t496 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t497 = np.maximum(-t496, margin_right_rear_elbow_up_alike)
+    del t496
+    spent_right_rear_elbow_up_alike = t497 <= t81
+    del t497
+    t498 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t499 = t498 - stheta2A * r_right_0_rear_elbow_up_alike
+    del t498
+    t500 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
+    t501 = _runtime.select(t500, 1.0, -1.0)
+    del t500
+    t502 = t499 * t501
+    del t499
+    slope_right_rear_elbow_up_alike = t277 * t502
+    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t280, 1.0)
+    t503 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
+    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t503, 0.0)
+    del t503
+    t504 = t43 * t502
+    del t502
+    t505 = np.abs(t504)
+    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t94, 1.0)
+    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t505 / heavy_1_right_rear_elbow_up_alike, 0.0)
+    t506 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
+    t507 = _runtime.select(spent_right_rear_elbow_up_alike, t506, 0.0)
+    del t506
+    t508 = -(_runtime.FEASIBILITY * (t51 + t507)) <= margin_right_rear_elbow_up_alike
+    del t507
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t485
+    del point_21_rear_elbow_up_alike, t485
+    t509 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t489
+    del point_11_rear_elbow_up_alike, t489
+    t510 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t511 = t509 + t510
+    del t509, t510
+    farther_left_rear_elbow_up_alike = _runtime.select(t52 * t511 < t492, t511 - t74, t493 + t494)
+    del t492, t493, t511
+    t512 = t494 - t495
+    del t494, t495
+    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t512)
+    t513 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t514 = np.maximum(-t513, margin_left_rear_elbow_up_alike)
     del t513
-    t657 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
+    spent_left_rear_elbow_up_alike = t514 <= t81
+    del t514
+    t515 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    t516 = t515 - stheta2A * r_left_0_rear_elbow_up_alike
+    del t515
+    t517 = _runtime.select(-t512 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
+    t518 = t516 * t517
+    del t516
+    slope_left_rear_elbow_up_alike = t277 * t518
+    del t277
+    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t280, 1.0)
+    del t280
+    t519 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
+    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t519, 0.0)
+    del t519
+    t520 = t43 * t518
+    del t518
+    t521 = np.abs(t520)
+    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t94, 1.0)
+    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t521 / heavy_1_left_rear_elbow_up_alike, 0.0)
+    t522 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
+    t523 = _runtime.select(spent_left_rear_elbow_up_alike, t522, 0.0)
+    del t522
+    t524 = -(_runtime.FEASIBILITY * (t51 + t523)) <= margin_left_rear_elbow_up_alike
+    del t523
+    t525 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
+    t526 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
+    del gain_1_left_rear_elbow_up_alike
+    t527 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
+    del gain_0_left_rear_elbow_up_alike
+    t528 = _runtime.select(margin_left_rear_elbow_up_alike < 0.0, t526 / (t109 + t526 + t527), 0.0)
+    del t526, t527
+    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t528, 0.0)
+    del t528
+    t529 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t530 = heavy_0_left_rear_elbow_up_alike * t529
+    t531 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t532 = L1 - t531 - stheta2A * h_left_0_rear_elbow_up_alike
+    del t531
+    t533 = t86 * (t309 * t517 * t532)
+    del t517, t532
+    t534 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t535 = np.sqrt(np.maximum(0.0, 4.0 * t529 * t533 + t534))
+    del t534
+    root_on_1_both_rear_elbow_up_alike = _runtime.select(t525, t535, 0.0)
+    del t535
+    t536 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
+    t537 = t51 * heavy_0_left_rear_elbow_up_alike
+    t538 = t537 * 5.960464477539063e-08
+    t539 = 1.0 / (t536 - t538)
+    t540 = (t530 * t539 <= 4.547473508864641e-13) & (0.0 < t529 * t539)
+    t541 = 2.0 * t529
+    t542 = 0.0 < -t529
+    t543 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
+    del root_on_1_both_rear_elbow_up_alike
+    t544 = t537 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t533)
+    del t537
+    t545 = 1.0 / t544
+    del t544
+    t546 = heavy_0_left_rear_elbow_up_alike * t543 * t545
+    t547 = t543 * t545
+    t548 = (t546 <= 9.094947017729282e-13) & (0.0 < t547)
+    del t546
+    far_back_1_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t548, t547, 0.0), 0.0)
+    del t547, t548
+    t549 = _runtime.select(t542, far_back_1_both_rear_elbow_up_alike, 0.0)
+    t550 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t540, t539 * t541, 0.0), t549)
+    del t539, t540, t549
+    t551 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
+    del gain_1_right_rear_elbow_up_alike
+    t552 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
+    del gain_0_right_rear_elbow_up_alike
+    t553 = _runtime.select(margin_right_rear_elbow_up_alike < 0.0, t551 / (t109 + t551 + t552), 0.0)
+    del t551, t552
+    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t553, 0.0)
+    del t553
+    t554 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t555 = heavy_0_right_rear_elbow_up_alike * t554
+    t556 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t557 = L1 - t556 - stheta2A * h_right_0_rear_elbow_up_alike
+    del t556
+    t558 = t86 * (t309 * t501 * t557)
+    del t309, t501, t557
+    t559 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t560 = np.sqrt(np.maximum(0.0, 4.0 * t554 * t558 + t559))
+    del t559
+    root_on_0_both_rear_elbow_up_alike = _runtime.select(t525, t560, 0.0)
+    del t560
+    t561 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
+    t562 = t51 * heavy_0_right_rear_elbow_up_alike
+    t563 = t562 * 5.960464477539063e-08
+    t564 = 1.0 / (t561 - t563)
+    t565 = (t555 * t564 <= 4.547473508864641e-13) & (0.0 < t554 * t564)
+    t566 = 2.0 * t554
+    t567 = 0.0 < -t554
+    t568 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
+    del root_on_0_both_rear_elbow_up_alike
+    t569 = t562 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t558)
+    del t562
+    t570 = 1.0 / t569
+    del t569
+    t571 = heavy_0_right_rear_elbow_up_alike * t568 * t570
+    t572 = t568 * t570
+    t573 = (t571 <= 9.094947017729282e-13) & (0.0 < t572)
+    del t571
+    far_back_0_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t573, t572, 0.0), 0.0)
+    del t572, t573
+    t574 = _runtime.select(t567, far_back_0_both_rear_elbow_up_alike, 0.0)
+    t575 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t565, t564 * t566, 0.0), t574)
+    del t564, t565, t574
+    near_back_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(np.maximum(0.0, t550), t575), 0.0)
+    del t550, t575
+    t576 = slope_right_rear_elbow_up_alike + t558 * near_back_both_rear_elbow_up_alike
+    t577 = near_back_both_rear_elbow_up_alike * t576 - t554
+    del t576
+    t578 = _runtime.select(0.0 < t577, far_back_0_both_rear_elbow_up_alike, 0.0)
+    del far_back_0_both_rear_elbow_up_alike, t577
+    t579 = np.maximum(near_back_both_rear_elbow_up_alike, t578)
+    del t578
+    t580 = slope_left_rear_elbow_up_alike + t533 * near_back_both_rear_elbow_up_alike
+    t581 = near_back_both_rear_elbow_up_alike * t580 - t529
+    del near_back_both_rear_elbow_up_alike, t580
+    t582 = _runtime.select(0.0 < t581, far_back_1_both_rear_elbow_up_alike, 0.0)
+    del far_back_1_both_rear_elbow_up_alike, t581
+    turn_back_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(t579, t582), 0.0)
+    del t579, t582
+    t583 = slope_left_rear_elbow_up_alike + t533 * turn_back_both_rear_elbow_up_alike
+    t584 = t529 - turn_back_both_rear_elbow_up_alike * t583
+    del t583
+    t585 = slope_right_rear_elbow_up_alike + t558 * turn_back_both_rear_elbow_up_alike
+    t586 = t554 - turn_back_both_rear_elbow_up_alike * t585
+    del t585
+    left_back_both_rear_elbow_up_alike = _runtime.select(t525, np.minimum(t584, t586), 0.0)
+    del t584, t586
+    t587 = 1.0 / (t538 + t543)
+    del t538, t543
+    t588 = (-(t530 * t587) <= 4.547473508864641e-13) & (0.0 < -(t529 * t587))
+    del t530
+    t589 = t545 * (heavy_0_left_rear_elbow_up_alike * t536)
+    del heavy_0_left_rear_elbow_up_alike
+    t590 = -(t536 * t545)
+    del t536, t545
+    t591 = (-t589 <= 9.094947017729282e-13) & (0.0 < t590)
+    del t589
+    far_on_1_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t591, t590, 0.0), 0.0)
+    del t590, t591
+    t592 = _runtime.select(t542, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del t542
+    t593 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t588, -(t541 * t587), 0.0), t592)
+    del t541, t587, t588, t592
+    t594 = 1.0 / (t563 + t568)
+    del t563, t568
+    t595 = (-(t555 * t594) <= 4.547473508864641e-13) & (0.0 < -(t554 * t594))
+    del t555
+    t596 = t570 * (heavy_0_right_rear_elbow_up_alike * t561)
+    del heavy_0_right_rear_elbow_up_alike
+    t597 = -(t561 * t570)
+    del t561, t570
+    t598 = (-t596 <= 9.094947017729282e-13) & (0.0 < t597)
+    del t596
+    far_on_0_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t598, t597, 0.0), 0.0)
+    del t597, t598
+    t599 = _runtime.select(t567, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del t567
+    t600 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t595, -(t566 * t594), 0.0), t599)
+    del t566, t594, t595, t599
+    near_on_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(np.maximum(0.0, t593), t600), 0.0)
+    del t593, t600
+    t601 = slope_right_rear_elbow_up_alike - t558 * near_on_both_rear_elbow_up_alike
+    t602 = t554 + near_on_both_rear_elbow_up_alike * t601
+    del t601
+    t603 = _runtime.select(0.0 < -t602, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del far_on_0_both_rear_elbow_up_alike, t602
+    t604 = np.maximum(near_on_both_rear_elbow_up_alike, t603)
+    del t603
+    t605 = slope_left_rear_elbow_up_alike - t533 * near_on_both_rear_elbow_up_alike
+    t606 = t529 + near_on_both_rear_elbow_up_alike * t605
+    del near_on_both_rear_elbow_up_alike, t605
+    t607 = _runtime.select(0.0 < -t606, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del far_on_1_both_rear_elbow_up_alike, t606
+    turn_on_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(t604, t607), 0.0)
+    del t604, t607
+    t608 = slope_left_rear_elbow_up_alike - t533 * turn_on_both_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike, t533
+    t609 = t529 + turn_on_both_rear_elbow_up_alike * t608
+    del t529, t608
+    t610 = slope_right_rear_elbow_up_alike - t558 * turn_on_both_rear_elbow_up_alike
+    del slope_right_rear_elbow_up_alike, t558
+    t611 = t554 + turn_on_both_rear_elbow_up_alike * t610
+    del t554, t610
+    left_on_both_rear_elbow_up_alike = _runtime.select(t525, np.minimum(t609, t611), 0.0)
+    del t609, t611
+    t612 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
+    del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
+    t613 = _runtime.select(t612, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
+    del t612, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
+    turn_both_rear_elbow_up_alike = _runtime.select(t525, t613, 0.0)
+    del t613
+    t614 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    del margin_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
+    t615 = t51 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
+    del heavy_1_left_rear_elbow_up_alike
+    t616 = -(t614 * _runtime.sign(-t520) / (t521 + t615))
+    del t520, t521, t614, t615
+    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t616, 0.0)
+    del spent_left_rear_elbow_up_alike, t616
+    t617 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    del margin_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
+    t618 = t51 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
+    del heavy_1_right_rear_elbow_up_alike
+    t619 = -(t617 * _runtime.sign(-t504) / (t505 + t618))
+    del t504, t505, t617, t618
+    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t619, 0.0)
+    del spent_right_rear_elbow_up_alike, t619
+    t620 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
+    t621 = _runtime.select(t620, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
+    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t620
+    t622 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
+    del drawn_front_elbow_down_alike
+    t623 = turn_both_rear_elbow_up_alike + t621 - t86 * t622
+    del t621, t622
+    lean_rear_elbow_up_alike = _runtime.select(t525, t623, 0.0)
+    del t623
+    t624 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t625 = 1.0 + t624
+    t626 = 1.0 / np.sqrt(t625)
+    t627 = 1.0 / (t625 * (1.0 + t626))
+    del t625
+    t628 = elbow_11_rear_elbow_up_alike * t624 * t627 + t626 * (elbow_21 * lean_rear_elbow_up_alike)
+    t629 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
+    t630 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
+    t631 = 1.0 + t629
+    t632 = 1.0 / np.sqrt(t631)
+    t633 = 1.0 / (t631 * (1.0 + t632))
+    del t631
+    t634 = elbow_21 - h_right_0_rear_elbow_up_alike
+    t635 = t632 * (turn_both_rear_elbow_up_alike * t634)
+    t636 = t628 - t629 * t630 * t633 - t635
+    del t635
+    t637 = t636 * (t636 - 2.0 * r_right_0_rear_elbow_up_alike)
+    t638 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    swing_21_rear_elbow_up_alike = t626 * t638 - t627 * (elbow_21 * t624)
+    del t624, t626, t627, t638
+    t639 = swing_21_rear_elbow_up_alike + t633 * (t629 * t634)
+    del t634
+    t640 = t632 * (turn_both_rear_elbow_up_alike * t630)
+    del t630
+    more_right_21_rear_elbow_up_alike = t639 - t640
+    del t639, t640
+    t641 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
+    t642 = t637 + more_right_21_rear_elbow_up_alike * t641
+    del t637, t641
+    change_right_rear_elbow_up_alike = _runtime.select(t525, t642, 0.0)
+    del t642
+    t643 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
+    del nearer_right_rear_elbow_up_alike
+    t644 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
+    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
+    t645 = t50 & t508 & t524 & (t106 <= t643) & (t106 <= t644)
+    del t508, t524
+    t646 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
+    del elbow_11_rear_elbow_up_alike
+    t647 = elbow_21 - h_left_0_rear_elbow_up_alike
+    del elbow_21
+    t648 = t632 * (turn_both_rear_elbow_up_alike * t647)
+    t649 = t628 - t633 * (t629 * t646) - t648
+    del t628, t648
+    t650 = t649 * (t649 - 2.0 * r_left_0_rear_elbow_up_alike)
+    t651 = swing_21_rear_elbow_up_alike + t633 * (t629 * t647)
+    del swing_21_rear_elbow_up_alike, t629, t633, t647
+    t652 = t632 * (turn_both_rear_elbow_up_alike * t646)
+    del t632, t646
+    more_left_21_rear_elbow_up_alike = t651 - t652
+    del t651, t652
+    t653 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
+    t654 = t650 + more_left_21_rear_elbow_up_alike * t653
+    del t650, t653
+    change_left_rear_elbow_up_alike = _runtime.select(t525, t654, 0.0)
+    del t654
+    t655 = -(t512 + change_left_rear_elbow_up_alike)
+    del t512
+    t656 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
     del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t646 & (t107 <= t656) & (t107 <= t657))
-    del t646
-    t658 = _runtime.poison(invalid | unreachable_3)
-    t659 = t481 + t658
-    t660 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
-    del more_right_21_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = _runtime.select(t526, t660, h_right_0_rear_elbow_up_alike)
-    del h_right_0_rear_elbow_up_alike, t660
-    r_right_rear_elbow_up_alike = _runtime.select(t526, r_right_0_rear_elbow_up_alike - t637, r_right_0_rear_elbow_up_alike)
-    del r_right_0_rear_elbow_up_alike, t637
-    t661 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
-    folded_right_rear_elbow_up_alike = t661 <= t211
-    del t661
-    t662 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, stheta2A
-    M_right_rear_elbow_up_alike = np.maximum(t645, t215)
+    unreachable_3 = np.logical_not(t645 & (t106 <= t655) & (t106 <= t656))
     del t645
-    N_right_rear_elbow_up_alike = np.maximum(t644, t215)
+    t657 = _runtime.poison(invalid | unreachable_3)
+    t658 = t480 + t657
+    t659 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
+    del more_right_21_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = _runtime.select(t525, t659, h_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, t659
+    r_right_rear_elbow_up_alike = _runtime.select(t525, r_right_0_rear_elbow_up_alike - t636, r_right_0_rear_elbow_up_alike)
+    del r_right_0_rear_elbow_up_alike, t636
+    t660 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
+    folded_right_rear_elbow_up_alike = t660 <= t210
+    del t660
+    t661 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(t644, t214)
     del t644
+    N_right_rear_elbow_up_alike = np.maximum(t643, t214)
+    del t643
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t663 = 1.0 / whole_right_rear_elbow_up_alike
+    t662 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    t664 = t74 + t214 * M_right_rear_elbow_up_alike * t663
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t664)
-    del t664
-    t665 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t666 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t667 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
-    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
-    t668 = t264 * (1.0 + t666) - straight_mid_front_elbow_down_alike * t667
-    del straight_mid_front_elbow_down_alike, t666, t667
-    t669 = _runtime.select(t526, t668, t264)
-    del t264, t668
-    sigma_right_rear_elbow_up_alike = _runtime.sign(-t669)
-    t670 = 2.0 * sigma_right_rear_elbow_up_alike
-    t671 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t672 = np.sqrt(t671)
-    del t671
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t663 * (t670 * t672))
+    t663 = t73 + t213 * M_right_rear_elbow_up_alike * t662
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t663)
     del t663
-    t673 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t664 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t665 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t666 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
+    t667 = t263 * (1.0 + t665) - straight_mid_front_elbow_down_alike * t666
+    del straight_mid_front_elbow_down_alike, t665, t666
+    t668 = _runtime.select(t525, t667, t263)
+    del t263, t667
+    sigma_right_rear_elbow_up_alike = _runtime.sign(-t668)
+    t669 = 2.0 * sigma_right_rear_elbow_up_alike
+    t670 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t671 = np.sqrt(t670)
+    del t670
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t662 * (t669 * t671))
+    del t662
+    t672 = fore_arm * s_bend_right_rear_elbow_up_alike
     del s_bend_right_rear_elbow_up_alike
-    t674 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t673 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
-    t675 = np.arctan2(t665 - r_right_rear_elbow_up_alike * t673, t674 + h_right_rear_elbow_up_alike * t673)
-    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t665, t673, t674
-    t676 = _runtime.select(folded_right_rear_elbow_up_alike, t662, t675)
+    t674 = np.arctan2(t664 - r_right_rear_elbow_up_alike * t672, t673 + h_right_rear_elbow_up_alike * t672)
+    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t664, t672, t673
+    t675 = _runtime.select(folded_right_rear_elbow_up_alike, t661, t674)
+    del t674
+    t676 = _runtime.wrap_cut(t675) + t657
     del t675
-    t677 = _runtime.wrap_cut(t676) + t658
-    del t676
-    t678 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    t679 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t672, t678)
-    del t672, t678
-    t680 = t226 + _runtime.select(short_right, 0.0, t679)
+    t677 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t678 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t671, t677)
+    del t671, t677
+    t679 = t225 + _runtime.select(short_right, 0.0, t678)
+    del t678
+    t680 = _runtime.wrap(t679) + t657
     del t679
-    t681 = _runtime.wrap(t680) + t658
-    del t680
-    t682 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
+    t681 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
     del more_left_21_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = _runtime.select(t526, t682, h_left_0_rear_elbow_up_alike)
-    del h_left_0_rear_elbow_up_alike, t682
-    r_left_rear_elbow_up_alike = _runtime.select(t526, r_left_0_rear_elbow_up_alike - t650, r_left_0_rear_elbow_up_alike)
-    del r_left_0_rear_elbow_up_alike, t650
-    t683 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t683 <= t211
-    del t683
-    M_left_rear_elbow_up_alike = np.maximum(t657, 0.0)
-    del t657
-    N_left_rear_elbow_up_alike = np.maximum(t656, 0.0)
+    h_left_rear_elbow_up_alike = _runtime.select(t525, t681, h_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, t681
+    r_left_rear_elbow_up_alike = _runtime.select(t525, r_left_0_rear_elbow_up_alike - t649, r_left_0_rear_elbow_up_alike)
+    del r_left_0_rear_elbow_up_alike, t649
+    t682 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t682 <= t210
+    del t682
+    M_left_rear_elbow_up_alike = np.maximum(t656, 0.0)
     del t656
+    N_left_rear_elbow_up_alike = np.maximum(t655, 0.0)
+    del t655
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t684 = 1.0 / whole_left_rear_elbow_up_alike
+    t683 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    t685 = t74 + t214 * M_left_rear_elbow_up_alike * t684
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t685)
-    del t685
-    t686 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t687 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t688 = np.sqrt(t687)
-    del t687
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t684 * (t670 * t688))
-    del t670, t684
-    t689 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t684 = t73 + t213 * M_left_rear_elbow_up_alike * t683
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t684)
+    del t684
+    t685 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t686 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t687 = np.sqrt(t686)
+    del t686
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t683 * (t669 * t687))
+    del t669, t683
+    t688 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t690 = r_left_rear_elbow_up_alike * t689
-    t691 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t689 = r_left_rear_elbow_up_alike * t688
+    t690 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t692 = h_left_rear_elbow_up_alike * t689
-    del h_left_rear_elbow_up_alike, t689
-    t693 = _runtime.select(folded_left_rear_elbow_up_alike, t662, np.arctan2(t686 - t690, t691 + t692))
-    t694 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    t695 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t688, t694)
-    del t688, t694
-    t696 = _runtime.select(short_right, 0.0, t695)
-    del t695
-    t697 = t240 + t658
-    t698 = _runtime.select(folded_left_rear_elbow_up_alike, t662, np.arctan2(t686 + t690, t691 - t692))
-    del t662, t686, t690, t691, t692
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t246)
-    del t246
+    t691 = h_left_rear_elbow_up_alike * t688
+    del h_left_rear_elbow_up_alike, t688
+    t692 = _runtime.select(folded_left_rear_elbow_up_alike, t661, np.arctan2(t685 - t689, t690 + t691))
+    t693 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t694 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t687, t693)
+    del t687, t693
+    t695 = _runtime.select(short_right, 0.0, t694)
+    del t694
+    t696 = t239 + t657
+    t697 = _runtime.select(folded_left_rear_elbow_up_alike, t661, np.arctan2(t685 + t689, t690 - t691))
+    del t661, t685, t689, t690, t691
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t245)
+    del t245
     ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike - s_relative * stheta2A_front_elbow_down_alike
-    t699 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t698 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike + s_relative * ctheta2A_rear_elbow_down_alike
     del c_relative, s_relative
-    point_21_rear_elbow_down_alike = t699 + a3 * stheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t698 + a3 * stheta23A_rear_elbow_down_alike
+    del t698
+    t699 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t700 = t699 + t_phi * stheta23A_rear_elbow_down_alike
     del t699
-    t700 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
-    t701 = t700 + t_phi * stheta23A_rear_elbow_down_alike
+    t701 = d * t700
     del t700
-    t702 = d * t701
-    del t701
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t702
-    t703 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t701
+    t702 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
     elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
-    t704 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t704 + a3 * ctheta23A_rear_elbow_down_alike
-    del t704
-    t705 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
+    t703 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t703 + a3 * ctheta23A_rear_elbow_down_alike
+    del t703
+    t704 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
     del stheta23A_rear_elbow_down_alike, t17, t_psi
-    t706 = t_phi * ctheta23A_rear_elbow_down_alike - t705
-    del ctheta23A_rear_elbow_down_alike, t705, t_phi
-    t707 = d * t706
-    del t706
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t707
-    t708 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t709 = t703 + t708
-    del t703, t708
-    gap_rear_elbow_down_alike = t707 * t707 + t702 * t702
-    t710 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t711 = M_mid + gap_rear_elbow_down_alike
-    t712 = 2.0 * point_11_rear_elbow_down_alike * t707 + 2.0 * point_21_rear_elbow_down_alike * t702
-    farther_right_rear_elbow_down_alike = _runtime.select(t53 * t709 < t710, t709 - t75, t711 - t712)
-    del t709
-    t713 = N_mid - gap_rear_elbow_down_alike
+    t705 = t_phi * ctheta23A_rear_elbow_down_alike - t704
+    del ctheta23A_rear_elbow_down_alike, t704, t_phi
+    t706 = d * t705
+    del t705
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t706
+    t707 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t708 = t702 + t707
+    del t702, t707
+    gap_rear_elbow_down_alike = t706 * t706 + t701 * t701
+    t709 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t710 = M_mid + gap_rear_elbow_down_alike
+    t711 = 2.0 * point_11_rear_elbow_down_alike * t706 + 2.0 * point_21_rear_elbow_down_alike * t701
+    farther_right_rear_elbow_down_alike = _runtime.select(t52 * t708 < t709, t708 - t74, t710 - t711)
+    del t708
+    t712 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t712 + t713
+    nearer_right_rear_elbow_down_alike = t711 + t712
     margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t714 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t715 = np.maximum(-t714, margin_right_rear_elbow_down_alike)
+    t713 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t714 = np.maximum(-t713, margin_right_rear_elbow_down_alike)
+    del t713
+    spent_right_rear_elbow_down_alike = t714 <= t81
     del t714
-    spent_right_rear_elbow_down_alike = t715 <= t82
-    del t715
-    t716 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t717 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t718 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
-    t719 = _runtime.select(t718, 1.0, -1.0)
-    del t718
-    t720 = (t716 - t717) * t719
-    del t716, t717
-    slope_right_rear_elbow_down_alike = t85 * t720
-    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t92, 1.0)
-    t721 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
-    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t721, 0.0)
-    del t721
-    t722 = t44 * t720
+    t715 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t716 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t717 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
+    t718 = _runtime.select(t717, 1.0, -1.0)
+    del t717
+    t719 = (t715 - t716) * t718
+    del t715, t716
+    slope_right_rear_elbow_down_alike = t84 * t719
+    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t91, 1.0)
+    t720 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
+    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t720, 0.0)
     del t720
-    t723 = np.abs(t722)
-    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t95, 1.0)
-    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t723 / heavy_1_right_rear_elbow_down_alike, 0.0)
-    t724 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
-    t725 = _runtime.select(spent_right_rear_elbow_down_alike, t724, 0.0)
+    t721 = t43 * t719
+    del t719
+    t722 = np.abs(t721)
+    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t94, 1.0)
+    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t722 / heavy_1_right_rear_elbow_down_alike, 0.0)
+    t723 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
+    t724 = _runtime.select(spent_right_rear_elbow_down_alike, t723, 0.0)
+    del t723
+    t725 = -(_runtime.FEASIBILITY * (t51 + t724)) <= margin_right_rear_elbow_down_alike
     del t724
-    t726 = -(_runtime.FEASIBILITY * (t52 + t725)) <= margin_right_rear_elbow_down_alike
-    del t725
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t702
-    del point_21_rear_elbow_down_alike, t702
-    t727 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t707
-    del point_11_rear_elbow_down_alike, t707
-    t728 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t729 = t727 + t728
-    del t727, t728
-    farther_left_rear_elbow_down_alike = _runtime.select(t53 * t729 < t710, t729 - t75, t711 + t712)
-    del t710, t711, t729
-    t730 = t712 - t713
-    del t712, t713
-    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t730)
-    t731 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t732 = np.maximum(-t731, margin_left_rear_elbow_down_alike)
-    del t731
-    spent_left_rear_elbow_down_alike = t732 <= t82
-    del t732, t82
-    t733 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t734 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t735 = _runtime.select(-t730 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
-    t736 = (t733 - t734) * t735
-    del t733, t734
-    slope_left_rear_elbow_down_alike = t85 * t736
-    del t85
-    heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t92, 1.0)
-    del t92
-    t737 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
-    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t737, 0.0)
-    del t737
-    t738 = t44 * t736
-    del t736
-    t739 = np.abs(t738)
-    heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t95, 1.0)
-    del t95
-    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t739 / heavy_1_left_rear_elbow_down_alike, 0.0)
-    t740 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
-    t741 = _runtime.select(spent_left_rear_elbow_down_alike, t740, 0.0)
-    del t740
-    t742 = -(_runtime.FEASIBILITY * (t52 + t741)) <= margin_left_rear_elbow_down_alike
-    del t741
-    t743 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
-    t744 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
-    del gain_1_left_rear_elbow_down_alike
-    t745 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
-    del gain_0_left_rear_elbow_down_alike
-    t746 = _runtime.select(margin_left_rear_elbow_down_alike < 0.0, t744 / (t110 + t744 + t745), 0.0)
-    del t744, t745
-    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t746, 0.0)
-    del t746
-    t747 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
-    t748 = heavy_0_left_rear_elbow_down_alike * t747
-    t749 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t750 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t751 = t87 * (t115 * t735 * (L1 - t749 - t750))
-    del t735, t749, t750
-    t752 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t753 = np.sqrt(np.maximum(0.0, 4.0 * t747 * t751 + t752))
-    del t752
-    root_on_1_both_rear_elbow_down_alike = _runtime.select(t743, t753, 0.0)
-    del t753
-    t754 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
-    t755 = t52 * heavy_0_left_rear_elbow_down_alike
-    t756 = t755 * 5.960464477539063e-08
-    t757 = 1.0 / (t754 - t756)
-    t758 = (t748 * t757 <= 4.547473508864641e-13) & (0.0 < t747 * t757)
-    t759 = 2.0 * t747
-    t760 = 0.0 < -t747
-    t761 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
-    del root_on_1_both_rear_elbow_down_alike
-    t762 = t755 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t751)
-    del t755
-    t763 = 1.0 / t762
-    del t762
-    t764 = heavy_0_left_rear_elbow_down_alike * t761 * t763
-    t765 = t761 * t763
-    t766 = (t764 <= 9.094947017729282e-13) & (0.0 < t765)
-    del t764
-    far_back_1_both_rear_elbow_down_alike = _runtime.select(t743, _runtime.select(t766, t765, 0.0), 0.0)
-    del t765, t766
-    t767 = _runtime.select(t760, far_back_1_both_rear_elbow_down_alike, 0.0)
-    t768 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t758, t757 * t759, 0.0), t767)
-    del t757, t758, t767
-    t769 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
-    del gain_1_right_rear_elbow_down_alike
-    t770 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
-    del gain_0_right_rear_elbow_down_alike
-    t771 = _runtime.select(margin_right_rear_elbow_down_alike < 0.0, t769 / (t110 + t769 + t770), 0.0)
-    del t110, t769, t770
-    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t771, 0.0)
-    del t771
-    t772 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
-    t773 = heavy_0_right_rear_elbow_down_alike * t772
-    t774 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t775 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t776 = t87 * (t115 * t719 * (L1 - t774 - t775))
-    del t115, t719, t774, t775
-    t777 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t778 = np.sqrt(np.maximum(0.0, 4.0 * t772 * t776 + t777))
-    del t777
-    root_on_0_both_rear_elbow_down_alike = _runtime.select(t743, t778, 0.0)
-    del t778
-    t779 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
-    t780 = t52 * heavy_0_right_rear_elbow_down_alike
-    t781 = t780 * 5.960464477539063e-08
-    t782 = 1.0 / (t779 - t781)
-    t783 = (t773 * t782 <= 4.547473508864641e-13) & (0.0 < t772 * t782)
-    t784 = 2.0 * t772
-    t785 = 0.0 < -t772
-    t786 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
-    del root_on_0_both_rear_elbow_down_alike
-    t787 = t780 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t776)
-    del t780
-    t788 = 1.0 / t787
-    del t787
-    t789 = heavy_0_right_rear_elbow_down_alike * t786 * t788
-    t790 = t786 * t788
-    t791 = (t789 <= 9.094947017729282e-13) & (0.0 < t790)
-    del t789
-    far_back_0_both_rear_elbow_down_alike = _runtime.select(t743, _runtime.select(t791, t790, 0.0), 0.0)
-    del t790, t791
-    t792 = _runtime.select(t785, far_back_0_both_rear_elbow_down_alike, 0.0)
-    t793 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t783, t782 * t784, 0.0), t792)
-    del t782, t783, t792
-    near_back_both_rear_elbow_down_alike = _runtime.select(t743, np.maximum(np.maximum(0.0, t768), t793), 0.0)
-    del t768, t793
-    t794 = slope_right_rear_elbow_down_alike + t776 * near_back_both_rear_elbow_down_alike
-    t795 = near_back_both_rear_elbow_down_alike * t794 - t772
-    del t794
-    t796 = _runtime.select(0.0 < t795, far_back_0_both_rear_elbow_down_alike, 0.0)
-    del far_back_0_both_rear_elbow_down_alike, t795
-    t797 = np.maximum(near_back_both_rear_elbow_down_alike, t796)
-    del t796
-    t798 = slope_left_rear_elbow_down_alike + t751 * near_back_both_rear_elbow_down_alike
-    t799 = near_back_both_rear_elbow_down_alike * t798 - t747
-    del near_back_both_rear_elbow_down_alike, t798
-    t800 = _runtime.select(0.0 < t799, far_back_1_both_rear_elbow_down_alike, 0.0)
-    del far_back_1_both_rear_elbow_down_alike, t799
-    turn_back_both_rear_elbow_down_alike = _runtime.select(t743, np.maximum(t797, t800), 0.0)
-    del t797, t800
-    t801 = slope_left_rear_elbow_down_alike + t751 * turn_back_both_rear_elbow_down_alike
-    t802 = t747 - turn_back_both_rear_elbow_down_alike * t801
-    del t801
-    t803 = slope_right_rear_elbow_down_alike + t776 * turn_back_both_rear_elbow_down_alike
-    t804 = t772 - turn_back_both_rear_elbow_down_alike * t803
-    del t803
-    left_back_both_rear_elbow_down_alike = _runtime.select(t743, np.minimum(t802, t804), 0.0)
-    del t802, t804
-    t805 = 1.0 / (t756 + t761)
-    del t756, t761
-    t806 = (-(t748 * t805) <= 4.547473508864641e-13) & (0.0 < -(t747 * t805))
-    del t748
-    t807 = t763 * (heavy_0_left_rear_elbow_down_alike * t754)
-    del heavy_0_left_rear_elbow_down_alike
-    t808 = -(t754 * t763)
-    del t754, t763
-    t809 = (-t807 <= 9.094947017729282e-13) & (0.0 < t808)
-    del t807
-    far_on_1_both_rear_elbow_down_alike = _runtime.select(t743, _runtime.select(t809, t808, 0.0), 0.0)
-    del t808, t809
-    t810 = _runtime.select(t760, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del t760
-    t811 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t806, -(t759 * t805), 0.0), t810)
-    del t759, t805, t806, t810
-    t812 = 1.0 / (t781 + t786)
-    del t781, t786
-    t813 = (-(t773 * t812) <= 4.547473508864641e-13) & (0.0 < -(t772 * t812))
-    del t773
-    t814 = t788 * (heavy_0_right_rear_elbow_down_alike * t779)
-    del heavy_0_right_rear_elbow_down_alike
-    t815 = -(t779 * t788)
-    del t779, t788
-    t816 = (-t814 <= 9.094947017729282e-13) & (0.0 < t815)
-    del t814
-    far_on_0_both_rear_elbow_down_alike = _runtime.select(t743, _runtime.select(t816, t815, 0.0), 0.0)
-    del t815, t816
-    t817 = _runtime.select(t785, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del t785
-    t818 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t813, -(t784 * t812), 0.0), t817)
-    del t784, t812, t813, t817
-    near_on_both_rear_elbow_down_alike = _runtime.select(t743, np.maximum(np.maximum(0.0, t811), t818), 0.0)
-    del t811, t818
-    t819 = slope_right_rear_elbow_down_alike - t776 * near_on_both_rear_elbow_down_alike
-    t820 = t772 + near_on_both_rear_elbow_down_alike * t819
-    del t819
-    t821 = _runtime.select(0.0 < -t820, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del far_on_0_both_rear_elbow_down_alike, t820
-    t822 = np.maximum(near_on_both_rear_elbow_down_alike, t821)
-    del t821
-    t823 = slope_left_rear_elbow_down_alike - t751 * near_on_both_rear_elbow_down_alike
-    t824 = t747 + near_on_both_rear_elbow_down_alike * t823
-    del near_on_both_rear_elbow_down_alike, t823
-    t825 = _runtime.select(0.0 < -t824, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del far_on_1_both_rear_elbow_down_alike, t824
-    turn_on_both_rear_elbow_down_alike = _runtime.select(t743, np.maximum(t822, t825), 0.0)
-    del t822, t825
-    t826 = slope_left_rear_elbow_down_alike - t751 * turn_on_both_rear_elbow_down_alike
-    del slope_left_rear_elbow_down_alike, t751
-    t827 = t747 + turn_on_both_rear_elbow_down_alike * t826
-    del t747, t826
-    t828 = slope_right_rear_elbow_down_alike - t776 * turn_on_both_rear_elbow_down_alike
-    del slope_right_rear_elbow_down_alike, t776
-    t829 = t772 + turn_on_both_rear_elbow_down_alike * t828
-    del t772, t828
-    left_on_both_rear_elbow_down_alike = _runtime.select(t743, np.minimum(t827, t829), 0.0)
-    del t827, t829
-    t830 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
-    del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
-    t831 = _runtime.select(t830, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
-    del t830, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
-    turn_both_rear_elbow_down_alike = _runtime.select(t743, t831, 0.0)
-    del t831
-    t832 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
-    del margin_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
-    t833 = t52 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_left_rear_elbow_down_alike
-    t834 = -(t832 * _runtime.sign(-t738) / (t739 + t833))
-    del t738, t739, t832, t833
-    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t834, 0.0)
-    del spent_left_rear_elbow_down_alike, t834
-    t835 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
-    del margin_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
-    t836 = t52 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_right_rear_elbow_down_alike, t52
-    t837 = -(t835 * _runtime.sign(-t722) / (t723 + t836))
-    del t722, t723, t835, t836
-    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t837, 0.0)
-    del spent_right_rear_elbow_down_alike, t837
-    t838 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
-    t839 = _runtime.select(t838, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
-    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t838
-    t840 = t87 * (drawn * turn_both_rear_elbow_down_alike)
-    del drawn, t87
-    t841 = turn_both_rear_elbow_down_alike + t839 - t840
-    del t839, t840
-    lean_rear_elbow_down_alike = _runtime.select(t743, t841, 0.0)
-    del t841
-    t842 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t843 = 1.0 + t842
-    t844 = 1.0 / np.sqrt(t843)
-    t845 = 1.0 / (t843 * (1.0 + t844))
-    del t843
-    t846 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
-    t847 = elbow_11_rear_elbow_down_alike * t842 * t845 + t844 * t846
-    del t846
-    t848 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
-    t849 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
-    t850 = 1.0 + t848
-    t851 = 1.0 / np.sqrt(t850)
-    t852 = 1.0 / (t850 * (1.0 + t851))
-    del t850
-    t853 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
-    t854 = t851 * (turn_both_rear_elbow_down_alike * t853)
-    t855 = t847 - t848 * t849 * t852 - t854
-    del t854
-    t856 = t855 * (t855 - 2.0 * r_right_0_rear_elbow_down_alike)
-    t857 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t858 = t845 * (elbow_21_front_elbow_down_alike * t842)
-    del t842, t845
-    swing_21_rear_elbow_down_alike = t844 * t857 - t858
-    del t844, t857, t858
-    t859 = swing_21_rear_elbow_down_alike + t852 * (t848 * t853)
-    del t853
-    t860 = t851 * (turn_both_rear_elbow_down_alike * t849)
-    del t849
-    more_right_21_rear_elbow_down_alike = t859 - t860
-    del t859, t860
-    t861 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
-    t862 = t856 + more_right_21_rear_elbow_down_alike * t861
-    del t856, t861
-    change_right_rear_elbow_down_alike = _runtime.select(t743, t862, 0.0)
-    del t862
-    t863 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
-    del nearer_right_rear_elbow_down_alike
-    t864 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
-    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
-    t865 = t51 & t726 & t742 & (t107 <= t863) & (t107 <= t864)
-    del t51, t726, t742
-    t866 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
-    del elbow_11_rear_elbow_down_alike
-    t867 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
-    del elbow_21_front_elbow_down_alike
-    t868 = t851 * (turn_both_rear_elbow_down_alike * t867)
-    t869 = t847 - t852 * (t848 * t866) - t868
-    del t847, t868
-    t870 = t869 * (t869 - 2.0 * r_left_0_rear_elbow_down_alike)
-    t871 = swing_21_rear_elbow_down_alike + t852 * (t848 * t867)
-    del swing_21_rear_elbow_down_alike, t848, t852, t867
-    t872 = t851 * (turn_both_rear_elbow_down_alike * t866)
-    del t851, t866
-    more_left_21_rear_elbow_down_alike = t871 - t872
-    del t871, t872
-    t873 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
-    t874 = t870 + more_left_21_rear_elbow_down_alike * t873
-    del t870, t873
-    change_left_rear_elbow_down_alike = _runtime.select(t743, t874, 0.0)
-    del t874
-    t875 = -(t730 + change_left_rear_elbow_down_alike)
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t701
+    del point_21_rear_elbow_down_alike, t701
+    t726 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t706
+    del point_11_rear_elbow_down_alike, t706
+    t727 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t728 = t726 + t727
+    del t726, t727
+    farther_left_rear_elbow_down_alike = _runtime.select(t52 * t728 < t709, t728 - t74, t710 + t711)
+    del t709, t710, t728
+    t729 = t711 - t712
+    del t711, t712
+    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t729)
+    t730 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t731 = np.maximum(-t730, margin_left_rear_elbow_down_alike)
     del t730
-    t876 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
+    spent_left_rear_elbow_down_alike = t731 <= t81
+    del t731, t81
+    t732 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t733 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t734 = _runtime.select(-t729 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
+    t735 = (t732 - t733) * t734
+    del t732, t733
+    slope_left_rear_elbow_down_alike = t84 * t735
+    del t84
+    heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t91, 1.0)
+    del t91
+    t736 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
+    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t736, 0.0)
+    del t736
+    t737 = t43 * t735
+    del t735
+    t738 = np.abs(t737)
+    heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t94, 1.0)
+    del t94
+    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t738 / heavy_1_left_rear_elbow_down_alike, 0.0)
+    t739 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
+    t740 = _runtime.select(spent_left_rear_elbow_down_alike, t739, 0.0)
+    del t739
+    t741 = -(_runtime.FEASIBILITY * (t51 + t740)) <= margin_left_rear_elbow_down_alike
+    del t740
+    t742 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
+    t743 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
+    del gain_1_left_rear_elbow_down_alike
+    t744 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
+    del gain_0_left_rear_elbow_down_alike
+    t745 = _runtime.select(margin_left_rear_elbow_down_alike < 0.0, t743 / (t109 + t743 + t744), 0.0)
+    del t743, t744
+    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t745, 0.0)
+    del t745
+    t746 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t747 = heavy_0_left_rear_elbow_down_alike * t746
+    t748 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t749 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t750 = t86 * (t114 * t734 * (L1 - t748 - t749))
+    del t734, t748, t749
+    t751 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t752 = np.sqrt(np.maximum(0.0, 4.0 * t746 * t750 + t751))
+    del t751
+    root_on_1_both_rear_elbow_down_alike = _runtime.select(t742, t752, 0.0)
+    del t752
+    t753 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
+    t754 = t51 * heavy_0_left_rear_elbow_down_alike
+    t755 = t754 * 5.960464477539063e-08
+    t756 = 1.0 / (t753 - t755)
+    t757 = (t747 * t756 <= 4.547473508864641e-13) & (0.0 < t746 * t756)
+    t758 = 2.0 * t746
+    t759 = 0.0 < -t746
+    t760 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
+    del root_on_1_both_rear_elbow_down_alike
+    t761 = t754 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t750)
+    del t754
+    t762 = 1.0 / t761
+    del t761
+    t763 = heavy_0_left_rear_elbow_down_alike * t760 * t762
+    t764 = t760 * t762
+    t765 = (t763 <= 9.094947017729282e-13) & (0.0 < t764)
+    del t763
+    far_back_1_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t765, t764, 0.0), 0.0)
+    del t764, t765
+    t766 = _runtime.select(t759, far_back_1_both_rear_elbow_down_alike, 0.0)
+    t767 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t757, t756 * t758, 0.0), t766)
+    del t756, t757, t766
+    t768 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
+    del gain_1_right_rear_elbow_down_alike
+    t769 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
+    del gain_0_right_rear_elbow_down_alike
+    t770 = _runtime.select(margin_right_rear_elbow_down_alike < 0.0, t768 / (t109 + t768 + t769), 0.0)
+    del t109, t768, t769
+    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t770, 0.0)
+    del t770
+    t771 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t772 = heavy_0_right_rear_elbow_down_alike * t771
+    t773 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t774 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t775 = t86 * (t114 * t718 * (L1 - t773 - t774))
+    del t114, t718, t773, t774
+    t776 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t777 = np.sqrt(np.maximum(0.0, 4.0 * t771 * t775 + t776))
+    del t776
+    root_on_0_both_rear_elbow_down_alike = _runtime.select(t742, t777, 0.0)
+    del t777
+    t778 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
+    t779 = t51 * heavy_0_right_rear_elbow_down_alike
+    t780 = t779 * 5.960464477539063e-08
+    t781 = 1.0 / (t778 - t780)
+    t782 = (t772 * t781 <= 4.547473508864641e-13) & (0.0 < t771 * t781)
+    t783 = 2.0 * t771
+    t784 = 0.0 < -t771
+    t785 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
+    del root_on_0_both_rear_elbow_down_alike
+    t786 = t779 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t775)
+    del t779
+    t787 = 1.0 / t786
+    del t786
+    t788 = heavy_0_right_rear_elbow_down_alike * t785 * t787
+    t789 = t785 * t787
+    t790 = (t788 <= 9.094947017729282e-13) & (0.0 < t789)
+    del t788
+    far_back_0_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t790, t789, 0.0), 0.0)
+    del t789, t790
+    t791 = _runtime.select(t784, far_back_0_both_rear_elbow_down_alike, 0.0)
+    t792 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t782, t781 * t783, 0.0), t791)
+    del t781, t782, t791
+    near_back_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(np.maximum(0.0, t767), t792), 0.0)
+    del t767, t792
+    t793 = slope_right_rear_elbow_down_alike + t775 * near_back_both_rear_elbow_down_alike
+    t794 = near_back_both_rear_elbow_down_alike * t793 - t771
+    del t793
+    t795 = _runtime.select(0.0 < t794, far_back_0_both_rear_elbow_down_alike, 0.0)
+    del far_back_0_both_rear_elbow_down_alike, t794
+    t796 = np.maximum(near_back_both_rear_elbow_down_alike, t795)
+    del t795
+    t797 = slope_left_rear_elbow_down_alike + t750 * near_back_both_rear_elbow_down_alike
+    t798 = near_back_both_rear_elbow_down_alike * t797 - t746
+    del near_back_both_rear_elbow_down_alike, t797
+    t799 = _runtime.select(0.0 < t798, far_back_1_both_rear_elbow_down_alike, 0.0)
+    del far_back_1_both_rear_elbow_down_alike, t798
+    turn_back_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(t796, t799), 0.0)
+    del t796, t799
+    t800 = slope_left_rear_elbow_down_alike + t750 * turn_back_both_rear_elbow_down_alike
+    t801 = t746 - turn_back_both_rear_elbow_down_alike * t800
+    del t800
+    t802 = slope_right_rear_elbow_down_alike + t775 * turn_back_both_rear_elbow_down_alike
+    t803 = t771 - turn_back_both_rear_elbow_down_alike * t802
+    del t802
+    left_back_both_rear_elbow_down_alike = _runtime.select(t742, np.minimum(t801, t803), 0.0)
+    del t801, t803
+    t804 = 1.0 / (t755 + t760)
+    del t755, t760
+    t805 = (-(t747 * t804) <= 4.547473508864641e-13) & (0.0 < -(t746 * t804))
+    del t747
+    t806 = t762 * (heavy_0_left_rear_elbow_down_alike * t753)
+    del heavy_0_left_rear_elbow_down_alike
+    t807 = -(t753 * t762)
+    del t753, t762
+    t808 = (-t806 <= 9.094947017729282e-13) & (0.0 < t807)
+    del t806
+    far_on_1_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t808, t807, 0.0), 0.0)
+    del t807, t808
+    t809 = _runtime.select(t759, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del t759
+    t810 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t805, -(t758 * t804), 0.0), t809)
+    del t758, t804, t805, t809
+    t811 = 1.0 / (t780 + t785)
+    del t780, t785
+    t812 = (-(t772 * t811) <= 4.547473508864641e-13) & (0.0 < -(t771 * t811))
+    del t772
+    t813 = t787 * (heavy_0_right_rear_elbow_down_alike * t778)
+    del heavy_0_right_rear_elbow_down_alike
+    t814 = -(t778 * t787)
+    del t778, t787
+    t815 = (-t813 <= 9.094947017729282e-13) & (0.0 < t814)
+    del t813
+    far_on_0_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t815, t814, 0.0), 0.0)
+    del t814, t815
+    t816 = _runtime.select(t784, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del t784
+    t817 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t812, -(t783 * t811), 0.0), t816)
+    del t783, t811, t812, t816
+    near_on_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(np.maximum(0.0, t810), t817), 0.0)
+    del t810, t817
+    t818 = slope_right_rear_elbow_down_alike - t775 * near_on_both_rear_elbow_down_alike
+    t819 = t771 + near_on_both_rear_elbow_down_alike * t818
+    del t818
+    t820 = _runtime.select(0.0 < -t819, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del far_on_0_both_rear_elbow_down_alike, t819
+    t821 = np.maximum(near_on_both_rear_elbow_down_alike, t820)
+    del t820
+    t822 = slope_left_rear_elbow_down_alike - t750 * near_on_both_rear_elbow_down_alike
+    t823 = t746 + near_on_both_rear_elbow_down_alike * t822
+    del near_on_both_rear_elbow_down_alike, t822
+    t824 = _runtime.select(0.0 < -t823, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del far_on_1_both_rear_elbow_down_alike, t823
+    turn_on_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(t821, t824), 0.0)
+    del t821, t824
+    t825 = slope_left_rear_elbow_down_alike - t750 * turn_on_both_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike, t750
+    t826 = t746 + turn_on_both_rear_elbow_down_alike * t825
+    del t746, t825
+    t827 = slope_right_rear_elbow_down_alike - t775 * turn_on_both_rear_elbow_down_alike
+    del slope_right_rear_elbow_down_alike, t775
+    t828 = t771 + turn_on_both_rear_elbow_down_alike * t827
+    del t771, t827
+    left_on_both_rear_elbow_down_alike = _runtime.select(t742, np.minimum(t826, t828), 0.0)
+    del t826, t828
+    t829 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
+    del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
+    t830 = _runtime.select(t829, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
+    del t829, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
+    turn_both_rear_elbow_down_alike = _runtime.select(t742, t830, 0.0)
+    del t830
+    t831 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    del margin_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
+    t832 = t51 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_left_rear_elbow_down_alike
+    t833 = -(t831 * _runtime.sign(-t737) / (t738 + t832))
+    del t737, t738, t831, t832
+    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t833, 0.0)
+    del spent_left_rear_elbow_down_alike, t833
+    t834 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    del margin_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
+    t835 = t51 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_rear_elbow_down_alike, t51
+    t836 = -(t834 * _runtime.sign(-t721) / (t722 + t835))
+    del t721, t722, t834, t835
+    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t836, 0.0)
+    del spent_right_rear_elbow_down_alike, t836
+    t837 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
+    t838 = _runtime.select(t837, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
+    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t837
+    t839 = t86 * (drawn * turn_both_rear_elbow_down_alike)
+    del drawn, t86
+    t840 = turn_both_rear_elbow_down_alike + t838 - t839
+    del t838, t839
+    lean_rear_elbow_down_alike = _runtime.select(t742, t840, 0.0)
+    del t840
+    t841 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t842 = 1.0 + t841
+    t843 = 1.0 / np.sqrt(t842)
+    t844 = 1.0 / (t842 * (1.0 + t843))
+    del t842
+    t845 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
+    t846 = elbow_11_rear_elbow_down_alike * t841 * t844 + t843 * t845
+    del t845
+    t847 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
+    t848 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
+    t849 = 1.0 + t847
+    t850 = 1.0 / np.sqrt(t849)
+    t851 = 1.0 / (t849 * (1.0 + t850))
+    del t849
+    t852 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
+    t853 = t850 * (turn_both_rear_elbow_down_alike * t852)
+    t854 = t846 - t847 * t848 * t851 - t853
+    del t853
+    t855 = t854 * (t854 - 2.0 * r_right_0_rear_elbow_down_alike)
+    t856 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t857 = t844 * (elbow_21_front_elbow_down_alike * t841)
+    del t841, t844
+    swing_21_rear_elbow_down_alike = t843 * t856 - t857
+    del t843, t856, t857
+    t858 = swing_21_rear_elbow_down_alike + t851 * (t847 * t852)
+    del t852
+    t859 = t850 * (turn_both_rear_elbow_down_alike * t848)
+    del t848
+    more_right_21_rear_elbow_down_alike = t858 - t859
+    del t858, t859
+    t860 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
+    t861 = t855 + more_right_21_rear_elbow_down_alike * t860
+    del t855, t860
+    change_right_rear_elbow_down_alike = _runtime.select(t742, t861, 0.0)
+    del t861
+    t862 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
+    del nearer_right_rear_elbow_down_alike
+    t863 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
+    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
+    t864 = t50 & t725 & t741 & (t106 <= t862) & (t106 <= t863)
+    del t50, t725, t741
+    t865 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
+    del elbow_11_rear_elbow_down_alike
+    t866 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
+    del elbow_21_front_elbow_down_alike
+    t867 = t850 * (turn_both_rear_elbow_down_alike * t866)
+    t868 = t846 - t851 * (t847 * t865) - t867
+    del t846, t867
+    t869 = t868 * (t868 - 2.0 * r_left_0_rear_elbow_down_alike)
+    t870 = swing_21_rear_elbow_down_alike + t851 * (t847 * t866)
+    del swing_21_rear_elbow_down_alike, t847, t851, t866
+    t871 = t850 * (turn_both_rear_elbow_down_alike * t865)
+    del t850, t865
+    more_left_21_rear_elbow_down_alike = t870 - t871
+    del t870, t871
+    t872 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
+    t873 = t869 + more_left_21_rear_elbow_down_alike * t872
+    del t869, t872
+    change_left_rear_elbow_down_alike = _runtime.select(t742, t873, 0.0)
+    del t873
+    t874 = -(t729 + change_left_rear_elbow_down_alike)
+    del t729
+    t875 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
     del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t865 & (t107 <= t875) & (t107 <= t876))
-    del t107, t865
-    t877 = _runtime.poison(invalid | unreachable_4)
-    t878 = t481 + t877
-    del t481
-    t879 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t864 & (t106 <= t874) & (t106 <= t875))
+    del t106, t864
+    t876 = _runtime.poison(invalid | unreachable_4)
+    t877 = t480 + t876
+    del t480
+    t878 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
     del more_right_21_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = _runtime.select(t743, t879, h_right_0_rear_elbow_down_alike)
-    del h_right_0_rear_elbow_down_alike, t879
-    r_right_rear_elbow_down_alike = _runtime.select(t743, r_right_0_rear_elbow_down_alike - t855, r_right_0_rear_elbow_down_alike)
-    del r_right_0_rear_elbow_down_alike, t855
-    t880 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
-    folded_right_rear_elbow_down_alike = t880 <= t211
-    del t880
-    t881 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    h_right_rear_elbow_down_alike = _runtime.select(t742, t878, h_right_0_rear_elbow_down_alike)
+    del h_right_0_rear_elbow_down_alike, t878
+    r_right_rear_elbow_down_alike = _runtime.select(t742, r_right_0_rear_elbow_down_alike - t854, r_right_0_rear_elbow_down_alike)
+    del r_right_0_rear_elbow_down_alike, t854
+    t879 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
+    folded_right_rear_elbow_down_alike = t879 <= t210
+    del t879
+    t880 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
     del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(t864, t215)
-    del t864
-    N_right_rear_elbow_down_alike = np.maximum(t863, t215)
-    del t215, t863
+    M_right_rear_elbow_down_alike = np.maximum(t863, t214)
+    del t863
+    N_right_rear_elbow_down_alike = np.maximum(t862, t214)
+    del t214, t862
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t882 = 1.0 / whole_right_rear_elbow_down_alike
+    t881 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t883 = t74 + t214 * M_right_rear_elbow_down_alike * t882
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t883)
-    del t883
-    t884 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t885 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t886 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
-    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
-    t887 = _runtime.select(t743, t77 * (1.0 + t885) - straight_mid * t886, t77)
-    del straight_mid, t77, t885, t886
-    sigma_right_rear_elbow_down_alike = _runtime.sign(-t887)
-    t888 = 2.0 * sigma_right_rear_elbow_down_alike
-    t889 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t890 = np.sqrt(t889)
-    del t889
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t882 * (t888 * t890))
+    t882 = t73 + t213 * M_right_rear_elbow_down_alike * t881
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t882)
     del t882
-    t891 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t883 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t884 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t885 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
+    t886 = _runtime.select(t742, t76 * (1.0 + t884) - straight_mid * t885, t76)
+    del straight_mid, t76, t884, t885
+    sigma_right_rear_elbow_down_alike = _runtime.sign(-t886)
+    t887 = 2.0 * sigma_right_rear_elbow_down_alike
+    t888 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t889 = np.sqrt(t888)
+    del t888
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t881 * (t887 * t889))
+    del t881
+    t890 = fore_arm * s_bend_right_rear_elbow_down_alike
     del s_bend_right_rear_elbow_down_alike
-    t892 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t891 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
     del ahead_1_right_rear_elbow_down_alike
-    t893 = np.arctan2(t884 - r_right_rear_elbow_down_alike * t891, t892 + h_right_rear_elbow_down_alike * t891)
-    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t884, t891, t892
-    t894 = _runtime.select(folded_right_rear_elbow_down_alike, t881, t893)
+    t892 = np.arctan2(t883 - r_right_rear_elbow_down_alike * t890, t891 + h_right_rear_elbow_down_alike * t890)
+    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t883, t890, t891
+    t893 = _runtime.select(folded_right_rear_elbow_down_alike, t880, t892)
+    del t892
+    t894 = _runtime.wrap_cut(t893) + t876
     del t893
-    t895 = _runtime.wrap_cut(t894) + t877
-    del t894
-    t896 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
-    t897 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t890, t896)
-    del t890, t896
-    t898 = t226 + _runtime.select(short_right, 0.0, t897)
+    t895 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t896 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t889, t895)
+    del t889, t895
+    t897 = t225 + _runtime.select(short_right, 0.0, t896)
+    del t896
+    t898 = _runtime.wrap(t897) + t876
     del t897
-    t899 = _runtime.wrap(t898) + t877
-    del t898
-    t900 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
+    t899 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
     del more_left_21_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = _runtime.select(t743, t900, h_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, t900
-    r_left_rear_elbow_down_alike = _runtime.select(t743, r_left_0_rear_elbow_down_alike - t869, r_left_0_rear_elbow_down_alike)
-    del r_left_0_rear_elbow_down_alike, t869
-    t901 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t901 <= t211
-    del t211, t901
-    M_left_rear_elbow_down_alike = np.maximum(t876, 0.0)
-    del t876
-    N_left_rear_elbow_down_alike = np.maximum(t875, 0.0)
+    h_left_rear_elbow_down_alike = _runtime.select(t742, t899, h_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, t899
+    r_left_rear_elbow_down_alike = _runtime.select(t742, r_left_0_rear_elbow_down_alike - t868, r_left_0_rear_elbow_down_alike)
+    del r_left_0_rear_elbow_down_alike, t868
+    t900 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t900 <= t210
+    del t210, t900
+    M_left_rear_elbow_down_alike = np.maximum(t875, 0.0)
     del t875
+    N_left_rear_elbow_down_alike = np.maximum(t874, 0.0)
+    del t874
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t902 = 1.0 / whole_left_rear_elbow_down_alike
+    t901 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t903 = t74 + t214 * M_left_rear_elbow_down_alike * t902
-    del t214, t74
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t903)
-    del size, t903
-    t904 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t905 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t906 = np.sqrt(t905)
-    del t905
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t902 * (t888 * t906))
-    del t888, t902
-    t907 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t902 = t73 + t213 * M_left_rear_elbow_down_alike * t901
+    del t213, t73
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t902)
+    del size, t902
+    t903 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t904 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t905 = np.sqrt(t904)
+    del t904
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t901 * (t887 * t905))
+    del t887, t901
+    t906 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t908 = r_left_rear_elbow_down_alike * t907
-    t909 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t907 = r_left_rear_elbow_down_alike * t906
+    t908 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t910 = h_left_rear_elbow_down_alike * t907
-    del h_left_rear_elbow_down_alike, t907
-    t911 = _runtime.select(folded_left_rear_elbow_down_alike, t881, np.arctan2(t904 - t908, t909 + t910))
-    t912 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
-    t913 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t906, t912)
-    del t906, t912
-    t914 = _runtime.select(short_right, 0.0, t913)
-    del t913
-    t915 = t240 + t877
-    del t240
-    t916 = _runtime.select(folded_left_rear_elbow_down_alike, t881, np.arctan2(t904 + t908, t909 - t910))
-    del t881, t904, t908, t909, t910
-    t917 = nowhere | folded | short
+    t909 = h_left_rear_elbow_down_alike * t906
+    del h_left_rear_elbow_down_alike, t906
+    t910 = _runtime.select(folded_left_rear_elbow_down_alike, t880, np.arctan2(t903 - t907, t908 + t909))
+    t911 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t912 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t905, t911)
+    del t905, t911
+    t913 = _runtime.select(short_right, 0.0, t912)
+    del t912
+    t914 = t239 + t876
+    del t239
+    t915 = _runtime.select(folded_left_rear_elbow_down_alike, t880, np.arctan2(t903 + t907, t908 - t909))
+    del t880, t903, t907, t908, t909
+    t916 = nowhere | folded | short
     del folded, nowhere, short
-    square_mid = t75 + M_mid
-    t918 = M_mid * square_mid
+    square_mid = t74 + M_mid
+    t917 = M_mid * square_mid
     del M_mid
-    t919 = _runtime.DETERMINED * _runtime.DETERMINED
-    t920 = t53 * t919
-    t921 = square_mid <= t920
+    t918 = _runtime.DETERMINED * _runtime.DETERMINED
+    t919 = t52 * t918
+    t920 = square_mid <= t919
     del square_mid
-    t922 = wrist <= al * _runtime.DETERMINED
+    t921 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t923 = t917 | (t918 <= t919 * (t53 * gap)) | t921 | t922
-    t924 = t923 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t923
-    t925 = t213 * lengths
-    del lengths, t213
-    t926 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
+    t922 = t916 | (t917 <= t918 * (t52 * gap)) | t920 | t921
+    t923 = t922 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t922
+    t924 = t212 * lengths
+    del lengths, t212
+    t925 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
     del L_2W, a_3W
-    t927 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
+    t926 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
     del M_left, M_right
-    t928 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
+    t927 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
     del N_left, N_right, gap
-    t929 = t44 * t218 + sigma_right * np.sqrt(t927 * t928)
-    del sigma_right, t218, t927, t928
-    astray = _runtime.select(t108, t926 * np.abs(t929), 0.0)
-    del t929
-    t930 = _runtime.select(t108, t925, 1.0) <= _runtime.DETERMINED * astray
-    del astray, t108
-    t931 = _runtime.status(invalid, unreachable, t924 | t930)
-    del t924, t930, unreachable
-    square_mid_front_elbow_down_alike = t75 + M_mid_front_elbow_down_alike
-    del t75
-    t932 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t928 = t43 * t217 + sigma_right * np.sqrt(t926 * t927)
+    del sigma_right, t217, t926, t927
+    astray = _runtime.select(t107, t925 * np.abs(t928), 0.0)
+    del t928
+    t929 = _runtime.select(t107, t924, 1.0) <= _runtime.DETERMINED * astray
+    del astray, t107
+    t930 = _runtime.status(invalid, unreachable, t923 | t929)
+    del t923, t929, unreachable
+    square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
+    del t74
+    t931 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t933 = t932 <= t919 * (t53 * gap_front_elbow_down_alike)
-    t934 = square_mid_front_elbow_down_alike <= t920
-    del square_mid_front_elbow_down_alike, t920
-    t935 = t917 | t933 | t934 | t922 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t933
-    t936 = t935 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t935
-    t937 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
+    t932 = t931 <= t918 * (t52 * gap_front_elbow_down_alike)
+    t933 = square_mid_front_elbow_down_alike <= t919
+    del square_mid_front_elbow_down_alike, t919
+    t934 = t916 | t932 | t933 | t921 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t932
+    t935 = t934 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t934
+    t936 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
     del M_left_front_elbow_down_alike
-    t938 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t937)
-    del M_right_front_elbow_down_alike, t937
-    t939 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
+    t937 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t936)
+    del M_right_front_elbow_down_alike, t936
+    t938 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
     del N_left_front_elbow_down_alike, gap_front_elbow_down_alike
-    t940 = np.maximum(0.0, t939 + N_right_front_elbow_down_alike * 0.5)
-    del N_right_front_elbow_down_alike, t939
-    t941 = sigma_right_front_elbow_down_alike * np.sqrt(t938 * t940)
-    del sigma_right_front_elbow_down_alike, t938, t940
-    astray_front_elbow_down_alike = _runtime.select(t304, t926 * np.abs(t44 * t451 + t941), 0.0)
-    del t451, t941
-    t942 = _runtime.DETERMINED * astray_front_elbow_down_alike
+    t939 = np.maximum(0.0, t938 + N_right_front_elbow_down_alike * 0.5)
+    del N_right_front_elbow_down_alike, t938
+    t940 = sigma_right_front_elbow_down_alike * np.sqrt(t937 * t939)
+    del sigma_right_front_elbow_down_alike, t937, t939
+    astray_front_elbow_down_alike = _runtime.select(t303, t925 * np.abs(t43 * t450 + t940), 0.0)
+    del t450, t940
+    t941 = _runtime.DETERMINED * astray_front_elbow_down_alike
     del astray_front_elbow_down_alike
-    t943 = t936 | (_runtime.select(t304, t925, 1.0) <= t942)
-    del t304, t936, t942
-    t944 = _runtime.status(invalid, unreachable_2, t943)
-    del t943, unreachable_2
-    t945 = t932 <= t919 * (t53 * gap_rear_elbow_up_alike)
-    del t932
-    t946 = t917 | t945 | t934 | t922 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t934, t945
-    t947 = t946 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t946
-    t948 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
+    t942 = t935 | (_runtime.select(t303, t924, 1.0) <= t941)
+    del t303, t935, t941
+    t943 = _runtime.status(invalid, unreachable_2, t942)
+    del t942, unreachable_2
+    t944 = t931 <= t918 * (t52 * gap_rear_elbow_up_alike)
+    del t931
+    t945 = t916 | t944 | t933 | t921 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t933, t944
+    t946 = t945 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t945
+    t947 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
     del M_left_rear_elbow_up_alike
-    t949 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t948)
-    del M_right_rear_elbow_up_alike, t948
-    t950 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
+    t948 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t947)
+    del M_right_rear_elbow_up_alike, t947
+    t949 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
     del N_left_rear_elbow_up_alike, gap_rear_elbow_up_alike
-    t951 = np.maximum(0.0, t950 + N_right_rear_elbow_up_alike * 0.5)
-    del N_right_rear_elbow_up_alike, t950
-    t952 = sigma_right_rear_elbow_up_alike * np.sqrt(t949 * t951)
-    del sigma_right_rear_elbow_up_alike, t949, t951
-    astray_rear_elbow_up_alike = _runtime.select(t526, t926 * np.abs(t44 * t669 + t952), 0.0)
-    del t669, t952
-    t953 = _runtime.DETERMINED * astray_rear_elbow_up_alike
+    t950 = np.maximum(0.0, t949 + N_right_rear_elbow_up_alike * 0.5)
+    del N_right_rear_elbow_up_alike, t949
+    t951 = sigma_right_rear_elbow_up_alike * np.sqrt(t948 * t950)
+    del sigma_right_rear_elbow_up_alike, t948, t950
+    astray_rear_elbow_up_alike = _runtime.select(t525, t925 * np.abs(t43 * t668 + t951), 0.0)
+    del t668, t951
+    t952 = _runtime.DETERMINED * astray_rear_elbow_up_alike
     del astray_rear_elbow_up_alike
-    t954 = t947 | (_runtime.select(t526, t925, 1.0) <= t953)
-    del t526, t947, t953
-    t955 = _runtime.status(invalid, unreachable_3, t954)
-    del t954, unreachable_3
-    t956 = t918 <= t919 * (t53 * gap_rear_elbow_down_alike)
-    del t53, t918, t919
-    t957 = t917 | t956 | t921 | t922 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t917, t921, t922, t956
-    t958 = t957 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t957
-    t959 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
+    t953 = t946 | (_runtime.select(t525, t924, 1.0) <= t952)
+    del t525, t946, t952
+    t954 = _runtime.status(invalid, unreachable_3, t953)
+    del t953, unreachable_3
+    t955 = t917 <= t918 * (t52 * gap_rear_elbow_down_alike)
+    del t52, t917, t918
+    t956 = t916 | t955 | t920 | t921 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t916, t920, t921, t955
+    t957 = t956 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t956
+    t958 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
     del M_left_rear_elbow_down_alike
-    t960 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t959)
-    del M_right_rear_elbow_down_alike, t959
-    t961 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
+    t959 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t958)
+    del M_right_rear_elbow_down_alike, t958
+    t960 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
     del N_left_rear_elbow_down_alike, gap_rear_elbow_down_alike
-    t962 = np.maximum(0.0, t961 + N_right_rear_elbow_down_alike * 0.5)
-    del N_right_rear_elbow_down_alike, t961
-    t963 = sigma_right_rear_elbow_down_alike * np.sqrt(t960 * t962)
-    del sigma_right_rear_elbow_down_alike, t960, t962
-    astray_rear_elbow_down_alike = _runtime.select(t743, t926 * np.abs(t44 * t887 + t963), 0.0)
-    del t44, t887, t926, t963
-    t964 = _runtime.DETERMINED * astray_rear_elbow_down_alike
+    t961 = np.maximum(0.0, t960 + N_right_rear_elbow_down_alike * 0.5)
+    del N_right_rear_elbow_down_alike, t960
+    t962 = sigma_right_rear_elbow_down_alike * np.sqrt(t959 * t961)
+    del sigma_right_rear_elbow_down_alike, t959, t961
+    astray_rear_elbow_down_alike = _runtime.select(t742, t925 * np.abs(t43 * t886 + t962), 0.0)
+    del t43, t886, t925, t962
+    t963 = _runtime.DETERMINED * astray_rear_elbow_down_alike
     del astray_rear_elbow_down_alike
-    t965 = t958 | (_runtime.select(t743, t925, 1.0) <= t964)
-    del t743, t925, t958, t964
-    t966 = _runtime.status(invalid, unreachable_4, t965)
-    del invalid, t965, unreachable_4
+    t964 = t957 | (_runtime.select(t742, t924, 1.0) <= t963)
+    del t742, t924, t957, t963
+    t965 = _runtime.status(invalid, unreachable_4, t964)
+    del invalid, t964, unreachable_4
     return (
-        t210,
-        t224,
-        t229,
-        _runtime.wrap_cut(t237) + t209,
-        _runtime.wrap(t226 + t239) + t209,
-        t241,
-        t210,
-        t224,
-        t229,
-        _runtime.wrap_cut(t242) + t209,
-        _runtime.wrap(t226 - t239) + t209,
-        t241,
-        t441,
-        t459,
-        t463,
-        _runtime.wrap_cut(t475) + t440,
-        _runtime.wrap(t226 + t478) + t440,
-        t479,
-        t441,
-        t459,
-        t463,
-        _runtime.wrap_cut(t480) + t440,
-        _runtime.wrap(t226 - t478) + t440,
-        t479,
-        t659,
-        t677,
-        t681,
-        _runtime.wrap_cut(t693) + t658,
-        _runtime.wrap(t226 + t696) + t658,
-        t697,
-        t659,
-        t677,
-        t681,
-        _runtime.wrap_cut(t698) + t658,
-        _runtime.wrap(t226 - t696) + t658,
-        t697,
-        t878,
-        t895,
-        t899,
-        _runtime.wrap_cut(t911) + t877,
-        _runtime.wrap(t226 + t914) + t877,
-        t915,
-        t878,
-        t895,
-        t899,
-        _runtime.wrap_cut(t916) + t877,
-        _runtime.wrap(t226 - t914) + t877,
-        t915,
-        t931,
-        t931,
-        t944,
-        t944,
-        t955,
-        t955,
-        t966,
-        t966,
+        t209,
+        t223,
+        t228,
+        _runtime.wrap_cut(t236) + t208,
+        _runtime.wrap(t225 + t238) + t208,
+        t240,
+        t209,
+        t223,
+        t228,
+        _runtime.wrap_cut(t241) + t208,
+        _runtime.wrap(t225 - t238) + t208,
+        t240,
+        t440,
+        t458,
+        t462,
+        _runtime.wrap_cut(t474) + t439,
+        _runtime.wrap(t225 + t477) + t439,
+        t478,
+        t440,
+        t458,
+        t462,
+        _runtime.wrap_cut(t479) + t439,
+        _runtime.wrap(t225 - t477) + t439,
+        t478,
+        t658,
+        t676,
+        t680,
+        _runtime.wrap_cut(t692) + t657,
+        _runtime.wrap(t225 + t695) + t657,
+        t696,
+        t658,
+        t676,
+        t680,
+        _runtime.wrap_cut(t697) + t657,
+        _runtime.wrap(t225 - t695) + t657,
+        t696,
+        t877,
+        t894,
+        t898,
+        _runtime.wrap_cut(t910) + t876,
+        _runtime.wrap(t225 + t913) + t876,
+        t914,
+        t877,
+        t894,
+        t898,
+        _runtime.wrap_cut(t915) + t876,
+        _runtime.wrap(t225 - t913) + t876,
+        t914,
+        t930,
+        t930,
+        t943,
+        t943,
+        t954,
+        t954,
+        t965,
+        t965,
     )
 
 
@@ -4222,707 +4221,700 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t25 = (-_runtime.FEASIBILITY <= c_phi) & (-t24 <= t6)
     del t6
     lengths = L1 + d1 + d + loff + lp + t5 + t20
-    del t20
+    del t20, t5
     base = d * t4
     del t4
     t26 = 1.0 / c_phi
     t_phi = s_phi * t26
-    t27 = np.abs(base * t_phi)
     t_psi = s_psi / c_psi
-    t28 = np.abs(t_psi * base)
+    far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
     del base
-    t29 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t27 * 6.103515625e-05
-    t30 = al * (t5 + t27 + t28) / (t29 + t28 * 6.103515625e-05 + 512.0 * wrist)
-    del t29, t5
-    t31 = _runtime.select(wrist < al * 0.0009765625, t30, 0.0)
-    del t30
-    far_apart = t27 * 0.001953125 + t28 * 0.001953125 + t31
-    del t27, t28, t31
     slack = lengths * 0.25 + far_apart
-    t32 = -(_runtime.FEASIBILITY * slack)
-    t33 = t25 & (-t24 <= t7) & (t32 <= t12) & (t32 <= t11)
-    del t11, t12, t24, t25, t32, t7
-    t34 = L1 * 2.0
+    t27 = -(_runtime.FEASIBILITY * slack)
+    t28 = t25 & (-t24 <= t7) & (t27 <= t12) & (t27 <= t11)
+    del t11, t12, t24, t25, t27, t7
+    t29 = L1 * 2.0
     L_2W = L2 + c_psi * t9
     del c_psi
     a_3W = a3 + c_phi * t1 + s_phi * s_psi * t9
     del c_phi, s_phi, s_psi, t1, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t35 = 2.0 * fore
-    t36 = -(_runtime.FEASIBILITY * ((t34 + t35) * slack))
-    t37 = L1 + fore
-    t38 = t37 * t37
-    t39 = z - d1
-    square = t39 * t39 + root * root
-    t40 = t38 - square
-    t41 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t42 = L1 - fore
-    t43 = _runtime.FEASIBILITY * ((t41 + 2.0 * np.abs(t42)) * slack)
-    del t41
-    t44 = square - t42 * t42
+    t30 = 2.0 * fore
+    t31 = -(_runtime.FEASIBILITY * ((t29 + t30) * slack))
+    t32 = L1 + fore
+    t33 = t32 * t32
+    t34 = z - d1
+    square = t34 * t34 + root * root
+    t35 = t33 - square
+    t36 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t37 = L1 - fore
+    t38 = _runtime.FEASIBILITY * ((t36 + 2.0 * np.abs(t37)) * slack)
+    del t36
+    t39 = square - t37 * t37
     del square
-    t45 = t33 & (t36 <= t40) & (-t43 <= t44)
-    del t33, t36, t43
+    t40 = t28 & (t31 <= t35) & (-t38 <= t39)
+    del t28, t31, t38
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    play = d * 0.25 + far_apart + lengths * 0.00048828125
+    play = d * 0.25 + lengths * 0.00048828125 + far_apart
     del far_apart
     play_right = size * play
     del play
-    t46 = -(_runtime.FEASIBILITY * play_right)
-    t47 = size * size
-    M = np.maximum(t44, 0.0)
+    t41 = -(_runtime.FEASIBILITY * play_right)
+    t42 = size * size
+    M = np.maximum(t39, 0.0)
+    del t39
+    N = np.maximum(t35, 0.0)
+    del t35
+    t43 = 1.0 / (M + N)
+    s_bend_front_elbow_down_alike = t43 * (2.0 * np.sqrt(M * N))
+    t44 = fore * s_bend_front_elbow_down_alike
+    t45 = root * t44
+    ahead_1 = t37 + t30 * M * t43
+    del t30, t37
+    t46 = t34 * ahead_1
+    up = t45 + t46
+    t47 = t34 * t44
     del t44
-    N = np.maximum(t40, 0.0)
-    del t40
-    t48 = 1.0 / (M + N)
-    s_bend_front_elbow_down_alike = t48 * (2.0 * np.sqrt(M * N))
-    t49 = fore * s_bend_front_elbow_down_alike
-    t50 = root * t49
-    ahead_1 = t42 + t35 * M * t48
-    del t35, t42
-    t51 = t39 * ahead_1
-    up = t50 + t51
-    t52 = t39 * t49
-    del t49
-    t53 = root * ahead_1
+    t48 = root * ahead_1
     del ahead_1
-    t54 = t52 - t53
-    t55 = 1.0 / np.sqrt(t54 * t54 + up * up)
-    stheta2A = up * t55
+    t49 = t47 - t48
+    t50 = 1.0 / np.sqrt(t49 * t49 + up * up)
+    stheta2A = up * t50
     del up
     elbow_21 = L1 * stheta2A
-    t56 = 1.0 / fore
-    c_lag = a_3W * t56
+    t51 = 1.0 / fore
+    c_lag = a_3W * t51
     del a_3W
-    c_bend = t48 * (M - N)
-    del M, N, t48
-    t57 = c_lag * c_bend
-    s_lag = L_2W * t56
-    del L_2W, t56
-    t58 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t57 + t58
-    t59 = t54 * t55
-    del t54, t55
-    t60 = s_lag * c_bend
+    c_bend = t43 * (M - N)
+    del M, N, t43
+    t52 = c_lag * c_bend
+    s_lag = L_2W * t51
+    del L_2W, t51
+    t53 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t52 + t53
+    t54 = t49 * t50
+    del t49, t50
+    t55 = s_lag * c_bend
     del c_bend, s_lag
-    t61 = c_lag * s_bend_front_elbow_down_alike
+    t56 = c_lag * s_bend_front_elbow_down_alike
     del c_lag, s_bend_front_elbow_down_alike
-    s_relative = t60 - t61
-    t62 = c_relative * t59 + s_relative * stheta2A
-    stheta23A = c_relative * stheta2A - s_relative * t59
-    point_21 = elbow_21 + L2 * t62 + a3 * stheta23A
-    shift_21 = d * (t26 * (t_psi * t62) - t_phi * stheta23A)
+    s_relative = t55 - t56
+    t57 = c_relative * t54 + s_relative * stheta2A
+    stheta23A = c_relative * stheta2A - s_relative * t54
+    point_21 = elbow_21 + L2 * t57 + a3 * stheta23A
+    shift_21 = d * (t26 * (t_psi * t57) - t_phi * stheta23A)
     h_right_0 = point_21 + shift_21
-    t63 = L1 * t59
-    t64 = t63 - L2 * stheta23A + a3 * t62
-    shift_11 = d * (t_phi * t62 + t26 * (t_psi * stheta23A))
-    del stheta23A, t62
-    t65 = t64 - shift_11
-    t66 = h_right_0 * h_right_0 + t65 * t65
+    t58 = L1 * t54
+    t59 = t58 - L2 * stheta23A + a3 * t57
+    shift_11 = d * (t_phi * t57 + t26 * (t_psi * stheta23A))
+    del stheta23A, t57
+    t60 = t59 - shift_11
+    t61 = h_right_0 * h_right_0 + t60 * t60
     gap = shift_11 * shift_11 + shift_21 * shift_21
-    t67 = gap * gap
-    t68 = L1 - fore_arm
-    t69 = t68 * t68
+    t62 = gap * gap
+    t63 = L1 - fore_arm
+    t64 = t63 * t63
     straight_mid = L2 * s_relative + a3 * c_relative
-    t70 = 0.0 <= straight_mid
+    t65 = 0.0 <= straight_mid
     large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
-    t71 = L2 * c_relative - a3 * s_relative
-    small_mid = t71 * t71 / large_mid
-    M_mid = t34 * _runtime.select(t70, large_mid, small_mid)
-    t72 = M_mid + gap
-    t73 = 2.0 * t64 * shift_11 - 2.0 * point_21 * shift_21
-    farther_right = _runtime.select(t47 * t66 < t67, t66 - t69, t72 - t73)
-    del t66
-    N_mid = t34 * _runtime.select(t70, small_mid, large_mid)
-    del large_mid, small_mid, t70
-    t74 = N_mid - gap
-    nearer_right = t73 + t74
+    t66 = L2 * c_relative - a3 * s_relative
+    small_mid = t66 * t66 / large_mid
+    M_mid = t29 * _runtime.select(t65, large_mid, small_mid)
+    t67 = M_mid + gap
+    t68 = 2.0 * t59 * shift_11 - 2.0 * point_21 * shift_21
+    farther_right = _runtime.select(t42 * t61 < t62, t61 - t64, t67 - t68)
+    del t61
+    N_mid = t29 * _runtime.select(t65, small_mid, large_mid)
+    del large_mid, small_mid, t65
+    t69 = N_mid - gap
+    nearer_right = t68 + t69
     margin_right = np.minimum(farther_right, nearer_right)
     h_left_0 = point_21 - shift_21
     del point_21, shift_21
-    t75 = t64 + shift_11
-    del shift_11, t64
-    t76 = h_left_0 * h_left_0 + t75 * t75
-    farther_left = _runtime.select(t47 * t76 < t67, t76 - t69, t72 + t73)
-    del t67, t72, t76
-    nearer_left = t74 - t73
-    del t73, t74
+    t70 = t59 + shift_11
+    del shift_11, t59
+    t71 = h_left_0 * h_left_0 + t70 * t70
+    farther_left = _runtime.select(t42 * t71 < t62, t71 - t64, t67 + t68)
+    del t62, t67, t71
+    nearer_left = t69 - t68
+    del t68, t69
     margin_left = np.minimum(farther_left, nearer_left)
-    t77 = t45 & (t46 <= margin_right) & (t46 <= margin_left)
-    t78 = t77 & (t46 <= nearer_right) & (t46 <= farther_right)
-    del t77
-    t79 = t78 & (t46 <= nearer_left) & (t46 <= farther_left)
-    del t78
-    unreachable = np.logical_not(t79)
-    del t79
-    t80 = _runtime.poison(invalid | unreachable)
-    t81 = t15 + t80
-    t82 = 2.0 * fore_arm
-    t83 = L1 * fore_arm
-    t84 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t83))
-    M_right = np.maximum(farther_right, t84)
+    t72 = t40 & (t41 <= margin_right) & (t41 <= margin_left)
+    t73 = t72 & (t41 <= nearer_right) & (t41 <= farther_right)
+    del t72
+    t74 = t73 & (t41 <= nearer_left) & (t41 <= farther_left)
+    del t73
+    unreachable = np.logical_not(t74)
+    del t74
+    t75 = _runtime.poison(invalid | unreachable)
+    t76 = t15 + t75
+    t77 = 2.0 * fore_arm
+    t78 = L1 * fore_arm
+    t79 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t78))
+    M_right = np.maximum(farther_right, t79)
     del farther_right
-    N_right = np.maximum(nearer_right, t84)
+    N_right = np.maximum(nearer_right, t79)
     del nearer_right
-    t85 = 1.0 / (M_right + N_right)
-    ahead_1_right = t68 + t82 * M_right * t85
-    sigma_right = _runtime.sign(-t71)
-    del t71
-    t86 = 2.0 * sigma_right
-    t87 = np.sqrt(M_right * N_right)
-    t88 = fore_arm * (t85 * (t86 * t87))
-    del t85
-    t89 = np.arctan2(h_right_0 * ahead_1_right + t65 * t88, h_right_0 * t88 - t65 * ahead_1_right)
-    del ahead_1_right, t88
-    t90 = _runtime.wrap_cut(t89) + t80
-    del t89
-    t91 = np.arctan2(L2, a3)
-    t92 = sigma_right * np.arctan2(2.0 * t87, M_right - N_right)
-    del M_right, N_right, t87
-    t93 = _runtime.wrap(t91 + t92) + t80
-    del t92
+    t80 = 1.0 / (M_right + N_right)
+    ahead_1_right = t63 + t77 * M_right * t80
+    sigma_right = _runtime.sign(-t66)
+    del t66
+    t81 = 2.0 * sigma_right
+    t82 = np.sqrt(M_right * N_right)
+    t83 = fore_arm * (t80 * (t81 * t82))
+    del t80
+    t84 = np.arctan2(h_right_0 * ahead_1_right + t60 * t83, h_right_0 * t83 - t60 * ahead_1_right)
+    del ahead_1_right, t83
+    t85 = _runtime.wrap_cut(t84) + t75
+    del t84
+    t86 = np.arctan2(L2, a3)
+    t87 = sigma_right * np.arctan2(2.0 * t82, M_right - N_right)
+    del M_right, N_right, t82
+    t88 = _runtime.wrap(t86 + t87) + t75
+    del t87
     M_left = np.maximum(farther_left, 0.0)
     del farther_left
     N_left = np.maximum(nearer_left, 0.0)
     del nearer_left
-    t94 = 1.0 / (M_left + N_left)
-    ahead_1_left = t68 + t82 * M_left * t94
-    t95 = h_left_0 * ahead_1_left
-    t96 = np.sqrt(M_left * N_left)
-    t97 = fore_arm * (t94 * (t86 * t96))
-    del t94
-    t98 = t75 * t97
-    t99 = h_left_0 * t97
-    del t97
-    t100 = t75 * ahead_1_left
+    t89 = 1.0 / (M_left + N_left)
+    ahead_1_left = t63 + t77 * M_left * t89
+    t90 = h_left_0 * ahead_1_left
+    t91 = np.sqrt(M_left * N_left)
+    t92 = fore_arm * (t89 * (t81 * t91))
+    del t89
+    t93 = t70 * t92
+    t94 = h_left_0 * t92
+    del t92
+    t95 = t70 * ahead_1_left
     del ahead_1_left
-    t101 = _runtime.wrap_cut(np.arctan2(t95 + t98, t99 - t100))
-    t102 = sigma_right * np.arctan2(2.0 * t96, M_left - N_left)
-    del M_left, N_left, t96
-    t103 = _runtime.wrap(principal_pitch)
+    t96 = _runtime.wrap_cut(np.arctan2(t90 + t93, t94 - t95))
+    t97 = sigma_right * np.arctan2(2.0 * t91, M_left - N_left)
+    del M_left, N_left, t91
+    t98 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t104 = t103 + t80
-    t105 = _runtime.wrap_cut(np.arctan2(t95 - t98, -(t100 + t99)))
-    del t100, t95, t98, t99
-    t106 = t50 - t51
-    del t50, t51
-    out_front_elbow_down_alike = t52 + t53
+    t99 = t98 + t75
+    t100 = _runtime.wrap_cut(np.arctan2(t90 - t93, -(t95 + t94)))
+    del t90, t93, t94, t95
+    t101 = t45 - t46
+    del t45, t46
+    out_front_elbow_down_alike = t47 + t48
+    del t47, t48
+    t102 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t103 = 1.0 / np.sqrt(t102 + t101 * t101)
+    del t102
+    t104 = t101 * t103
+    del t101
+    t105 = L1 * t104
+    c_relative_front_elbow_down_alike = t52 - t53
     del t52, t53
-    t107 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t108 = 1.0 / np.sqrt(t107 + t106 * t106)
-    del t107
-    t109 = t106 * t108
+    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t103
+    del out_front_elbow_down_alike, t103
+    t106 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t55 + t56
+    del t55, t56
+    ctheta23A_front_elbow_down_alike = t106 + s_relative_front_elbow_down_alike * t104
     del t106
-    t110 = L1 * t109
-    c_relative_front_elbow_down_alike = t57 - t58
-    del t57, t58
-    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t108
-    del out_front_elbow_down_alike, t108
-    t111 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t60 + t61
-    del t60, t61
-    ctheta23A_front_elbow_down_alike = t111 + s_relative_front_elbow_down_alike * t109
-    del t111
-    t112 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t113 = c_relative_front_elbow_down_alike * t109 - t112
-    del t112
-    t114 = t110 + L2 * ctheta23A_front_elbow_down_alike + a3 * t113
-    t115 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t116 = d * (t115 - t_phi * t113)
-    del t115
-    t117 = t114 + t116
+    t107 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t108 = c_relative_front_elbow_down_alike * t104 - t107
+    del t107
+    t109 = t105 + L2 * ctheta23A_front_elbow_down_alike + a3 * t108
+    t110 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t111 = d * (t110 - t_phi * t108)
+    del t110
+    t112 = t109 + t111
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t113 + a3 * ctheta23A_front_elbow_down_alike
-    t118 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t113)
-    del ctheta23A_front_elbow_down_alike, t113
-    t119 = d * t118
-    del t118
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t119
-    t120 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t121 = t117 * t117 + t120
-    del t120
-    gap_front_elbow_down_alike = t119 * t119 + t116 * t116
-    t122 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t108 + a3 * ctheta23A_front_elbow_down_alike
+    t113 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t108)
+    del ctheta23A_front_elbow_down_alike, t108
+    t114 = d * t113
+    del t113
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t114
+    t115 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t116 = t112 * t112 + t115
+    del t115
+    gap_front_elbow_down_alike = t114 * t114 + t111 * t111
+    t117 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t123 = 0.0 <= straight_mid_front_elbow_down_alike
+    t118 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    t124 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t124 * t124 / large_mid_front_elbow_down_alike
-    t125 = _runtime.select(t123, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t34 * t125
-    del t125
-    t126 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t127 = 2.0 * point_11_front_elbow_down_alike * t119 - 2.0 * t114 * t116
-    farther_right_front_elbow_down_alike = _runtime.select(t47 * t121 < t122, t121 - t69, t126 - t127)
-    del t121
-    t128 = _runtime.select(t123, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t123
-    N_mid_front_elbow_down_alike = t34 * t128
-    del t128, t34
-    t129 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t127 + t129
+    t119 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t119 * t119 / large_mid_front_elbow_down_alike
+    t120 = _runtime.select(t118, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t29 * t120
+    del t120
+    t121 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t122 = 2.0 * point_11_front_elbow_down_alike * t114 - 2.0 * t109 * t111
+    farther_right_front_elbow_down_alike = _runtime.select(t42 * t116 < t117, t116 - t64, t121 - t122)
+    del t116
+    t123 = _runtime.select(t118, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t118
+    N_mid_front_elbow_down_alike = t29 * t123
+    del t123, t29
+    t124 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t122 + t124
     margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t130 = t45 & (t46 <= margin_right_front_elbow_down_alike)
-    t131 = t114 - t116
-    del t114, t116
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t119
-    del point_11_front_elbow_down_alike, t119
-    t132 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t133 = t131 * t131 + t132
-    del t132
-    farther_left_front_elbow_down_alike = _runtime.select(t47 * t133 < t122, t133 - t69, t126 + t127)
-    del t122, t126, t133
-    nearer_left_front_elbow_down_alike = t129 - t127
-    del t127, t129
+    t125 = t40 & (t41 <= margin_right_front_elbow_down_alike)
+    t126 = t109 - t111
+    del t109, t111
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t114
+    del point_11_front_elbow_down_alike, t114
+    t127 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t128 = t126 * t126 + t127
+    del t127
+    farther_left_front_elbow_down_alike = _runtime.select(t42 * t128 < t117, t128 - t64, t121 + t122)
+    del t117, t121, t128
+    nearer_left_front_elbow_down_alike = t124 - t122
+    del t122, t124
     margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
-    t134 = t130 & (t46 <= margin_left_front_elbow_down_alike)
+    t129 = t125 & (t41 <= margin_left_front_elbow_down_alike)
+    del t125
+    t130 = t129 & (t41 <= nearer_right_front_elbow_down_alike)
+    del t129
+    t131 = t130 & (t41 <= farther_right_front_elbow_down_alike)
     del t130
-    t135 = t134 & (t46 <= nearer_right_front_elbow_down_alike)
-    del t134
-    t136 = t135 & (t46 <= farther_right_front_elbow_down_alike)
-    del t135
-    t137 = t136 & (t46 <= nearer_left_front_elbow_down_alike)
-    del t136
-    t138 = t137 & (t46 <= farther_left_front_elbow_down_alike)
-    del t137
-    unreachable_2 = np.logical_not(t138)
-    del t138
-    t139 = _runtime.poison(invalid | unreachable_2)
-    t140 = t15 + t139
+    t132 = t131 & (t41 <= nearer_left_front_elbow_down_alike)
+    del t131
+    t133 = t132 & (t41 <= farther_left_front_elbow_down_alike)
+    del t132
+    unreachable_2 = np.logical_not(t133)
+    del t133
+    t134 = _runtime.poison(invalid | unreachable_2)
+    t135 = t15 + t134
     del t15
-    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t84)
+    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t79)
     del farther_right_front_elbow_down_alike
-    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t84)
+    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t79)
     del nearer_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t141 = 1.0 / whole_right_front_elbow_down_alike
+    t136 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = t68 + t82 * M_right_front_elbow_down_alike * t141
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t124)
-    del t124
-    t142 = 2.0 * sigma_right_front_elbow_down_alike
-    t143 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t144 = np.sqrt(t143)
-    del t143
-    t145 = fore_arm * (t141 * (t142 * t144))
-    del t141
-    t146 = t117 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t145
-    t147 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = t63 + t77 * M_right_front_elbow_down_alike * t136
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t119)
+    del t119
+    t137 = 2.0 * sigma_right_front_elbow_down_alike
+    t138 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t139 = np.sqrt(t138)
+    del t138
+    t140 = fore_arm * (t136 * (t137 * t139))
+    del t136
+    t141 = t112 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t140
+    t142 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     del ahead_1_right_front_elbow_down_alike
-    t148 = _runtime.wrap_cut(np.arctan2(-t146, t147 - t117 * t145))
-    del t145, t146, t147
-    t149 = t148 + t139
-    del t148
-    t150 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t143 = _runtime.wrap_cut(np.arctan2(-t141, t142 - t112 * t140))
+    del t140, t141, t142
+    t144 = t143 + t134
+    del t143
+    t145 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
     del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t151 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t144, t150)
-    del t144, t150
-    t152 = _runtime.wrap(t91 + t151) + t139
-    del t151
+    t146 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t139, t145)
+    del t139, t145
+    t147 = _runtime.wrap(t86 + t146) + t134
+    del t146
     M_left_front_elbow_down_alike = np.maximum(farther_left_front_elbow_down_alike, 0.0)
     del farther_left_front_elbow_down_alike
     N_left_front_elbow_down_alike = np.maximum(nearer_left_front_elbow_down_alike, 0.0)
     del nearer_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t153 = 1.0 / whole_left_front_elbow_down_alike
+    t148 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = t68 + t82 * M_left_front_elbow_down_alike * t153
-    t154 = t131 * ahead_1_left_front_elbow_down_alike
-    t155 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t156 = np.sqrt(t155)
-    del t155
-    t157 = fore_arm * (t153 * (t142 * t156))
-    del t153
-    t158 = r_left_0_front_elbow_down_alike * t157
-    t159 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = t63 + t77 * M_left_front_elbow_down_alike * t148
+    t149 = t126 * ahead_1_left_front_elbow_down_alike
+    t150 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t151 = np.sqrt(t150)
+    del t150
+    t152 = fore_arm * (t148 * (t137 * t151))
+    del t148
+    t153 = r_left_0_front_elbow_down_alike * t152
+    t154 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike
-    t160 = t131 * t157
-    del t157
-    t161 = _runtime.wrap_cut(np.arctan2(-(t154 + t158), t159 - t160))
-    t162 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t155 = t126 * t152
+    del t152
+    t156 = _runtime.wrap_cut(np.arctan2(-(t149 + t153), t154 - t155))
+    t157 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
     del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t163 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t156, t162)
-    del t156, t162
-    t164 = t103 + t139
-    t165 = _runtime.wrap_cut(np.arctan2(t158 - t154, t159 + t160))
-    del t154, t158, t159, t160
-    t166 = _runtime.wrap(-(t14 + t13))
+    t158 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t151, t157)
+    del t151, t157
+    t159 = t98 + t134
+    t160 = _runtime.wrap_cut(np.arctan2(t153 - t149, t154 + t155))
+    del t149, t153, t154, t155
+    t161 = _runtime.wrap(-(t14 + t13))
     del t13, t14
-    t167 = c_relative_front_elbow_down_alike * t59 - s_relative_front_elbow_down_alike * stheta2A
-    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t59
-    del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t59
-    point_21_rear_elbow_up_alike = elbow_21 - L2 * t167 + a3 * stheta23A_rear_elbow_up_alike
+    t162 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
+    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t54
+    del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t54
+    point_21_rear_elbow_up_alike = elbow_21 - L2 * t162 + a3 * stheta23A_rear_elbow_up_alike
     del elbow_21
-    t168 = t26 * (t_psi * t167) + t_phi * stheta23A_rear_elbow_up_alike
-    t169 = d * t168
-    del t168
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t169
-    t170 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t171 = t63 + L2 * stheta23A_rear_elbow_up_alike + a3 * t167
-    del t63
-    t172 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
+    t163 = t26 * (t_psi * t162) + t_phi * stheta23A_rear_elbow_up_alike
+    t164 = d * t163
+    del t163
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t164
+    t165 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t166 = t58 + L2 * stheta23A_rear_elbow_up_alike + a3 * t162
+    del t58
+    t167 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
-    t173 = d * (t_phi * t167 - t172)
-    del t167, t172
-    r_right_0_rear_elbow_up_alike = t171 - t173
-    t174 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t175 = t170 + t174
-    del t170, t174
-    gap_rear_elbow_up_alike = t173 * t173 + t169 * t169
-    t176 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t177 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t178 = 2.0 * t171 * t173 + 2.0 * point_21_rear_elbow_up_alike * t169
-    farther_right_rear_elbow_up_alike = _runtime.select(t47 * t175 < t176, t175 - t69, t177 - t178)
-    del t175
-    t179 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    t168 = d * (t_phi * t162 - t167)
+    del t162, t167
+    r_right_0_rear_elbow_up_alike = t166 - t168
+    t169 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t170 = t165 + t169
+    del t165, t169
+    gap_rear_elbow_up_alike = t168 * t168 + t164 * t164
+    t171 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t172 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t173 = 2.0 * t166 * t168 + 2.0 * point_21_rear_elbow_up_alike * t164
+    farther_right_rear_elbow_up_alike = _runtime.select(t42 * t170 < t171, t170 - t64, t172 - t173)
+    del t170
+    t174 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t178 + t179
+    nearer_right_rear_elbow_up_alike = t173 + t174
     margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t180 = t45 & (t46 <= margin_right_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t169
-    del point_21_rear_elbow_up_alike, t169
-    t181 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t171 + t173
-    del t171, t173
-    t182 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t183 = t181 + t182
-    del t181, t182
-    farther_left_rear_elbow_up_alike = _runtime.select(t47 * t183 < t176, t183 - t69, t177 + t178)
-    del t176, t177, t183
-    nearer_left_rear_elbow_up_alike = t179 - t178
-    del t178, t179
+    t175 = t40 & (t41 <= margin_right_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t164
+    del point_21_rear_elbow_up_alike, t164
+    t176 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t166 + t168
+    del t166, t168
+    t177 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t178 = t176 + t177
+    del t176, t177
+    farther_left_rear_elbow_up_alike = _runtime.select(t42 * t178 < t171, t178 - t64, t172 + t173)
+    del t171, t172, t178
+    nearer_left_rear_elbow_up_alike = t174 - t173
+    del t173, t174
     margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
-    t184 = t180 & (t46 <= margin_left_rear_elbow_up_alike)
+    t179 = t175 & (t41 <= margin_left_rear_elbow_up_alike)
+    del t175
+    t180 = t179 & (t41 <= nearer_right_rear_elbow_up_alike)
+    del t179
+    t181 = t180 & (t41 <= farther_right_rear_elbow_up_alike)
     del t180
-    t185 = t184 & (t46 <= nearer_right_rear_elbow_up_alike)
-    del t184
-    t186 = t185 & (t46 <= farther_right_rear_elbow_up_alike)
-    del t185
-    t187 = t186 & (t46 <= nearer_left_rear_elbow_up_alike)
-    del t186
-    t188 = t187 & (t46 <= farther_left_rear_elbow_up_alike)
-    del t187
-    unreachable_3 = np.logical_not(t188)
-    del t188
-    t189 = _runtime.poison(invalid | unreachable_3)
-    t190 = t166 + t189
-    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t84)
+    t182 = t181 & (t41 <= nearer_left_rear_elbow_up_alike)
+    del t181
+    t183 = t182 & (t41 <= farther_left_rear_elbow_up_alike)
+    del t182
+    unreachable_3 = np.logical_not(t183)
+    del t183
+    t184 = _runtime.poison(invalid | unreachable_3)
+    t185 = t161 + t184
+    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t79)
     del farther_right_rear_elbow_up_alike
-    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t84)
+    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t79)
     del nearer_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t191 = 1.0 / whole_right_rear_elbow_up_alike
+    t186 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = t68 + t82 * M_right_rear_elbow_up_alike * t191
-    t192 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t193 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t194 = np.sqrt(t193)
-    del t193
-    t195 = fore_arm * (t191 * (t142 * t194))
-    del t191
-    t196 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = t63 + t77 * M_right_rear_elbow_up_alike * t186
+    t187 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t188 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t189 = np.sqrt(t188)
+    del t188
+    t190 = fore_arm * (t186 * (t137 * t189))
+    del t186
+    t191 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
-    t197 = np.arctan2(t192 - r_right_0_rear_elbow_up_alike * t195, t196 + h_right_0_rear_elbow_up_alike * t195)
-    del t192, t195, t196
-    t198 = _runtime.wrap_cut(t197) + t189
-    del t197
-    t199 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t192 = np.arctan2(t187 - r_right_0_rear_elbow_up_alike * t190, t191 + h_right_0_rear_elbow_up_alike * t190)
+    del t187, t190, t191
+    t193 = _runtime.wrap_cut(t192) + t184
+    del t192
+    t194 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
     del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
-    t200 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t194, t199)
-    del t194, t199
-    t201 = _runtime.wrap(t91 + t200) + t189
-    del t200
+    t195 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t189, t194)
+    del t189, t194
+    t196 = _runtime.wrap(t86 + t195) + t184
+    del t195
     M_left_rear_elbow_up_alike = np.maximum(farther_left_rear_elbow_up_alike, 0.0)
     del farther_left_rear_elbow_up_alike
     N_left_rear_elbow_up_alike = np.maximum(nearer_left_rear_elbow_up_alike, 0.0)
     del nearer_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t202 = 1.0 / whole_left_rear_elbow_up_alike
+    t197 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = t68 + t82 * M_left_rear_elbow_up_alike * t202
-    t203 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t204 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t205 = np.sqrt(t204)
-    del t204
-    t206 = fore_arm * (t202 * (t142 * t205))
-    del t142, t202
-    t207 = r_left_0_rear_elbow_up_alike * t206
-    t208 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = t63 + t77 * M_left_rear_elbow_up_alike * t197
+    t198 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t199 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t200 = np.sqrt(t199)
+    del t199
+    t201 = fore_arm * (t197 * (t137 * t200))
+    del t137, t197
+    t202 = r_left_0_rear_elbow_up_alike * t201
+    t203 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike
-    t209 = h_left_0_rear_elbow_up_alike * t206
-    del t206
-    t210 = _runtime.wrap_cut(np.arctan2(t203 - t207, t208 + t209))
-    t211 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t204 = h_left_0_rear_elbow_up_alike * t201
+    del t201
+    t205 = _runtime.wrap_cut(np.arctan2(t198 - t202, t203 + t204))
+    t206 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
     del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t212 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t205, t211)
-    del sigma_right_front_elbow_down_alike, t205, t211
-    t213 = t103 + t189
-    t214 = _runtime.wrap_cut(np.arctan2(t203 + t207, t208 - t209))
-    del t203, t207, t208, t209
-    t215 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t109
-    t216 = c_relative * t109 + s_relative * ctheta2A_front_elbow_down_alike
-    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t109
-    t217 = t110 - L2 * t215 + a3 * t216
-    del t110
-    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t215) + t_phi * t216)
-    t218 = t217 - shift_21_rear_elbow_down_alike
-    t219 = elbow_11_front_elbow_down_alike + L2 * t216 + a3 * t215
+    t207 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t200, t206)
+    del sigma_right_front_elbow_down_alike, t200, t206
+    t208 = t98 + t184
+    t209 = _runtime.wrap_cut(np.arctan2(t198 + t202, t203 - t204))
+    del t198, t202, t203, t204
+    t210 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t104
+    t211 = c_relative * t104 + s_relative * ctheta2A_front_elbow_down_alike
+    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t104
+    t212 = t105 - L2 * t210 + a3 * t211
+    del t105
+    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t210) + t_phi * t211)
+    t213 = t212 - shift_21_rear_elbow_down_alike
+    t214 = elbow_11_front_elbow_down_alike + L2 * t211 + a3 * t210
     del elbow_11_front_elbow_down_alike
-    shift_11_rear_elbow_down_alike = d * (t_phi * t215 - t26 * (t_psi * t216))
-    del t215, t216, t26, t_phi, t_psi
-    t220 = t219 - shift_11_rear_elbow_down_alike
-    t221 = t218 * t218 + t220 * t220
-    t222 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
-    t223 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
-    gap_rear_elbow_down_alike = t222 + t223
-    del t222, t223
-    t224 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t225 = M_mid + gap_rear_elbow_down_alike
-    t226 = 2.0 * t219 * shift_11_rear_elbow_down_alike + 2.0 * t217 * shift_21_rear_elbow_down_alike
-    farther_right_rear_elbow_down_alike = _runtime.select(t47 * t221 < t224, t221 - t69, t225 - t226)
-    del t221
-    t227 = N_mid - gap_rear_elbow_down_alike
+    shift_11_rear_elbow_down_alike = d * (t_phi * t210 - t26 * (t_psi * t211))
+    del t210, t211, t26, t_phi, t_psi
+    t215 = t214 - shift_11_rear_elbow_down_alike
+    t216 = t213 * t213 + t215 * t215
+    t217 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
+    t218 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
+    gap_rear_elbow_down_alike = t217 + t218
+    del t217, t218
+    t219 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t220 = M_mid + gap_rear_elbow_down_alike
+    t221 = 2.0 * t214 * shift_11_rear_elbow_down_alike + 2.0 * t212 * shift_21_rear_elbow_down_alike
+    farther_right_rear_elbow_down_alike = _runtime.select(t42 * t216 < t219, t216 - t64, t220 - t221)
+    del t216
+    t222 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t226 + t227
+    nearer_right_rear_elbow_down_alike = t221 + t222
     margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t228 = t45 & (t46 <= margin_right_rear_elbow_down_alike)
-    del t45
-    t229 = t217 + shift_21_rear_elbow_down_alike
-    del shift_21_rear_elbow_down_alike, t217
-    t230 = t219 + shift_11_rear_elbow_down_alike
-    del shift_11_rear_elbow_down_alike, t219
-    t231 = t229 * t229 + t230 * t230
-    farther_left_rear_elbow_down_alike = _runtime.select(t47 * t231 < t224, t231 - t69, t225 + t226)
-    del t224, t225, t231
-    nearer_left_rear_elbow_down_alike = t227 - t226
-    del t226, t227
+    t223 = t40 & (t41 <= margin_right_rear_elbow_down_alike)
+    del t40
+    t224 = t212 + shift_21_rear_elbow_down_alike
+    del shift_21_rear_elbow_down_alike, t212
+    t225 = t214 + shift_11_rear_elbow_down_alike
+    del shift_11_rear_elbow_down_alike, t214
+    t226 = t224 * t224 + t225 * t225
+    farther_left_rear_elbow_down_alike = _runtime.select(t42 * t226 < t219, t226 - t64, t220 + t221)
+    del t219, t220, t226
+    nearer_left_rear_elbow_down_alike = t222 - t221
+    del t221, t222
     margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
-    t232 = t228 & (t46 <= margin_left_rear_elbow_down_alike)
+    t227 = t223 & (t41 <= margin_left_rear_elbow_down_alike)
+    del t223
+    t228 = t227 & (t41 <= nearer_right_rear_elbow_down_alike)
+    del t227
+    t229 = t228 & (t41 <= farther_right_rear_elbow_down_alike)
     del t228
-    t233 = t232 & (t46 <= nearer_right_rear_elbow_down_alike)
-    del t232
-    t234 = t233 & (t46 <= farther_right_rear_elbow_down_alike)
-    del t233
-    t235 = t234 & (t46 <= nearer_left_rear_elbow_down_alike)
-    del t234
-    t236 = t235 & (t46 <= farther_left_rear_elbow_down_alike)
-    del t235, t46
-    unreachable_4 = np.logical_not(t236)
-    del t236
-    t237 = _runtime.poison(invalid | unreachable_4)
-    t238 = t166 + t237
-    del t166
-    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t84)
+    t230 = t229 & (t41 <= nearer_left_rear_elbow_down_alike)
+    del t229
+    t231 = t230 & (t41 <= farther_left_rear_elbow_down_alike)
+    del t230, t41
+    unreachable_4 = np.logical_not(t231)
+    del t231
+    t232 = _runtime.poison(invalid | unreachable_4)
+    t233 = t161 + t232
+    del t161
+    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t79)
     del farther_right_rear_elbow_down_alike
-    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t84)
-    del nearer_right_rear_elbow_down_alike, t84
+    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t79)
+    del nearer_right_rear_elbow_down_alike, t79
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t239 = 1.0 / whole_right_rear_elbow_down_alike
+    t234 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t240 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t241 = np.sqrt(t240)
-    del t240
-    t242 = fore_arm * (t239 * (t86 * t241))
-    ahead_1_right_rear_elbow_down_alike = t68 + t82 * M_right_rear_elbow_down_alike * t239
+    t235 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t236 = np.sqrt(t235)
+    del t235
+    t237 = fore_arm * (t234 * (t81 * t236))
+    ahead_1_right_rear_elbow_down_alike = t63 + t77 * M_right_rear_elbow_down_alike * t234
+    del t234
+    up_right_rear_elbow_down_alike = t215 * t237 - t213 * ahead_1_right_rear_elbow_down_alike
+    t238 = t215 * ahead_1_right_rear_elbow_down_alike + t213 * t237
+    del ahead_1_right_rear_elbow_down_alike, t237
+    t239 = np.arctan2(up_right_rear_elbow_down_alike, -t238)
+    del t238, up_right_rear_elbow_down_alike
+    t240 = _runtime.wrap_cut(t239) + t232
     del t239
-    up_right_rear_elbow_down_alike = t220 * t242 - t218 * ahead_1_right_rear_elbow_down_alike
-    t243 = t220 * ahead_1_right_rear_elbow_down_alike + t218 * t242
-    del ahead_1_right_rear_elbow_down_alike, t242
-    t244 = np.arctan2(up_right_rear_elbow_down_alike, -t243)
-    del t243, up_right_rear_elbow_down_alike
-    t245 = _runtime.wrap_cut(t244) + t237
-    del t244
-    t246 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t241 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
     del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t247 = t91 + sigma_right * np.arctan2(2.0 * t241, t246)
-    del t241, t246
-    t248 = _runtime.wrap(t247) + t237
-    del t247
+    t242 = t86 + sigma_right * np.arctan2(2.0 * t236, t241)
+    del t236, t241
+    t243 = _runtime.wrap(t242) + t232
+    del t242
     M_left_rear_elbow_down_alike = np.maximum(farther_left_rear_elbow_down_alike, 0.0)
     del farther_left_rear_elbow_down_alike
     N_left_rear_elbow_down_alike = np.maximum(nearer_left_rear_elbow_down_alike, 0.0)
     del nearer_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t249 = 1.0 / whole_left_rear_elbow_down_alike
+    t244 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t250 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t251 = np.sqrt(t250)
-    del t250
-    t252 = fore_arm * (t249 * (t86 * t251))
-    del t86
-    t253 = t230 * t252
-    ahead_1_left_rear_elbow_down_alike = t68 + t82 * M_left_rear_elbow_down_alike * t249
-    del t249, t68, t82
-    t254 = t229 * ahead_1_left_rear_elbow_down_alike
-    t255 = t230 * ahead_1_left_rear_elbow_down_alike
+    t245 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t246 = np.sqrt(t245)
+    del t245
+    t247 = fore_arm * (t244 * (t81 * t246))
+    del t81
+    t248 = t225 * t247
+    ahead_1_left_rear_elbow_down_alike = t63 + t77 * M_left_rear_elbow_down_alike * t244
+    del t244, t63, t77
+    t249 = t224 * ahead_1_left_rear_elbow_down_alike
+    t250 = t225 * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike
-    t256 = t229 * t252
-    del t252
-    t257 = _runtime.wrap_cut(np.arctan2(t253 - t254, -(t255 + t256)))
-    t258 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t251 = t224 * t247
+    del t247
+    t252 = _runtime.wrap_cut(np.arctan2(t248 - t249, -(t250 + t251)))
+    t253 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
     del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t259 = sigma_right * np.arctan2(2.0 * t251, t258)
-    del sigma_right, t251, t258
-    t260 = t103 + t237
-    del t103
-    t261 = _runtime.wrap_cut(np.arctan2(-(t254 + t253), t256 - t255))
-    del t253, t254, t255, t256
-    square_mid = t69 + M_mid
-    t262 = M_mid * square_mid
+    t254 = sigma_right * np.arctan2(2.0 * t246, t253)
+    del sigma_right, t246, t253
+    t255 = t98 + t232
+    del t98
+    t256 = _runtime.wrap_cut(np.arctan2(-(t249 + t248), t251 - t250))
+    del t248, t249, t250, t251
+    square_mid = t64 + M_mid
+    t257 = M_mid * square_mid
     del M_mid
-    t263 = _runtime.DETERMINED * _runtime.DETERMINED
-    t264 = t47 * t263
-    t265 = square_mid <= t264
+    t258 = _runtime.DETERMINED * _runtime.DETERMINED
+    t259 = t42 * t258
+    t260 = square_mid <= t259
     del square_mid
-    t266 = wrist <= al * _runtime.DETERMINED
-    del wrist
-    t267 = 1.0 <= 0.0
-    t268 = (t262 <= t263 * (t47 * gap)) | t265 | t266 | t267
+    t261 = wrist <= al * _runtime.DETERMINED
+    t262 = 1.0 <= 0.0
+    t263 = (t257 <= t258 * (t42 * gap)) | t260 | t261 | t262
     del gap
-    t269 = _runtime.status(invalid, unreachable, t268)
-    del t268, unreachable
-    square_mid_front_elbow_down_alike = t69 + M_mid_front_elbow_down_alike
-    del t69
-    t270 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t264 = _runtime.status(invalid, unreachable, t263)
+    del t263, unreachable
+    square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
+    del t64
+    t265 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t271 = t270 <= t263 * (t47 * gap_front_elbow_down_alike)
+    t266 = t265 <= t258 * (t42 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t272 = square_mid_front_elbow_down_alike <= t264
-    del square_mid_front_elbow_down_alike, t264
-    t273 = _runtime.status(invalid, unreachable_2, t271 | t272 | t266 | t267)
-    del t271, unreachable_2
-    t274 = t270 <= t263 * (t47 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t270
-    t275 = _runtime.status(invalid, unreachable_3, t274 | t272 | t266 | t267)
-    del t272, t274, unreachable_3
-    t276 = t262 <= t263 * (t47 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t262, t263
-    t277 = _runtime.status(invalid, unreachable_4, t276 | t265 | t266 | t267)
-    del invalid, t265, t266, t267, t276, unreachable_4
-    t278 = h * slack
+    t267 = square_mid_front_elbow_down_alike <= t259
+    del square_mid_front_elbow_down_alike, t259
+    t268 = _runtime.status(invalid, unreachable_2, t266 | t267 | t261 | t262)
+    del t266, unreachable_2
+    t269 = t265 <= t258 * (t42 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t265
+    t270 = _runtime.status(invalid, unreachable_3, t269 | t267 | t261 | t262)
+    del t267, t269, unreachable_3
+    t271 = t257 <= t258 * (t42 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t257, t258
+    t272 = _runtime.status(invalid, unreachable_4, t271 | t260 | t261 | t262)
+    del invalid, t260, t261, t262, t271, unreachable_4
+    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
+    del wrist
+    t273 = h * slack
     del slack
-    tangent = 4.0 * root * t37 - t278 * 0.00390625 <= _runtime.VANISHING * t278
-    del t278
-    t279 = tangent | (h <= _runtime.VANISHING * lengths)
-    del h, lengths, tangent
-    t280 = t279 | (L1 * fore <= _runtime.VANISHING * t38)
-    del t279, t38
-    t281 = _runtime.VANISHING * t37
-    del t37
-    t282 = t280 | (np.abs(t39) + np.abs(root) <= t281) | (fore <= t281)
-    del fore, root, t280, t281, t39
-    t283 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    tangent = 4.0 * root * t32 - t273 * 0.00390625 <= _runtime.VANISHING * t273
+    del t273
+    t274 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, stretched, tangent
+    t275 = t274 | (L1 * fore <= _runtime.VANISHING * t33)
+    del t274, t33
+    t276 = _runtime.VANISHING * t32
+    del t32
+    t277 = t275 | (np.abs(t34) + np.abs(root) <= t276) | (fore <= t276)
+    del fore, root, t275, t276, t34
+    t278 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
     del margin_right
-    t284 = _runtime.VANISHING * play_right
+    t279 = _runtime.VANISHING * play_right
     del play_right
-    t285 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    t280 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
     del margin_left
-    t286 = t282 | (t283 <= t284) | (t285 <= t284) | (t83 <= _runtime.VANISHING * t47)
-    del t282, t283, t285, t47, t83
-    t287 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t288 = t286 | (np.abs(h_right_0) + np.abs(-t65) <= t287)
-    del h_right_0, t286, t65
-    t289 = t288 | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t288
-    t290 = t289 | (np.abs(h_left_0) + np.abs(-t75) <= t287)
-    del h_left_0, t289, t75
-    t291 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
-    t292 = np.maximum(-t291, margin_right_front_elbow_down_alike)
-    del margin_right_front_elbow_down_alike, t291
-    t293 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
-    t294 = np.maximum(-t293, margin_left_front_elbow_down_alike)
-    del margin_left_front_elbow_down_alike, t293
-    t295 = np.abs(-t117) + np.abs(r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t117
-    t296 = t290 | (t292 <= t284) | (t294 <= t284) | (t295 <= t287)
-    del t290, t292, t294, t295
-    t297 = np.abs(-t131) + np.abs(r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t131
-    t298 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t299 = np.maximum(-t298, margin_right_rear_elbow_up_alike)
-    del margin_right_rear_elbow_up_alike, t298
-    t300 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t301 = np.maximum(-t300, margin_left_rear_elbow_up_alike)
-    del margin_left_rear_elbow_up_alike, t300
-    t302 = t296 | (t297 <= t287) | (t299 <= t284) | (t301 <= t284)
-    del t296, t297, t299, t301
-    t303 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t281 = t277 | (t278 <= t279) | (t280 <= t279) | (t78 <= _runtime.VANISHING * t42)
+    del t277, t278, t280, t42, t78
+    t282 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t283 = t281 | (np.abs(h_right_0) + np.abs(-t60) <= t282)
+    del h_right_0, t281, t60
+    t284 = t283 | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t283
+    t285 = t284 | (np.abs(h_left_0) + np.abs(-t70) <= t282)
+    del h_left_0, t284, t70
+    t286 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t287 = np.maximum(-t286, margin_right_front_elbow_down_alike)
+    del margin_right_front_elbow_down_alike, t286
+    t288 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, margin_left_front_elbow_down_alike)
+    del margin_left_front_elbow_down_alike, t288
+    t290 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t112
+    t291 = t285 | (t287 <= t279) | (t289 <= t279) | (t290 <= t282)
+    del t285, t287, t289, t290
+    t292 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t126
+    t293 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t294 = np.maximum(-t293, margin_right_rear_elbow_up_alike)
+    del margin_right_rear_elbow_up_alike, t293
+    t295 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t296 = np.maximum(-t295, margin_left_rear_elbow_up_alike)
+    del margin_left_rear_elbow_up_alike, t295
+    t297 = t291 | (t292 <= t282) | (t294 <= t279) | (t296 <= t279)
+    del t291, t292, t294, t296
+    t298 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t304 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    t299 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t305 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t306 = np.maximum(-t305, margin_right_rear_elbow_down_alike)
-    del margin_right_rear_elbow_down_alike, t305
-    t307 = t302 | (t303 <= t287) | (t304 <= t287) | (t306 <= t284)
-    del t302, t303, t304, t306
-    t308 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t309 = np.maximum(-t308, margin_left_rear_elbow_down_alike)
-    del margin_left_rear_elbow_down_alike, t308
-    t310 = t307 | (t309 <= t284) | (np.abs(-t218) + np.abs(-t220) <= t287)
-    del t218, t220, t284, t307, t309
-    t311 = t310 | (np.abs(-t229) + np.abs(-t230) <= t287)
-    del t229, t230, t287, t310
+    t300 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t301 = np.maximum(-t300, margin_right_rear_elbow_down_alike)
+    del margin_right_rear_elbow_down_alike, t300
+    t302 = t297 | (t298 <= t282) | (t299 <= t282) | (t301 <= t279)
+    del t297, t298, t299, t301
+    t303 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t304 = np.maximum(-t303, margin_left_rear_elbow_down_alike)
+    del margin_left_rear_elbow_down_alike, t303
+    t305 = t302 | (t304 <= t279) | (np.abs(-t213) + np.abs(-t215) <= t282)
+    del t213, t215, t279, t302, t304
+    t306 = t305 | (np.abs(-t224) + np.abs(-t225) <= t282)
+    del t224, t225, t282, t305
     return (
-        t81,
-        t90,
-        t93,
-        t101 + t80,
-        _runtime.wrap(t91 + t102) + t80,
-        t104,
-        t81,
-        t90,
-        t93,
-        t105 + t80,
-        _runtime.wrap(t91 - t102) + t80,
-        t104,
-        t140,
-        t149,
-        t152,
-        t161 + t139,
-        _runtime.wrap(t91 + t163) + t139,
-        t164,
-        t140,
-        t149,
-        t152,
-        t165 + t139,
-        _runtime.wrap(t91 - t163) + t139,
-        t164,
-        t190,
-        t198,
-        t201,
-        t210 + t189,
-        _runtime.wrap(t91 + t212) + t189,
-        t213,
-        t190,
-        t198,
-        t201,
-        t214 + t189,
-        _runtime.wrap(t91 - t212) + t189,
-        t213,
-        t238,
-        t245,
-        t248,
-        t257 + t237,
-        _runtime.wrap(t91 + t259) + t237,
-        t260,
-        t238,
-        t245,
-        t248,
-        t261 + t237,
-        _runtime.wrap(t91 - t259) + t237,
-        t260,
-        t269,
-        t269,
-        t273,
-        t273,
-        t275,
-        t275,
-        t277,
-        t277,
-        t311,
+        t76,
+        t85,
+        t88,
+        t96 + t75,
+        _runtime.wrap(t86 + t97) + t75,
+        t99,
+        t76,
+        t85,
+        t88,
+        t100 + t75,
+        _runtime.wrap(t86 - t97) + t75,
+        t99,
+        t135,
+        t144,
+        t147,
+        t156 + t134,
+        _runtime.wrap(t86 + t158) + t134,
+        t159,
+        t135,
+        t144,
+        t147,
+        t160 + t134,
+        _runtime.wrap(t86 - t158) + t134,
+        t159,
+        t185,
+        t193,
+        t196,
+        t205 + t184,
+        _runtime.wrap(t86 + t207) + t184,
+        t208,
+        t185,
+        t193,
+        t196,
+        t209 + t184,
+        _runtime.wrap(t86 - t207) + t184,
+        t208,
+        t233,
+        t240,
+        t243,
+        t252 + t232,
+        _runtime.wrap(t86 + t254) + t232,
+        t255,
+        t233,
+        t240,
+        t243,
+        t256 + t232,
+        _runtime.wrap(t86 - t254) + t232,
+        t255,
+        t264,
+        t264,
+        t268,
+        t268,
+        t270,
+        t270,
+        t272,
+        t272,
+        t306,
     )
 
 

@@ -282,8 +282,8 @@ class Emission:
             f"    angles[{k}] = cf_atan2(opposite[{k}], adjacent[{k}]);" for k in range(len(pairs))
         ]
         return [
-            f"const real_t opposite[{n}] = {{ {', '.join(y for y, _ in pairs)} }};",
-            f"const real_t adjacent[{n}] = {{ {', '.join(x for _, x in pairs)} }};",
+            _filled("opposite", n, [y for y, _ in pairs]),
+            _filled("adjacent", n, [x for _, x in pairs]),
             f"real_t angles[{n}];",
             "if (single) {",
             f"    cf_atan2_lanes({n}, opposite, adjacent, angles);",
@@ -312,9 +312,9 @@ class Emission:
                 f"cf_principal_block({n}, wide, principals);",
             ] * bool(turned)
         lanes = list(dict.fromkeys([*angles, *turned]))
-        n, listed = _lanes(len(lanes)), ", ".join(map(self._place, lanes))
+        n = _lanes(len(lanes))
         rounded, one = ("_rounded", ", one") if self.deciding_angles else ("", "")
-        taken = [f"const real_t lanes[{n}] = {{ {listed} }};"]
+        taken = [_filled("lanes", n, [self._place(node) for node in lanes])]
         if not turned:
             return [
                 f"real_t sines[{n}], cosines[{n}];",
@@ -390,6 +390,12 @@ class Emission:
             lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
         lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]
         return lines
+
+
+def _filled(name: str, n: int, values: Sequence[str]) -> str:
+    """An array for a vector operation; compilers make vectors of zeros in memory, which waits."""
+    lanes = [*values, *[values[-1]] * (n - len(values))]
+    return f"const real_t {name}[{n}] = {{ {', '.join(lanes)} }};"
 
 
 def _loads(arrays: Iterable[CArray]) -> Iterator[str]:

@@ -241,8 +241,14 @@ def _tell(
 
     between_c, between_d = theta4 - theta2, theta5 - theta3
     told_c, told_d = (
-        replace(lemma, roles=(*lemma.roles, (r"\theta", angle)))
-        for lemma, angle in zip(triangles, (between_c, between_d), strict=True)
+        replace(
+            lemma,
+            roles=(*lemma.roles, (r"\theta", passive - driven)),
+            solution={passive: driven + next(iter(lemma.solution.values()))},
+        )
+        for lemma, passive, driven in zip(
+            triangles, (theta4, theta5), (theta2, theta3), strict=True
+        )
     )
     d.solved += [
         Solved("ik", theta1, turn, loop.k.dot(loop.p), leg_c),

@@ -105,18 +105,18 @@ def test_every_inverse_has_an_algorithm_that_names_its_statuses(tex: Path) -> No
 def test_each_joint_is_solved_in_a_step_with_its_lemma(name: str) -> None:
     text, context = told(name)
     stages = context["stages"]
-    unknowns = {u for s in text.solvings for u in s.unknowns}
+    unknowns = {u for s in text.stages.solvings for u in s.unknowns}
     assert text.inverse is not None
     assert set(text.inverse.unknowns) <= unknowns | set(text.inverse.rank.defined)
-    for stage, solving in zip(stages, text.solvings, strict=True):
+    for stage, step in zip(stages, text.stages.steps, strict=True):
         assert stage["from"].startswith("From")
         assert stage["lemma"]
         assert stage["solution"] and stage["blocks"]
-        for u in solving.unknowns:
+        for u in (u for solving in step for u in solving.unknowns):
             assert text.page.math(u) in stage["unknowns"]
-    first = {s.lemma.name: k for k, s in reversed(list(enumerate(text.solvings)))}
-    for k, (stage, solving) in enumerate(zip(stages, text.solvings, strict=True)):
-        assert bool(stage["statement"]) == (first[solving.lemma.name] == k)
+    first = {s[0].lemma.name: k for k, s in reversed(list(enumerate(text.stages.steps)))}
+    for k, (stage, step) in enumerate(zip(stages, text.stages.steps, strict=True)):
+        assert bool(stage["statement"]) == (first[step[0].lemma.name] == k)
 
 
 @pytest.mark.parametrize("name", SMALL)

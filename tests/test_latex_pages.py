@@ -15,9 +15,10 @@ from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
-from closedform.emit.backends.latex.inverse import clauses, packed, same_angle
+from closedform.emit.backends.latex.lemmas import clauses, packed
 from closedform.emit.backends.latex.prose import Prose, escape, quoted
 from closedform.emit.backends.latex.sheet import Block
+from closedform.emit.backends.latex.stages import same_angle
 from closedform.emit.backends.latex.wide import Lines
 from closedform.emit.render import render
 from closedform.model.derivation import Derivation

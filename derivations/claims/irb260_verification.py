@@ -36,8 +36,8 @@ from closedform import (
 def verification(d: Derivation, arm: Palletiser) -> None:
     """Section V."""
     claim = partial(d.claim, where=VERIFICATION)
-    offset, turn = vector("h"), real("turn")
-    mounted = arm.pose * homogeneous(rotation("z", turn), offset)
+    offset, alpha = vector("h"), real("alpha")
+    mounted = arm.pose * homogeneous(rotation("z", alpha), offset)
     theirs = sp.Matrix.hstack(*(twist_of(mounted.diff(q) * inverse(mounted)) for q in arm.actuated))
     at_home = dict.fromkeys(arm.actuated, 0)
     back = inverse(arm.pose)

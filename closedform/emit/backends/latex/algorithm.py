@@ -24,7 +24,6 @@ from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
 from closedform.model.functions import (
     Bound,
-    Determined,
     Let,
     Match,
     Require,
@@ -40,14 +39,14 @@ INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
-LONGEST = 150
-"""A condition with more operations is written with names that the algorithm does not print."""
+TWICE = 2
+"""The root of a name that occurs no more often has none of its own."""
+OFTEN = 5
+"""A root that occurs more often has a name."""
 INDENTED = 10.0
 """How much narrower the lines of an algorithm are than a page."""
 STATED = 3
 """A condition with more equations than that is given in words."""
-ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
-"""Letters for angles of which a lemma has named the sine and the cosine."""
 FACTORS = "factors"
 """The result of ``singularities``."""
 LETTERS = "kwgvqm"
@@ -56,16 +55,6 @@ LETTERS = "kwgvqm"
 
 Part = tuple[str, Any, str]
 """The kind of a line, its text and a remark."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A special case: where it occurs, what it means, and what is returned."""
-
-    where: str
-    meaning: str
-    returned: str
-    status: str = ""
 
 
 @dataclass
@@ -81,6 +70,8 @@ class Algorithm:
     model: Algorithm | None = None
     letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
     """Names that are written as the lemma that made them writes them."""
+    replaced: Mapping[sp.Basic, sp.Basic] = field(default_factory=dict)
+    """What stands in the function for other names of its program."""
     known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What is printed in place of a name."""
     names: dict[sp.Symbol, str] = field(default_factory=dict)
@@ -95,8 +86,11 @@ class Algorithm:
         self.function, self.inverse = self.subject.function, self.subject.inverse
         body = self.function.body
         self.flags = {s.symbol: s for s in body if isinstance(s, Vanishes)}
-        self.usual: dict[sp.Basic, Any] = dict.fromkeys(self.flags, sp.false)
+        flags: dict[sp.Basic, Any] = dict.fromkeys(self.flags, sp.false)
+        self.usual = {**flags, **{n: substitute(e, flags) for n, e in self.replaced.items()}}
         self.values = {s.symbol: self._generic(s.value) for s in body if isinstance(s, Let | Bound)}
+        links = self.inverse.links if self.inverse else ()
+        self.unknowns = {u for link in links for u in link.unknowns}
         self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
         self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
         self.needed = self._needed()
@@ -146,9 +140,7 @@ class Algorithm:
             return {}
         names = {str(s.name): s for s in self.values if s in self.needed}
         joints = {label(j): j for j in inverse.unknowns}
-        written = {w.latex for w in self.page.derivation.written.values()}
-        used = self.page.prose.names
-        letters = iter([g for g in ANGLES if g not in used and rf"\{g}" not in written])
+        letters = iter([g for g in self.page.free_angles if real(g) not in self.values])
         found: dict[sp.Symbol, sp.Expr] = {}
         for name, sine in names.items():
             cosine = names.get(f"c{name[1:]}")
@@ -176,7 +168,11 @@ class Algorithm:
         word = word and not letter
         width = self.page.lines.width(value)
         once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
-        if bare.is_Atom or (word and (width <= INLINE or once) and not value.has(sp.Piecewise)):
+        is_root = bare.is_Pow and bare.exp == sp.S.Half
+        uses = self.uses.get(symbol, 0)
+        often = is_root and uses > OFTEN
+        inline = word and not often and (width <= INLINE or once) and not value.has(sp.Piecewise)
+        if bare.is_Atom or inline or (is_root and bare.base.is_Symbol and uses <= TWICE):
             self.known[symbol] = value
             return
         if value.is_Add or value.is_Pow:
@@ -270,6 +266,7 @@ class Algorithm:
         for _ in range(len(self.values)):
             value = substitute(self._generic(value), self.known)
             hidden = value.free_symbols & self.values.keys() - self.needed - self.printed
+            hidden -= self.unknowns
             if not hidden:
                 break
             value = substitute(value, {s: self.values[s] for s in hidden})
@@ -375,7 +372,15 @@ class Algorithm:
 
     def conditions(self, bounds: Sequence[sp.Symbol]) -> list[str]:
         """The conditions that bounds are not negative."""
-        return self.inequalities([self.bound(s) for s in bounds])
+        return self.inequalities([v for s in bounds for v in self.bounded(s)])
+
+    def bounded(self, symbol: sp.Symbol) -> Sequence[sp.Expr]:
+        """What must not be negative: of the least of several values, each of them."""
+        value = self._generic(self.values[symbol])
+        value = self._generic(self.values.get(value, value))
+        if isinstance(value, sp.Min):
+            return [self.bound(v) if v in self.values else self.full(v) for v in value.args]
+        return [self.bound(symbol)]
 
     def inequalities(self, values: Sequence[sp.Expr]) -> list[str]:
         """The conditions that values are not negative, those about one name as a chain."""
@@ -420,10 +425,13 @@ class Algorithm:
     def joined(self, lines: Sequence[Part], depth: int) -> list[Line]:
         """Lines of the page: short equations share one, and so do neighbouring conditions."""
         done: list[Line] = []
+        stated: set[sp.Expr] = set()
         for bounds, group in groupby(merged(lines), lambda line: line[0] == "bound"):
             if bounds:
                 found = list(group)
-                text = ", ".join(self.conditions([symbol for _, symbol, _ in found]))
+                values = dict.fromkeys(v for _, symbol, _ in found for v in self.bounded(symbol))
+                text = ", ".join(self.inequalities([v for v in values if v not in stated]))
+                stated |= values.keys()
                 remarks = dict.fromkeys(remark for *_, remark in found)
                 remark = "; ".join(remarks) if len(remarks) == 1 else ""
                 if text:
@@ -448,138 +456,6 @@ class Algorithm:
             return rf"\textsc{{{status}}}"
         return r"\textbf{return} false" if sp.true in self.outputs else "NaN"
 
-    # Special cases
-
-    def cases(self) -> list[Case]:
-        """Where the lines above do not apply, and what holds there that the model does not say."""
-        found = []
-        for flag in self.flags.values():
-            told = self._told(flag)
-            effect = [e for e in self._effect(flag) if told is None or e not in told]
-            free = flag.free if told is None else ()
-            if not self.is_rounding(flag) and (effect or free):
-                found.append(self._case(flag, effect, free))
-        for statement in self.function.body:
-            if isinstance(statement, Determined):
-                found.append(self._determined(statement))
-        return found
-
-    def _told(self, flag: Vanishes) -> list[str] | None:
-        """What the algorithms before this one say of a flag that they have."""
-        if self.model is None or flag not in self.model.flags.values():
-            return None
-        return [*(self.model._told(flag) or ()), *self.model._effect(flag)]
-
-    @property
-    def has_cases_of_model(self) -> bool:
-        """Whether special cases of the algorithms before this one hold here too."""
-        flags = [f for f in self.flags.values() if not self.is_rounding(f)]
-        return any((told := self._told(f)) is not None and (f.free or told) for f in flags)
-
-    def roundings(self) -> list[str]:
-        """What is said of the flags that only serve the rounding of a usual posture."""
-        return list(
-            dict.fromkeys(
-                self.page.prose(f.meaning) for f in self.flags.values() if self.is_rounding(f)
-            )
-        )
-
-    def is_rounding(self, flag: Vanishes) -> bool:
-        """Whether the flag compares with a tiny multiple, which no exact quantity does."""
-        tiny = any(q.q >= 2**8 for q in flag.value.atoms(sp.Rational))
-        return tiny and not flag.free
-
-    def _effect(self, flag: Vanishes) -> list[str]:
-        """What a flag puts in place of names and answers that are printed."""
-        usual = {**self.usual, flag.symbol: sp.true}
-        changed: dict[sp.Basic, sp.Expr] = {}
-        printed = [s for s in self.values if s in self.printed]
-        whole = [(s, self.function_values[s]) for s in printed]
-        joints = self.inverse.unknowns if self.inverse else ()
-        if len(joints) == len(self.entries):  # the outputs stand for the joints
-            whole += zip(joints, self.entries, strict=True)
-        for name, value in whole:
-            if value.has(flag.symbol):
-                other = substitute(substitute(value, usual), self.known).xreplace(changed)
-                other = self.short(other)
-                if self.page.lines.width(other) <= ONCE:
-                    changed[self.known.get(name, name)] = other
-        made: dict[sp.Basic, sp.Expr] = {}
-        for name, value in list(changed.items()):
-            if (needs := self._made_for(value)) is None:
-                del changed[name]
-            else:
-                made |= needs
-        rows = [*made.items(), *changed.items()]
-        return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in rows]
-
-    def _made_for(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr] | None:
-        """The names in a value that no line defines, with their values; None if they are long."""
-        there = value.free_symbols
-        defined = self.needed | self.printed
-        hidden = [s for s in self.values if s in there and s not in defined]
-        made: dict[sp.Basic, sp.Expr] = {s: self.shown(self.values[s]) for s in hidden}
-        rest = {s for e in made.values() for s in e.free_symbols & self.values.keys()}
-        is_long = any(self.page.lines.width(e) > ONCE for e in made.values())
-        return None if is_long or rest - self.needed - self.printed else made
-
-    @property
-    def entries(self) -> list[sp.Expr]:
-        return [e for a in self.function.outputs for e in a.entries]
-
-    @cached_property
-    def function_values(self) -> dict[sp.Symbol, sp.Expr]:
-        """The values of names as the function has them, with the flags of special cases."""
-        return {s.symbol: s.value for s in self.function.body if isinstance(s, Let | Bound)}
-
-    def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
-        returned = ", ".join(effect)
-        if free:
-            names = " and ".join(f"${self.page.math(s)}$" for s in free)
-            verb = "are" if len(free) > 1 else "is"
-            returned = f"{names} {verb} free" + (f"; {returned}" if returned else "")
-        value = self.full(flag.value)
-        value = self.quantities.get(value, value)
-        return Case(
-            self.vanishing(value),
-            self.page.prose(flag.meaning),
-            returned,
-            "singular" if free else "",
-        )
-
-    def vanishing(self, value: sp.Expr) -> str:
-        """The condition that a nonnegative value is zero."""
-        parts = sp.Add.make_args(value)
-        if len(parts) > 1 and all(isinstance(t, sp.Abs) for t in parts):
-            inner = [rf"{self.page.math(self.page.lines.tidy(t.args[0]))} = 0" for t in parts]
-            return ", ".join(f"${t}$" for t in inner)
-        return equality(self.page, value)
-
-    def _determined(self, statement: Determined) -> Case:
-        rest: list[str] = []
-        first, scale = statement.name, self.full(statement.scale)
-        if not first:
-            value = self.full(statement.value)
-            if sp.count_ops(value) > LONGEST:
-                value = self.shown(statement.value)
-            rows = self.page.equations("", value)
-            first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
-        # TeX breaks no line between two factors by itself
-        product = statement.scale_name or self.page.math(scale).replace(
-            r" \bigl(", r" \allowbreak \bigl("
-        )
-        where = rf"${first} \ll {product}$"
-        if scale == 0:  # a posture without rounding does not come here
-            where = "a limit, up to rounding"
-        if rest:
-            where += f", with {', '.join(rest)}"
-        return Case(
-            where,
-            self.page.prose(statement.meaning),
-            "rounded joints do not determine the posture",
-            "singular",
-        )
-
 
 def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
     """Equations as formulas in the text; what was broken into lines is one formula again."""
@@ -594,4 +470,4 @@ def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
 
 STATUS = {"unless": "unreachable", "invalid": "invalid"}
 
-__all__ = ["Algorithm", "Case", "whole"]
+__all__ = ["ONCE", "Algorithm", "whole"]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -17,6 +18,7 @@ from sympy.logic.boolalg import Boolean
 
 from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
+from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
     Numbers,
@@ -29,6 +31,7 @@ from closedform.emit.backends.latex.equations import (
 from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
+from closedform.emit.backends.latex.plain import plain
 from closedform.emit.backends.latex.prose import (
     escape,
     mixed,
@@ -87,7 +90,12 @@ class Page(Sheet):
                     own += [link.lemma] if link.lemma else []
             letters = {s: letter for lemma in own for s, letter in lemma.letters.items()}
             earlier = self.algorithm(model) if model else None
-            self.algorithms[function.name] = Algorithm(self, subject, means, earlier, letters)
+            results = inverse.unknowns if inverse else ()
+            read = plain(subject.function, own, self.free_angles, results)
+            subject = replace(subject, function=read.function)
+            self.algorithms[function.name] = Algorithm(
+                self, subject, means, earlier, letters, read.names
+            )
         algorithm = self.algorithms[function.name]
         self.printer.rename(algorithm.names)
         return algorithm
@@ -186,14 +194,14 @@ class Page(Sheet):
     def listing(self, function: Function) -> dict[str, Any]:
         """The lines of a function."""
         algorithm = self.algorithm(function)
-        lines = algorithm.lines()
+        lines, cases = algorithm.lines(), Cases(algorithm)
         return {
             "after": self.after(function, algorithm),
-            "roundings": algorithm.roundings(),
+            "roundings": cases.roundings(),
             "blocks": [],
             "lines": lines,
             "lines_kept": lines_kept(lines),
-            "cases": algorithm.cases(),
+            "cases": cases.told(),
         }
 
     def after(self, function: Function, algorithm: Algorithm) -> str:
@@ -203,7 +211,7 @@ class Page(Sheet):
             return ""
         label = f"inverse:{self.derivation.name}:{key(model.name)}"
         place = rf", Section~\ref{{{label}}}" if model.has_status else ""
-        cases = ", with its special cases" if algorithm.has_cases_of_model else ""
+        cases = ", with its special cases" if Cases(algorithm).has_cases_of_model else ""
         return rf"\texttt{{{escape(model.name)}}}{place}{cases}"
 
     def inverse(self, function: Function) -> dict[str, Any]:

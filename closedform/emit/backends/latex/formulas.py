@@ -191,6 +191,9 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def _print_cos(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._circular("cos", expr.args[0], exp)
 
+    def _print_tan(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return self._circular("tan", expr.args[0], exp)
+
     def _circular(self, function: str, angle: sp.Expr, exp: str | None) -> str:
         power = f"^{{{exp}}}" if exp else ""
         numbers = [

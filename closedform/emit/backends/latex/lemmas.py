@@ -6,10 +6,11 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.backends.latex.formulas import FITS, measure
+from closedform.emit.backends.latex.prose import escape, loosen, mixed
 from closedform.lemmas.registry import theorems
 from closedform.model.derivation import Derivation
-from closedform.model.lemma import Theorem
+from closedform.model.lemma import Lemma, Theorem
 
 
 def lemmas_of(derivation: Derivation, function: str = "") -> list[str]:
@@ -35,6 +36,38 @@ def titled(name: str) -> str:
 def key(name: str) -> str:
     """The name of a lemma in labels: ``two-link-arm``."""
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def statement(lemma: Lemma) -> list[str]:
+    """The statement of a lemma: what it solves, and the solution on a line of its own."""
+    problem, arrow, solution = loosen(lemma.statement).partition(r"\;\Rightarrow\;")
+    if not arrow:
+        return packed("", clauses(problem))
+    return [problem.strip(), *packed(r"\Rightarrow\quad ", clauses(solution))]
+
+
+def clauses(text: str) -> list[str]:
+    """The formulas of a list, each with the sign behind it; a space in TeX separates them."""
+    parts, depth, start = list[str](), 0, 0
+    for found in re.finditer(r"[({[]|[])}]|([,;:]?)\\(?:quad|(?<=,\\) )", text):
+        if found[0] in "({[":
+            depth += 1
+        elif found[0] in "])}":
+            depth -= 1
+        elif depth == 0:
+            parts.append(text[start : found.start()].strip() + found[1])
+            start = found.end()
+    return [*parts, text[start:].strip()]
+
+
+def packed(lead: str, texts: Sequence[str]) -> list[str]:
+    """Formulas beside each other as far as they fit; later lines start below the first formula."""
+    rows = [lead]
+    for text in texts:
+        if rows[-1] not in (lead, "") and measure(rf"{rows[-1]} {text}") > FITS:
+            rows.append(rf"\phantom{{{lead.strip()}}}" if lead else "")
+        rows[-1] += text if rows[-1] in (lead, "") else rf"\quad {text}"
+    return rows
 
 
 def context(names: Sequence[str] | None, used: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:

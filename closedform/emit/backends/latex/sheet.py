@@ -23,6 +23,8 @@ from closedform.model.alike import INDEX
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Array, Function
 
+ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
+"""Letters for angles that only an algorithm has."""
 UNPRINTED = "skeleton"
 """Its points are too many to print; a step says what is proved of them."""
 
@@ -48,6 +50,13 @@ class Sheet:
     def written(self, name: str) -> str:
         """The LaTeX of a symbol that is known by its name."""
         return written_name(self.derivation, name)
+
+    @property
+    def free_angles(self) -> list[str]:
+        """The letters for angles that mean nothing else."""
+        used = self.prose.names
+        written = {w.latex for w in self.derivation.written.values()}
+        return [g for g in ANGLES if g not in used and rf"\{g}" not in written]
 
     def model(self, function: Function) -> Function | None:
         """The earlier printed function whose statements this one starts with, if there is one."""

@@ -1,0 +1,162 @@
+"""Where the lines of an algorithm do not apply, and what holds there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
+from closedform.emit.backends.latex.inequalities import equality
+from closedform.emit.backends.latex.plain import is_rounding
+from closedform.model.functions import Bound, Determined, Let, Vanishes, substitute
+
+LONGEST = 150
+"""A condition with more operations is written with names that the algorithm does not print."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A special case: where it occurs, what it means, and what is returned."""
+
+    where: str
+    meaning: str
+    returned: str
+    status: str = ""
+
+
+class Cases:
+    """The special cases of an algorithm."""
+
+    def __init__(self, algorithm: Algorithm):
+        self.algorithm, self.page = algorithm, algorithm.page
+
+    def told(self) -> list[Case]:
+        """Where the lines above do not apply, and what holds there that the model does not say."""
+        found = []
+        for flag in self.algorithm.flags.values():
+            told = self._told(flag)
+            effect = [e for e in self._effect(flag) if told is None or e not in told]
+            free = flag.free if told is None else ()
+            if not is_rounding(flag) and (effect or free):
+                found.append(self._case(flag, effect, free))
+        for statement in self.algorithm.function.body:
+            if isinstance(statement, Determined):
+                found.append(self._determined(statement))
+        return found
+
+    def _told(self, flag: Vanishes) -> list[str] | None:
+        """What the algorithms before this one say of a flag that they have."""
+        if self.algorithm.model is None or flag not in self.algorithm.model.flags.values():
+            return None
+        return [
+            *(Cases(self.algorithm.model)._told(flag) or ()),
+            *Cases(self.algorithm.model)._effect(flag),
+        ]
+
+    @property
+    def has_cases_of_model(self) -> bool:
+        """Whether special cases of the algorithms before this one hold here too."""
+        flags = [f for f in self.algorithm.flags.values() if not is_rounding(f)]
+        return any((told := self._told(f)) is not None and (f.free or told) for f in flags)
+
+    def roundings(self) -> list[str]:
+        """What is said of the flags that only serve the rounding of a usual posture."""
+        return list(
+            dict.fromkeys(
+                self.page.prose(f.meaning) for f in self.algorithm.flags.values() if is_rounding(f)
+            )
+        )
+
+    def _effect(self, flag: Vanishes) -> list[str]:
+        """What a flag puts in place of names and answers that are printed."""
+        usual = {**self.algorithm.usual, flag.symbol: sp.true}
+        changed: dict[sp.Basic, sp.Expr] = {}
+        printed = [s for s in self.algorithm.values if s in self.algorithm.printed]
+        function = self.algorithm.function
+        values = {s.symbol: s.value for s in function.body if isinstance(s, Let | Bound)}
+        whole = [(s, values[s]) for s in printed]
+        joints = self.algorithm.inverse.unknowns if self.algorithm.inverse else ()
+        if len(joints) == len(self.entries):  # the outputs stand for the joints
+            whole += zip(joints, self.entries, strict=True)
+        for name, value in whole:
+            if value.has(flag.symbol):
+                other = substitute(substitute(value, usual), self.algorithm.known).xreplace(changed)
+                other = self.algorithm.short(other)
+                # infinite: another name in it has another value here too, which is not printed
+                if not other.has(sp.zoo, sp.nan) and self.page.lines.width(other) <= ONCE:
+                    changed[self.algorithm.known.get(name, name)] = other
+        made: dict[sp.Basic, sp.Expr] = {}
+        for name, value in list(changed.items()):
+            if (needs := self._made_for(value)) is None:
+                del changed[name]
+            else:
+                made |= needs
+        rows = [*made.items(), *changed.items()]
+        return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in rows]
+
+    def _made_for(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr] | None:
+        """The names in a value that no line defines, with their values; None if they are long."""
+        there = value.free_symbols
+        defined = self.algorithm.needed | self.algorithm.printed
+        hidden = [s for s in self.algorithm.values if s in there and s not in defined]
+        made: dict[sp.Basic, sp.Expr] = {
+            s: self.algorithm.shown(self.algorithm.values[s]) for s in hidden
+        }
+        rest = {s for e in made.values() for s in e.free_symbols & self.algorithm.values.keys()}
+        is_long = any(self.page.lines.width(e) > ONCE for e in made.values())
+        return None if is_long or rest - self.algorithm.needed - self.algorithm.printed else made
+
+    @property
+    def entries(self) -> list[sp.Expr]:
+        return [e for a in self.algorithm.function.outputs for e in a.entries]
+
+    def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
+        returned = ", ".join(effect)
+        if free:
+            names = " and ".join(f"${self.page.math(s)}$" for s in free)
+            verb = "are" if len(free) > 1 else "is"
+            returned = f"{names} {verb} free" + (f"; {returned}" if returned else "")
+        value = self.algorithm.full(flag.value)
+        value = self.algorithm.quantities.get(value, value)
+        return Case(
+            self.vanishing(value),
+            self.page.prose(flag.meaning),
+            returned,
+            "singular" if free else "",
+        )
+
+    def vanishing(self, value: sp.Expr) -> str:
+        """The condition that a nonnegative value is zero."""
+        parts = sp.Add.make_args(value)
+        if len(parts) > 1 and all(isinstance(t, sp.Abs) for t in parts):
+            inner = [rf"{self.page.math(self.page.lines.tidy(t.args[0]))} = 0" for t in parts]
+            return ", ".join(f"${t}$" for t in inner)
+        return equality(self.page, value)
+
+    def _determined(self, statement: Determined) -> Case:
+        """Where rounded joints do not determine the posture; in words where the formula is long."""
+        meaning = self.page.prose(statement.meaning)
+        answer = "rounded joints do not determine the posture"
+        rest: list[str] = []
+        first, scale = statement.name, self.algorithm.full(statement.scale)
+        value = self.algorithm.full(statement.value)
+        if scale == 0 or (not first and value.has(sp.Piecewise)):
+            return Case(f"within rounding of the case that {meaning}", "", answer, "singular")
+        if not first:
+            if sp.count_ops(value) > LONGEST:
+                value = self.algorithm.shown(statement.value)
+            rows = self.page.equations("", value)
+            first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
+        # TeX breaks no line between two factors by itself
+        product = statement.scale_name or self.page.math(scale).replace(
+            r" \bigl(", r" \allowbreak \bigl("
+        )
+        where = rf"${first} \ll {product}$"
+        if rest:
+            where += f", with {', '.join(rest)}"
+        return Case(where, meaning, answer, "singular")
+
+
+__all__ = ["Case", "Cases"]

@@ -1,0 +1,464 @@
+"""How an inverse is derived, lemma by lemma.
+
+Each stage says which part of the target its equations come from, which unknowns are left in them,
+what the lemma gives, and where the answer is not determined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.emit.backends.latex.algorithm import Algorithm
+from closedform.emit.backends.latex.cases import Cases
+from closedform.emit.backends.latex.equations import canonical
+from closedform.emit.backends.latex.formulas import FITS, measure
+from closedform.emit.backends.latex.lemmas import label, statement, titled
+from closedform.emit.backends.latex.names import MATRIX_ENTRY
+from closedform.emit.backends.latex.prose import mixed
+from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.model.derivation import Solved
+from closedform.model.functions import (
+    Array,
+    Bound,
+    Let,
+    Vanishes,
+    free_symbols,
+    substitute,
+)
+from closedform.model.inverse import Inverse, Link, Rank
+from closedform.model.lemma import Lemma
+
+FEW = 4
+"""More parts of the target than that are not listed."""
+NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
+
+
+@dataclass(frozen=True)
+class Solving:
+    """A lemma applied: its equations, its unknowns, and what it handed on."""
+
+    lemma: Lemma
+    equations: tuple[sp.Expr, ...]
+    unknowns: tuple[sp.Symbol, ...]
+    link: Link | None = None
+
+
+def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
+    """The lemmas of an inverse, in their order."""
+    if isinstance(inverse.glue, Rank) or not solved:
+        return [
+            Solving(link.lemma, link.lemma.equations, tuple(link.lemma.solution), link)
+            for link in inverse.links
+            if link.lemma
+        ]
+    found = []
+    for s in solved:
+        others = {o.unknown for o in solved if o is not s}
+        joints = [u for u in s.lemma.solution if u in inverse.unknowns and u not in others]
+        unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
+        equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
+        found.append(Solving(s.lemma, equations, unknowns))
+    return found
+
+
+class Stages:
+    """The lemmas of a function that has a status for each branch, in their order."""
+
+    def __init__(self, page: Sheet, algorithm: Algorithm):
+        self.page, self.algorithm = page, algorithm
+        subject = algorithm.subject
+        self.function, self.inverse = subject.function, subject.inverse
+        self.solvings = solvings(self.inverse, subject.solved) if self.inverse else []
+        self.steps = list[list[Solving]]()
+        for solving in self.solvings:
+            if self.steps and self.is_like(solving, self.steps[-1]):
+                self.steps[-1].append(solving)
+            else:
+                self.steps.append([solving])
+        self.told: set[sp.Symbol] = set()
+        """Names that a step has defined."""
+
+    def context(self) -> list[dict[str, Any]]:
+        return [self.stage(k, step) for k, step in enumerate(self.steps, 1)]
+
+    def is_like(self, solving: Solving, step: Sequence[Solving]) -> bool:
+        """Whether the lemma of a step solves another equation too, which needs none of its joints.
+
+        Such as the equations of the legs of a platform.
+        """
+        first = step[0]
+        found = {u for s in step for u in s.unknowns}
+        alike = solving.lemma.name == first.lemma.name and not solving.lemma.vectors
+        if not alike or len(solving.unknowns) > 1 or len(found) > len(step):
+            return False
+        needed = self.joints_in(self.system(solving), solving)
+        return needed == self.joints_in(self.system(first), first) and not needed & found
+
+    def sought(self, solving: Solving) -> list[str]:
+        """The unknowns of a lemma; the matrix, where they are its entries."""
+        if solving.lemma.matrix:
+            return [f"${solving.lemma.matrix}$"]
+        return [f"${self.page.math(u)}$" for u in solving.unknowns]
+
+    def stage(self, number: int, step: Sequence[Solving]) -> dict[str, Any]:
+        """One step: from which equations, what the lemma gives, where it degenerates."""
+        page, lemma = self.page, step[0].lemma
+        page.lines.clear()
+        earlier = [s for s in self.steps[: number - 1] if s[0].lemma.name == lemma.name]
+        rows, shown = list[tuple[str, str]](), list[sp.Expr]()
+        for solving in step:
+            system = self.system(solving)
+            shown += system
+            held = {s for e in system for s in e.free_symbols}
+            rows += [r for e in system for r in self.equation(e, solving)]
+            rows += self.definitions(held, solving)
+        origin, roles = self.origin(shown, step), self.roles(step)
+        solution = [] if lemma.vectors else [r for s in step for r in self.solution(s)]
+        return {
+            "number": number,
+            "solves": "each of them" if len(step) > 1 else "them" if len(shown) > 1 else "it",
+            "unknowns": enumeration([u for s in step for u in self.sought(s)]),
+            "from": origin,
+            "blocks": blocks(rows),
+            "lemma": titled(lemma.name),
+            "label": label(lemma.name),
+            "matrix": self.matrix(shown),
+            "statement": [] if earlier else statement(lemma),
+            **roles,
+            "count": self.count(step),
+            "vectors": mixed(lemma.vectors),
+            "solution": blocks(solution),
+            "exists": ", ".join(dict.fromkeys(e for s in step if (e := self.exists(s)))),
+            "degenerate": "; ".join(dict.fromkeys(e for s in step if (e := self.degenerate(s)))),
+        }
+
+    def system(self, solving: Solving) -> list[sp.Expr]:
+        """The equations that determine the unknowns: of many, the shortest for each of them."""
+        left, width = list(solving.equations), self.page.lines.width
+        if len(left) <= 2:
+            return left
+        unknowns, known, chosen = list(solving.unknowns), set[sp.Symbol](), list[sp.Expr]()
+        while unknowns:
+            options = {
+                u: [e for e in left if e.has(u) and not e.free_symbols & (set(unknowns) - {u})]
+                for u in unknowns
+            }
+            unknown = next((u for u in unknowns if options[u]), None)
+            if unknown is None:
+                return chosen or left
+            found = sorted(options[unknown], key=lambda e: (width(e), str(e)))[:2]
+            chosen += found
+            left = [e for e in left if e not in found]
+            unknowns.remove(unknown)
+            known.add(unknown)
+        return chosen
+
+    def equation(self, equation: sp.Expr, solving: Solving) -> list[tuple[str, str]]:
+        """An equation with the unknowns on its left side."""
+        terms = sp.Add.make_args(self.without_detours(self.named(equation)))
+        held = set(solving.unknowns)
+        unknown = [t for t in terms if t.free_symbols & held]
+        rest = [-t for t in terms if not t.free_symbols & held]
+        if unknown and all(t.as_coeff_Mul()[0].is_negative for t in unknown):
+            unknown, rest = [-t for t in unknown], [-t for t in rest]
+        left = self.page.lines.tidy(sp.Add(*unknown))
+        text = self.page.math(left)
+        if measure(text) > FITS * 0.6:
+            return self.page.equations("0", self.named(equation))
+        return self.page.equations(text, self.page.lines.tidy(sp.Add(*rest)))
+
+    def without_detours(self, value: sp.Expr) -> sp.Expr:
+        """The same without a name, such as that of a difference, where it is shorter."""
+        for name in sorted(value.free_symbols & self.algorithm.values.keys(), key=str):
+            other = value.xreplace({name: self.algorithm.value(name)})
+            if self.page.lines.width(other) < self.page.lines.width(value):
+                value = other
+        return value
+
+    def named(self, value: sp.Expr) -> sp.Expr:
+        """An expression in the names that the algorithm prints."""
+        return self.algorithm.full(value)
+
+    def definitions(self, held: set[sp.Basic], solving: Solving) -> list[tuple[str, str]]:
+        """What the names in an equation stand for, in what was solved before."""
+        assert self.inverse
+        shown = {s for v in held for s in self.named(v).free_symbols}
+        defined = [
+            s for s in self.algorithm.values if s in shown and s in self.inverse.rank.meaning
+        ]
+        meanings = [(s, self.inverse.rank.meaning[s]) for s in defined]
+        rows = [
+            row
+            for s, meaning in meanings
+            if not isinstance(meaning, sp.sin | sp.cos)
+            for row in self.page.equations(s, self.page.lines.tidy(meaning))
+        ]
+        angles = sorted(self.inverse.rank.defined.keys() & set(solving.unknowns), key=str)
+        return rows + [
+            r for a in angles for r in self.page.equations(a, self.inverse.rank.defined[a])
+        ]
+
+    def matrix(self, equations: Sequence[sp.Expr]) -> str:
+        """The matrix of the program whose entries the equations hold."""
+        held = {str(s) for e in equations for s in e.free_symbols}
+        found = sorted({m[1] + m[2] for n in held if (m := MATRIX_ENTRY.fullmatch(n))})
+        return enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
+
+    def joints_in(self, equations: Sequence[sp.Expr], solving: Solving) -> set[sp.Symbol]:
+        """The joints and auxiliary unknowns in equations that their lemma does not find."""
+        assert self.inverse
+        held = free_symbols([self.explicit(e) for e in equations])
+        rank = self.inverse.rank
+        solvable = {*self.inverse.unknowns, *rank.defined, *rank.lengths}
+        solvable |= {u for s in self.solvings for u in s.unknowns}
+        return {s for s in solvable if s in held and s not in solving.unknowns}
+
+    def origin(self, equations: Sequence[sp.Expr], step: Sequence[Solving]) -> str:
+        """Which parts of the target the equations hold, and why they decouple."""
+        assert self.inverse
+        page, solving = self.page, step[0]
+        held = free_symbols([self.explicit(e) for e in equations])
+        parts = [s for s in self.function.symbols if s in held]
+        joints = self.joints_in(self.system(solving), solving)
+        later = self.found_later(sorted(joints, key=str), solving)
+        order = [u for s in self.solvings for u in s.unknowns] + list(self.inverse.unknowns)
+        known = sorted((s for s in joints if s not in later), key=order.index)
+        before = [f"${page.math(j)}$" for j in known]
+        where = self.parts(parts)
+        source = f"From {where} of the forward map" if where else "From the forward map"
+        if page.derivation.assembly_modes:
+            source = "From the equations of the loop"
+        verb = "follow equations" if len(equations) > 1 else "follows an equation"
+        sought = [u for s in step for u in self.sought(s)]
+        unknowns = enumeration(sought + [f"${page.math(u)}$" for u in later])
+        found = [f"step {k} finds ${page.math(u)}$" for u, k in later.items()]
+        told = f"{source} {verb} in {unknowns}"
+        if len(step) > 1:
+            told = f"{source} follows one equation in each of {unknowns}"
+        if later:
+            told += f", of which {enumeration(found)}"
+        if before:
+            verb = "is" if len(before) == 1 else "are"
+            return f"{told}, where {enumeration(before)} {verb} known:"
+        return f"{told}:" if later or len(step) > 1 else f"{told} alone:"
+
+    def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
+        """The joints that a later step finds, and its number: the lemma takes a sum with them."""
+        after = [solving in step for step in self.steps].index(True) + 1
+        return {
+            u: number
+            for number, step in enumerate(self.steps[after:], after + 1)
+            for s in step
+            for u in s.unknowns
+            if u in joints
+        }
+
+    def explicit(self, value: sp.Expr) -> sp.Expr:
+        """An expression in the target and the joints."""
+        assert self.inverse
+        meaning = self.inverse.rank.meaning
+        for _ in range(len(self.algorithm.values) + 1):
+            names = free_symbols([value]) & {*self.algorithm.values, *meaning}
+            if not names:
+                break
+            value = substitute(
+                value,
+                {s: meaning[s] if s in meaning else self.algorithm.values[s] for s in names},
+            )
+        return value
+
+    def parts(self, symbols: Sequence[sp.Symbol]) -> str:
+        """The parts of the target, by name; a rotation as a whole."""
+        rotation = [
+            e for a in self.function.inputs if a.shape in ((3, 3), (4, 4)) for e in block(a)
+        ]
+        names = [f"${self.page.math(s)}$" for s in symbols if s not in rotation]
+        turned = [s for s in symbols if s in rotation]
+        if turned:
+            names.append(
+                "the rotation $R$"
+                if len(turned) > FEW
+                else enumeration([f"${self.page.math(s)}$" for s in turned])
+            )
+        return enumeration(names)
+
+    def count(self, step: Sequence[Solving]) -> str:
+        """How many solutions there are, and the signs that tell them apart."""
+        n, several = step[0].lemma.branches, len(step) > 1
+        number = NUMBERS[n] if n < len(NUMBERS) else str(n)
+        before = self.solvings[: self.solvings.index(step[0])]
+        used = {s for other in before for s in self.own_symbols(other)}
+        own = {s for e in step for s in self.own_symbols(e) | set(e.lemma.signs)} - used
+        signs = [s for s in self.algorithm.signs if s in own]
+        told = enumeration([rf"${self.page.math(s)} = \pm 1$" for s in signs])
+        start = "Each has" if several else f"There {'are' if n != 1 else 'is'}"
+        text = f"{start} {number} solution{'s' * (n != 1)}"
+        if told and n > 1:
+            text += f", for {told}"
+        if step[0].lemma.excluded:
+            text += " with the sign that is required"
+        return text
+
+    def own_symbols(self, solving: Solving) -> set[sp.Basic]:
+        """The symbols of a solution and of the names that the lemma made for it."""
+        made_by = solving.link.body if solving.link else solving.lemma.body
+        body = {
+            s.symbol: s.value for s in made_by or self.function.body if isinstance(s, Let | Bound)
+        }
+        used = {s for e in solving.lemma.solution.values() for s in e.free_symbols}
+        used |= {s for e in solving.lemma.means for s in e.free_symbols}
+        for symbol in reversed(list(body)):
+            if symbol in used:
+                used |= body[symbol].free_symbols
+        return used
+
+    def roles(self, step: Sequence[Solving]) -> dict[str, Any]:
+        """What the letters of the lemma stand for here; what is wide, on lines of its own."""
+        page, inline, rows = self.page, list[str](), list[tuple[str, str]]()
+        values: list[sp.Expr] = []
+
+        def written(value: Any) -> str:
+            if isinstance(value, str):
+                return value
+            if isinstance(value, sp.MatrixBase):
+                entries = [self.named(e) for e in value]
+                values.extend(entries)
+                return f"({', '.join(map(page.math, entries))})"
+            values.append(self.named(sp.sympify(value, strict=True)))
+            return page.math(values[-1])
+
+        turns = ""
+        for roles in zip(*(s.lemma.roles for s in step), strict=True):
+            letter = roles[0][0]
+            texts = [written(value) for _, value in roles]
+            if all(canonical(text) == canonical(letter) for text in texts):
+                continue
+            if len({*texts}) > 1:
+                turns = " in turn"
+            text = r",\ ".join(texts) if len({*texts}) > 1 else texts[0]
+            if measure(letter + text) <= FITS / 3 and r"\frac" not in text:
+                inline.append(f"${letter} = {text}$")
+            else:
+                rows.append((letter, text))
+        return {
+            "roles": enumeration(inline) + turns if inline else "",
+            "role_blocks": blocks([*rows, *self.made_before(values)]),
+        }
+
+    def solution(self, solving: Solving) -> list[tuple[str, str]]:
+        """What the lemma gives: angles, or their sines and cosines."""
+        page, algorithm = self.page, self.algorithm
+        rows: list[tuple[str, str]] = []
+        values: list[sp.Expr] = []
+        means = solving.link.means if solving.link else solving.lemma.means
+        for unknown in solving.unknowns:
+            pair = [s for s in means if isinstance(means[s], sp.sin | sp.cos)]
+            pair = [s for s in pair if means[s].args[0] == unknown and s in algorithm.needed]
+            if pair:
+                self.told |= set(pair)
+                found = [algorithm.value(s) for s in pair]
+                values += found
+                if angle := same_angle([means[s] for s in pair], found):
+                    rows += page.equations(unknown, angle)
+                    continue
+                for s in pair:
+                    rows += page.equations(means[s], algorithm.value(s))
+                continue
+            value = self.algorithm.values.get(unknown, solving.lemma.solution.get(unknown))
+            if value is None:
+                continue
+            left, value = self.found_before(unknown, self.named(value), solving)
+            rows += page.equations(left, value)
+            values.append(value)
+        return self.made_before(values) + rows
+
+    def found_before(
+        self, unknown: sp.Symbol, value: sp.Expr, solving: Solving
+    ) -> tuple[sp.Expr, sp.Expr]:
+        """Both sides of a solution, with the joints that a later step finds on the left."""
+        later = self.found_later(sorted(value.free_symbols, key=str), solving)
+        ahead = sp.Add(*(t for t in sp.Add.make_args(value) if t.free_symbols & later.keys()))
+        return unknown - ahead, value - ahead
+
+    def made_before(self, values: Sequence[sp.Expr]) -> list[tuple[str, str]]:
+        """The quantities in values that no step has defined yet; entries of matrices are left."""
+        algorithm = self.algorithm
+        unknowns = {u for s in self.solvings for u in s.unknowns}
+        named = algorithm.needed - unknowns
+        shown = {algorithm.known.get(s, s): s for s in algorithm.values if s in named}
+        pending = [s for v in values for s in self.atoms(v) if s in shown]
+        found: set[sp.Symbol] = set()
+        while pending:
+            symbol = shown[pending.pop()]
+            if symbol not in found and symbol not in self.told:
+                found.add(symbol)
+                value = algorithm.value(symbol)
+                pending += [s for s in self.atoms(value) if s in shown]
+        self.told |= found
+        return [
+            row
+            for s in algorithm.values
+            if s in found and not MATRIX_ENTRY.fullmatch(str(s.name))
+            if algorithm.known.get(s) != algorithm.value(s)
+            for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
+            if row[0] != row[1]
+        ]
+
+    def atoms(self, value: sp.Expr) -> list[sp.Expr]:
+        """The symbols of an expression, and its sines and cosines of auxiliary angles."""
+        return sorted(value.atoms(sp.Symbol, sp.sin, sp.cos), key=str)
+
+    def exists(self, solving: Solving) -> str:
+        """The conditions under which the lemma has solutions."""
+        before = self.solvings[: self.solvings.index(solving)]
+        own = self.own_symbols(solving) - {s for o in before for s in self.own_symbols(o)}
+        bounds = [s for s in self.function.body if isinstance(s, Bound) and s.symbol in own]
+        if solving.link:
+            bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]
+        return ", ".join(self.algorithm.conditions([b.symbol for b in bounds]))
+
+    def degenerate(self, solving: Solving) -> str:
+        """Where an unknown of the lemma is free."""
+        flags = [
+            s
+            for s in (solving.link.body if solving.link else self.function.body)
+            if isinstance(s, Vanishes) and (solving.link or set(s.free) & set(solving.unknowns))
+        ]
+        texts = []
+        for flag in flags:
+            if not flag.free:
+                continue
+            free = enumeration([f"${self.page.math(s)}$" for s in flag.free])
+            value = self.named(flag.value)
+            where = Cases(self.algorithm).vanishing(self.algorithm.quantities.get(value, value))
+            texts.append(
+                f"{self.page.prose(flag.meaning)} ({where}): "
+                f"{free} {'are' if len(flag.free) > 1 else 'is'} free"
+            )
+        return "; ".join(texts)
+
+
+def same_angle(pair: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr | None:
+    """The angle whose sine and cosine are the values, if a whole pair is that of another angle."""
+    angles = {v.args[0] for v in values if isinstance(v, sp.sin | sp.cos)}
+    alike = all(a.func == b.func for a, b in zip(pair, values, strict=True))
+    return angles.pop() if len(pair) == 2 and alike and len(angles) == 1 else None
+
+
+def block(array: Array) -> list[sp.Expr]:
+    """The entries of the rotation in a matrix or a pose."""
+    columns = array.shape[1]
+    return [array.entries[columns * i + j] for i in range(3) for j in range(3)]
+
+
+def enumeration(texts: Sequence[str]) -> str:
+    """``a, b and c``."""
+    *first, last = texts or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+__all__ = ["Solving", "Stages", "block", "enumeration", "same_angle"]

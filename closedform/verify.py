@@ -85,10 +85,7 @@ def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None
     """The counts of the steps of an inverse multiply to the number of its branches."""
     counts = [(document["certificates"][k], less) for k, less in certificate["counts"]]
     require(all(c["kind"] == "count" for c, _ in counts), "this is not a count")
-    require(
-        all(less in range(c["count"]) for c, less in counts),
-        "more solutions are left out than counted",
-    )
+    require(all(less in range(c["count"]) for c, less in counts), "more are left out than counted")
     require(len({k for k, _ in certificate["counts"]}) == len(counts), "a count is used twice")
     total, branches = prod(c["count"] - less for c, less in counts), certificate["branches"]
     require(counts and branches in range(1, total + 1), "fewer solutions are counted than branches")

@@ -154,7 +154,12 @@ tilt = ik.solve(
 )
 w = ik.vector("w", rotation("x", pi / 2) * (turned(tilt) * u))
 roll = ik.solve(
-    rotate, theta5, w[:2, 0], v[:2, 0], because={elbow: -1, theta6: -w[2] - v[2]}, compared=True
+    rotate,
+    theta5,
+    w[:2, 0],
+    v[:2, 0],
+    because={elbow: -1, theta6: -w[2] - v[2]},
+    compared=tilt.tangent,
 )
 d.step(
     "Inverse: the wrist",

@@ -22,6 +22,8 @@ CHROMIUM = (
     shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 )
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+PATIENCE = 240_000
+"""Milliseconds: a page may load slowly beside other tests, and that is not a fault."""
 NAMES = FORWARD
 """The mechanisms that have an explorer."""
 HEAVIEST = 1_000_000
@@ -74,6 +76,7 @@ def browser():
 
     with sync_playwright() as started:
         opened = started.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        opened.on("context", lambda context: context.set_default_timeout(PATIENCE))
         yield opened
         opened.close()
 

@@ -34,8 +34,8 @@ There is such an angle if and only if neither product is negative: since $\mathc
 $\mathcal B + \mathcal C = 2r$ is not negative, this means that no factor is.  The product of both
 is $4 l_1^2 l_2^2 \sin^2\theta = \mathcal S\mathcal A\mathcal B\mathcal C$, and either sign of the
 sine gives an angle.""",
-    exception=r"""If a link has no length, $\theta$ is free where there is a solution, and a
-stretched arm is returned.""",
+    exception=r"""If a link has no length, $\theta$ is free where there is a solution.  A stretched
+arm is returned, unless later joints need another one.""",
 )
 
 

@@ -82,10 +82,12 @@ class Facing(Turned):
     """The pair of a joint that turns a vector into a plane, and the coordinate ``ahead`` in it.
 
     For ``a sin x + b cos x = c`` this is ``a cos x - b sin x``, and it has the sign ``-side``.
+    ``tangent`` is the flag that a goal has chosen x, near a tangent.
     """
 
     ahead: sp.Expr
     side: sp.Symbol
+    tangent: sp.Basic = sp.false
 
 
 @chain_lemma("a sin x + b cos x = c", "the pair of x, with `.ahead` and `.side`")
@@ -153,7 +155,8 @@ def turn(
     lemma = at.lemma(pair.angle, how)
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
-    return Applied(lemma, Facing(pair.s, pair.c, root, ahead, sigma), means, {}, cases)
+    facing = Facing(s=pair.s, c=pair.c, lever=root, ahead=ahead, side=sigma, tangent=found.tangent)
+    return Applied(lemma, facing, means, {}, cases)
 
 
 theorem(

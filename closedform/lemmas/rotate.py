@@ -13,6 +13,7 @@ from closedform.lemmas.links import degenerate, differs_from_zero, named, vanish
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.zyz import Reaching, within_reach
+from closedform.model.functions import choose
 from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma, label
 
@@ -42,7 +43,7 @@ def rotate(
     *,
     because: Because | None = None,
     scale: sp.Expr | None = None,
-    compared: bool = False,
+    compared: sp.Basic = sp.false,
     reaching: Reaching | None = None,
     name: str = "",
 ) -> Applied:
@@ -64,8 +65,8 @@ def rotate(
     scale
         that of the vectors, by default the size of the arm
     compared
-        whether the lengths are compared: an earlier lemma may have made them only nearly equal,
-        where the tolerance of a reach is a large part of them
+        a flag under which the lengths are compared: near a tangent, an earlier turn may have made
+        them only nearly equal, where the tolerance of a reach is a large part of them
     reaching
         what the rest of the arm has to reach, if the turn decides on it
     name
@@ -82,9 +83,10 @@ def rotate(
     length = p.let(f"square_{tag}", sp.sqrt(sine**2 + cosine**2), nonnegative=True)
     flag: Any = sp.false
     of_w, of_v = sp.sqrt(w1**2 + w2**2), sp.sqrt(v1**2 + v2**2)
-    if compared:
+    if compared is not sp.false:
         # half: what is allowed here stays well within the round trip that is promised
-        p.match(of_w - of_v, size / 2, f"{x.name} turns a vector to one of its length")
+        missed = choose(compared, of_w - of_v, 0)
+        p.match(missed, size / 2, f"{x.name} turns a vector to one of its length")
     shorter = sp.Min(of_w, of_v)
     if not any(differs_from_zero(chain, e, size) for e in (w1, w2)):
         flag = p.vanishes(

@@ -168,7 +168,7 @@ class Tangency:
         root = choose(tangent, sp.sqrt(square), self.root)
         root = p.let(f"kept{suffix}", root, nonnegative=True)
         width = p.let(f"span{suffix}", choose(tangent, whole, self.width), nonnegative=True)
-        return Reached(self.pair(root, width), root)
+        return Reached(self.pair(root, width), root, tangent)
 
 
 @dataclass(frozen=True)
@@ -180,6 +180,8 @@ class Reached:
 
     pair: Pair
     root: sp.Expr | None
+    tangent: sp.Basic = sp.false
+    """The flag that the goal has chosen the root, near a tangent."""
 
 
 class Goal:
@@ -326,7 +328,7 @@ class TwoTurns(Goal):
         return goal.reached(turn)
 
     def anywhere(self, program: Program, suffix: str) -> Pair:
-        """The pair of a turn that is free: z does not depend on it more than it must."""
+        """The pair of a turn that is free: one that brings z to the middle of its range."""
         s, c = sp.Dummy("s"), sp.Dummy("c")
         z = self.vector(Pair(s, c))[2]
         y, x = (program.let(f"level_{n}{suffix}", z.diff(e)) for n, e in (("s", s), ("c", c)))

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 532 compare and select, 353 add, 23 atan2, 43 divide, 593 multiply, 1 sincos, 54 sqrt
+#   ik: 536 compare and select, 353 add, 23 atan2, 43 divide, 593 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1125,631 +1125,635 @@ def _ik(
     t78 = reach + t77
     t79 = reach - t77
     t80 = t27 & (-t13 <= t78) & (-t13 <= t79)
-    v_x = a5 - a4 * t76 - d3 * t75
-    t81 = ops.sqrt(v_x * v_x)
+    t81 = reach * 0.00390625
+    t82 = reach * ops.vanishing
+    tangent6 = ops.sqrt(ops.abs(t78 * t79)) - t81 <= t82
     free6 = reach <= t39
-    t82 = reach * 0.00390625
-    t83 = reach * ops.vanishing
-    tangent6 = ops.sqrt(ops.abs(t78 * t79)) - t82 <= t83
-    t84 = ops.abs(v_x)
-    t85 = t84 < reach
+    v_x = a5 - a4 * t76 - d3 * t75
+    t83 = ops.abs(v_x)
+    t84 = t83 < reach
     below6 = ops.max(t78, 0.0)
     above6 = ops.max(t79, 0.0)
-    t86 = below6 * above6
-    held6 = ops.select(t85, ops.max(0.0, -((t45 - t84) * (t45 + t84))), t86)
-    t87 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t87 * t87), below6 + above6)
-    t88 = 1.0 / (reach * span6)
-    t89 = u_x * 2.0
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t86))
-    t90 = t88 * (t89 * kept6)
-    t91 = t88 * (s_z * t87)
-    c6 = ops.select(free6, 1.0, t90 + t91)
-    t92 = s_z * 2.0
-    t93 = t92 * kept6 * t88
-    t94 = t88 * (u_x * t87)
-    s6 = ops.select(free6, 0.0, t93 - t94)
+    t85 = below6 * above6
+    held6 = ops.select(t84, ops.max(0.0, -((t45 - t83) * (t45 + t83))), t85)
+    t86 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t86 * t86), below6 + above6)
+    t87 = 1.0 / (reach * span6)
+    t88 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t85))
+    t89 = t87 * (t88 * kept6)
+    t90 = t87 * (s_z * t86)
+    c6 = ops.select(free6, 1.0, t89 + t90)
+    t91 = s_z * 2.0
+    t92 = t91 * kept6 * t87
+    t93 = t87 * (u_x * t86)
+    s6 = ops.select(free6, 0.0, t92 - t93)
     w_x = u_x * c6 + s_z * s6
-    t95 = ops.sqrt(t20 + w_x * w_x)
-    unreachable = ops.opposite(t80 & (ops.abs(t81 - t95) <= t13))
+    t94 = ops.sqrt(t20 + w_x * w_x)
+    t95 = ops.sqrt(v_x * v_x)
+    t96 = ops.abs(ops.select(tangent6, t94 - t95, 0.0))
+    unreachable = ops.opposite(t80 & (t96 <= t13))
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    on_axis_5 = ops.min(t81, t95) <= t39
+    on_axis_5 = ops.min(t95, t94) <= t39
     dot_5 = v_x * w_x
-    t96 = w_y * v_x
-    t97 = t96 * t96
-    t98 = 1.0 / ops.sqrt(t97 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t98)
+    t97 = w_y * v_x
+    t98 = t97 * t97
+    t99 = 1.0 / ops.sqrt(t98 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t99)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t99 = ops.select(on_axis_5, 0.0, t96 * t98)
-    t100 = t75 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t99)
-    R4_13 = t76 * (R1_11 * s6 - T13 * c6) + t100
+    t100 = ops.select(on_axis_5, 0.0, t97 * t99)
+    t101 = t75 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t100)
+    R4_13 = t76 * (R1_11 * s6 - T13 * c6) + t101
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t101 = t75 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t99)
-    R4_23 = t76 * (R1_21 * s6 - T23 * c6) + t101
-    t102 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t102
-    t103 = ops.opposite(failed)
-    c6_bent_behind_front = ops.select(free6, 1.0, t91 - t90)
-    t104 = ops.select(free6, 0.0, t93 + t94)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t104
-    t105 = w_x_bent_behind_front * w_x_bent_behind_front
-    t106 = ops.sqrt(t20 + t105)
-    unreachable_2 = ops.opposite(t80 & (ops.abs(t81 - t106) <= t13))
+    t102 = t75 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t100)
+    R4_23 = t76 * (R1_21 * s6 - T23 * c6) + t102
+    t103 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t103
+    t104 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t90 - t89)
+    t105 = ops.select(free6, 0.0, t92 + t93)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t105
+    t106 = w_x_bent_behind_front * w_x_bent_behind_front
+    t107 = ops.sqrt(t20 + t106)
+    t108 = ops.abs(ops.select(tangent6, t107 - t95, 0.0))
+    unreachable_2 = ops.opposite(t80 & (t108 <= t13))
     failed_2 = invalid | unreachable_2
-    t107 = ops.opposite(failed_2)
-    t108 = t103 | t107
-    t109 = t47 - t48
-    t110 = t50 + t51
-    qx__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t109 - d3 * t110, d3 * t109 - (d5 - a4 * t110))
-    t111 = t53 - t54
-    t112 = qx__elbow_1_over_ahead_front * t111
+    t109 = ops.opposite(failed_2)
+    t110 = t104 | t109
+    t111 = t47 - t48
+    t112 = t50 + t51
+    qx__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t111 - d3 * t112, d3 * t111 - (d5 - a4 * t112))
+    t113 = t53 - t54
+    t114 = qx__elbow_1_over_ahead_front * t113
     square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
-    t113 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t113)
-    bend__elbow_1_over_ahead_front = t111 * t111
-    t114 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t112 * t112 - t114
-    t115 = inner__elbow_1_over_ahead_front < 0.0
-    t116 = ops.sign(-t112)
-    t117 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    below__elbow_1_over_ahead_front = ops.select(t115, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t112 - t116 * ops.sqrt(t117))))
-    above__elbow_1_over_ahead_front = ops.select(t115, -t112, miss__elbow_1_over_ahead_front)
-    t118 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
-    t119 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    t120 = ops.select(t118, 0.0, t119)
-    t121 = t120 * t120
-    t122 = 1.0 / (1.0 + t121)
-    t123 = 2.0 * t120 * t122
-    by_c__elbow_1_over_ahead_front = t122 * (1.0 - t121)
-    t124 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t123 * t123 / t124, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t123) + t69 * versine__elbow_1_over_ahead_front
-    t125 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t125, by_c__elbow_1_over_ahead_front, 1.0)
-    t126 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t125, -t123, 0.0)
-    t127 = ops.select(tangent_elbow, t126 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t127)
-    t128 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t129 = t44 * cosine__elbow_1_over_ahead_front + t128
-    celbow_over_ahead_front = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t129, t44))
-    t130 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t131 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t132 = d5 - a4 * t130 + d3 * t131
-    t133 = reach + t132
-    t134 = reach - t132
-    t135 = t27 & (-t13 <= t133) & (-t13 <= t134)
-    v_x_over_ahead_front = a5 - a4 * t131 - d3 * t130
-    t136 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    tangent6_over_ahead_front = ops.sqrt(ops.abs(t133 * t134)) - t82 <= t83
-    t137 = ops.abs(v_x_over_ahead_front)
-    t138 = t137 < reach
-    below6_over_ahead_front = ops.max(t133, 0.0)
-    above6_over_ahead_front = ops.max(t134, 0.0)
-    t139 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t138, ops.max(0.0, -((t45 - t137) * (t45 + t137))), t139)
-    t140 = below6_over_ahead_front - above6_over_ahead_front
-    t141 = ops.sqrt(4.0 * held6_over_ahead_front + t140 * t140)
+    t115 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t115)
+    bend__elbow_1_over_ahead_front = t113 * t113
+    t116 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t114 * t114 - t116
+    t117 = inner__elbow_1_over_ahead_front < 0.0
+    t118 = ops.sign(-t114)
+    t119 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    below__elbow_1_over_ahead_front = ops.select(t117, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t114 - t118 * ops.sqrt(t119))))
+    above__elbow_1_over_ahead_front = ops.select(t117, -t114, miss__elbow_1_over_ahead_front)
+    t120 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
+    t121 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    t122 = ops.select(t120, 0.0, t121)
+    t123 = t122 * t122
+    t124 = 1.0 / (1.0 + t123)
+    t125 = 2.0 * t122 * t124
+    by_c__elbow_1_over_ahead_front = t124 * (1.0 - t123)
+    t126 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t125 * t125 / t126, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t125) + t69 * versine__elbow_1_over_ahead_front
+    t127 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t127, by_c__elbow_1_over_ahead_front, 1.0)
+    t128 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t127, -t125, 0.0)
+    t129 = ops.select(tangent_elbow, t128 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t129)
+    t130 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t131 = t44 * cosine__elbow_1_over_ahead_front + t130
+    celbow_over_ahead_front = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t131, t44))
+    t132 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t133 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t134 = d5 - a4 * t132 + d3 * t133
+    t135 = reach + t134
+    t136 = reach - t134
+    t137 = t27 & (-t13 <= t135) & (-t13 <= t136)
+    tangent6_over_ahead_front = ops.sqrt(ops.abs(t135 * t136)) - t81 <= t82
+    v_x_over_ahead_front = a5 - a4 * t133 - d3 * t132
+    t138 = ops.abs(v_x_over_ahead_front)
+    t139 = t138 < reach
+    below6_over_ahead_front = ops.max(t135, 0.0)
+    above6_over_ahead_front = ops.max(t136, 0.0)
+    t140 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t139, ops.max(0.0, -((t45 - t138) * (t45 + t138))), t140)
+    t141 = below6_over_ahead_front - above6_over_ahead_front
+    t142 = ops.sqrt(4.0 * held6_over_ahead_front + t141 * t141)
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t141, width6_over_ahead_front)
-    t142 = 1.0 / (reach * span6_over_ahead_front)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t139))
-    t143 = t142 * (t89 * kept6_over_ahead_front)
-    t144 = t142 * (s_z * t140)
-    c6_over_ahead_front = ops.select(free6, 1.0, t143 + t144)
-    t145 = t92 * kept6_over_ahead_front * t142
-    t146 = t142 * (u_x * t140)
-    s6_over_ahead_front = ops.select(free6, 0.0, t145 - t146)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t142, width6_over_ahead_front)
+    t143 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t140))
+    t144 = t143 * (t88 * kept6_over_ahead_front)
+    t145 = t143 * (s_z * t141)
+    c6_over_ahead_front = ops.select(free6, 1.0, t144 + t145)
+    t146 = t91 * kept6_over_ahead_front * t143
+    t147 = t143 * (u_x * t141)
+    s6_over_ahead_front = ops.select(free6, 0.0, t146 - t147)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t147 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    t148 = ops.sqrt(t147)
-    unreachable_3 = ops.opposite(t135 & (ops.abs(t136 - t148) <= t13))
+    t148 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t149 = ops.sqrt(t148)
+    t150 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t151 = ops.select(tangent6_over_ahead_front, t149 - t150, 0.0)
+    unreachable_3 = ops.opposite(t137 & (ops.abs(t151) <= t13))
     failed_3 = invalid | unreachable_3
-    t149 = ops.opposite(failed_3)
-    c6_over_behind_front = ops.select(free6, 1.0, t144 - t143)
-    t150 = ops.select(free6, 0.0, t145 + t146)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t150
-    t151 = w_x_over_behind_front * w_x_over_behind_front
-    t152 = ops.sqrt(t20 + t151)
-    unreachable_4 = ops.opposite(t135 & (ops.abs(t136 - t152) <= t13))
+    t152 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t145 - t144)
+    t153 = ops.select(free6, 0.0, t146 + t147)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t153
+    t154 = w_x_over_behind_front * w_x_over_behind_front
+    t155 = ops.sqrt(t20 + t154)
+    t156 = ops.select(tangent6_over_ahead_front, t155 - t150, 0.0)
+    unreachable_4 = ops.opposite(t137 & (ops.abs(t156) <= t13))
     failed_4 = invalid | unreachable_4
-    t153 = ops.opposite(failed_4)
-    t154 = t108 | t149 | t153
-    t155 = t149 | t153
-    t156 = ops.opposite(no_link_elbow)
-    t157 = t155 & t156
-    t158 = t157 & tangent_elbow & t125
-    t159 = t158 & ops.opposite(t118)
-    t160 = (t155 & no_link_elbow) | (t108 & no_link_elbow)
-    t161 = t160 & ops.opposite(t33)
-    t162 = t108 & t156
-    t163 = t162 & tangent_elbow & t70
-    t164 = t163 & ops.opposite(t64)
-    t165 = (t154 | t159 | t161 | t164) & ops.opposite(no_straight)
-    t166 = ops.select(t165, ops.sqrt(ops.select(t165, t30, 1.0)), 1.0)
-    t167 = 1.0 / t166
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t167))
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t167)
-    level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
-    t168 = a4 * s_straight_2 + d3 * c_straight_2
-    t169 = t168 * t168 + level_s_elbow_2 * level_s_elbow_2
-    t170 = ops.select(t161, ops.sqrt(ops.select(t161, t169, 1.0)), 1.0)
+    t157 = ops.opposite(failed_4)
+    t158 = t110 | t152 | t157
+    t159 = t152 | t157
+    t160 = ops.opposite(no_link_elbow)
+    t161 = t159 & t160
+    t162 = t161 & tangent_elbow & t127
+    t163 = t162 & ops.opposite(t120)
+    t164 = (t159 & no_link_elbow) | (t110 & no_link_elbow)
+    t165 = t164 & ops.opposite(t33)
+    t166 = t110 & t160
+    t167 = t166 & tangent_elbow & t70
+    t168 = t167 & ops.opposite(t64)
+    t169 = (t158 | t163 | t165 | t168) & ops.opposite(no_straight)
+    t170 = ops.select(t169, ops.sqrt(ops.select(t169, t30, 1.0)), 1.0)
     t171 = 1.0 / t170
-    t172 = ops.select(t33, 1.0, level_s_elbow_2 * t171)
-    t173 = t157 | t159 | t162 | t164
-    t174 = 1.0 / ops.select(t173, t40, 1.0)
-    upper_2 = ops.sqrt(ops.select(t173, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t173, t15, 1.0))
-    t175 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t173, t22, 1.0))
-    t176 = (t175 + far_2) * ops.max(t175 - far_2, 0.0)
-    t177 = upper_2 - fore_2
-    t178 = ops.max(t177 + far_2, 0.0) * ops.max(far_2 - t177, 0.0)
-    t179 = 1.0 / ops.select(t173, t174 * (t176 + t178), 1.0)
-    t180 = (t174 * t176 - t174 * t178) * t179
-    t181 = c_straight_2 * t180
-    area_elbow = 2.0 * ops.sqrt(ops.select(t173, t176 * t178, 1.0))
-    t182 = 2.0 * (area_elbow / ops.select(t173, t38, 1.0))
-    s__elbow_1_over_ahead_front_2 = t179 * t182
-    t183 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t184 = t181 + t183
-    t185 = s_straight_2 * t180
-    t186 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t187 = t185 - t186
-    qx__elbow_1_2 = ops.select(t46, a5 + a4 * t184 - d3 * t187, d3 * t184 - (d5 - a4 * t187))
-    t188 = ops.select(t46, -t168, level_s_elbow_2) * t180
-    t189 = ops.select(t46, level_s_elbow_2, t168) * s__elbow_1_over_ahead_front_2
-    t190 = t188 + t189
-    t191 = qx__elbow_1_2 * t190
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t171))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t171)
+    level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
+    t172 = a4 * s_straight_2 + d3 * c_straight_2
+    t173 = t172 * t172 + level_s_elbow_2 * level_s_elbow_2
+    t174 = ops.select(t165, ops.sqrt(ops.select(t165, t173, 1.0)), 1.0)
+    t175 = 1.0 / t174
+    t176 = ops.select(t33, 1.0, level_s_elbow_2 * t175)
+    t177 = t161 | t163 | t166 | t168
+    t178 = 1.0 / ops.select(t177, t40, 1.0)
+    upper_2 = ops.sqrt(ops.select(t177, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t177, t15, 1.0))
+    t179 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t177, t22, 1.0))
+    t180 = (t179 + far_2) * ops.max(t179 - far_2, 0.0)
+    t181 = upper_2 - fore_2
+    t182 = ops.max(t181 + far_2, 0.0) * ops.max(far_2 - t181, 0.0)
+    t183 = 1.0 / ops.select(t177, t178 * (t180 + t182), 1.0)
+    t184 = (t178 * t180 - t178 * t182) * t183
+    t185 = c_straight_2 * t184
+    area_elbow = 2.0 * ops.sqrt(ops.select(t177, t180 * t182, 1.0))
+    t186 = 2.0 * (area_elbow / ops.select(t177, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t183 * t186
+    t187 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t188 = t185 + t187
+    t189 = s_straight_2 * t184
+    t190 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t191 = t189 - t190
+    qx__elbow_1_2 = ops.select(t46, a5 + a4 * t188 - d3 * t191, d3 * t188 - (d5 - a4 * t191))
+    t192 = ops.select(t46, -t172, level_s_elbow_2) * t184
+    t193 = ops.select(t46, level_s_elbow_2, t172) * s__elbow_1_over_ahead_front_2
+    t194 = t192 + t193
+    t195 = qx__elbow_1_2 * t194
     square__elbow_1_2 = qx__elbow_1_2 * qx__elbow_1_2
-    t192 = ops.opposite(free6)
-    t193 = (t153 & t192) | (t149 & t192)
-    t194 = t193 & tangent6_over_ahead_front
-    t195 = t107 & t192
-    t196 = t103 & t192
-    t197 = t193 | (t194 & ops.opposite(t138)) | t195 | t196
-    t198 = t195 | t196
-    t199 = t198 & tangent6
-    t200 = t159 & ops.opposite(t115)
-    t201 = t164 & ops.opposite(t61)
-    t202 = t197 | (t199 & ops.opposite(t85)) | ((t200 | t201) & ops.opposite(t46))
-    reach_2 = ops.sqrt(ops.select(t202, t21, 1.0))
-    t203 = t57 + ops.select(t46, size, reach_2)
-    high__elbow_1_2 = t203 * t203
-    t204 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    miss__elbow_1_2 = square__elbow_1_2 - t204
-    bend__elbow_1_2 = t190 * t190
-    inner__elbow_1_2 = t191 * t191 - miss__elbow_1_2 * bend__elbow_1_2
-    t205 = ops.select(t201, ops.max(0.0, inner__elbow_1_2), 1.0)
-    below__elbow_1_2 = ops.select(t61, 2.0 * bend__elbow_1_2, -(2.0 * (t191 - t62 * ops.sqrt(t205))))
-    t206 = ops.select(t61, -t191, miss__elbow_1_2) / ops.select(t164, below__elbow_1_2, 1.0)
-    t207 = ops.select(t64, 0.0, t206)
-    t208 = t207 * t207
-    t209 = 1.0 / ops.select(t163, 1.0 + t208, 1.0)
-    cosine__elbow_1_2 = ops.select(t70, t209 * (1.0 - t208), 1.0)
-    sine__elbow_1_2 = ops.select(t70, -(2.0 * t207 * t209), 0.0)
-    t210 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t211 = ops.select(tangent_elbow, t180 * cosine__elbow_1_2 - t210, t180)
-    celbow_2 = ops.select(no_link_elbow, t172, -t211)
-    t212 = ops.select(t33, 0.0, t168 * t171)
-    t213 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t214 = ops.select(tangent_elbow, t180 * sine__elbow_1_2 + t213, s__elbow_1_over_ahead_front_2)
-    selbow_2 = ops.select(no_link_elbow, t212, -t214)
-    t215 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
-    t216 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t215 - d3 * t216
-    t217 = ops.abs(v_x_2)
-    t218 = d5 - a4 * t216 + d3 * t215
-    below6_2 = ops.max(reach_2 + t218, 0.0)
-    above6_2 = ops.max(reach_2 - t218, 0.0)
-    t219 = below6_2 * above6_2
-    held6_2 = ops.select(t85, ops.max(0.0, -((t45 - t217) * (t45 + t217))), t219)
-    t220 = ops.select(t198 & ops.opposite(tangent6), t219, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t199, held6_2, 1.0)), ops.sqrt(t220))
-    t221 = below6_2 - above6_2
-    t222 = ops.select(t199, 4.0 * held6_2 + t221 * t221, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t222), below6_2 + above6_2)
-    t223 = 1.0 / ops.select(t198, reach_2 * span6_2, 1.0)
-    t224 = t92 * kept6_2 * t223
-    t225 = t223 * (u_x * t221)
-    s6_2 = ops.select(free6, 0.0, t224 - t225)
-    t226 = t223 * (t89 * kept6_2)
-    t227 = t223 * (s_z * t221)
-    c6_2 = ops.select(free6, 1.0, t226 + t227)
+    t196 = ops.opposite(free6)
+    t197 = (t157 & t196) | (t152 & t196)
+    t198 = t197 & tangent6_over_ahead_front
+    t199 = t109 & t196
+    t200 = t104 & t196
+    t201 = t197 | (t198 & ops.opposite(t139)) | t199 | t200
+    t202 = t199 | t200
+    t203 = t202 & tangent6
+    t204 = t163 & ops.opposite(t117)
+    t205 = t168 & ops.opposite(t61)
+    t206 = t201 | (t203 & ops.opposite(t84)) | ((t204 | t205) & ops.opposite(t46))
+    reach_2 = ops.sqrt(ops.select(t206, t21, 1.0))
+    t207 = t57 + ops.select(t46, size, reach_2)
+    high__elbow_1_2 = t207 * t207
+    t208 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
+    miss__elbow_1_2 = square__elbow_1_2 - t208
+    bend__elbow_1_2 = t194 * t194
+    inner__elbow_1_2 = t195 * t195 - miss__elbow_1_2 * bend__elbow_1_2
+    t209 = ops.select(t205, ops.max(0.0, inner__elbow_1_2), 1.0)
+    below__elbow_1_2 = ops.select(t61, 2.0 * bend__elbow_1_2, -(2.0 * (t195 - t62 * ops.sqrt(t209))))
+    t210 = ops.select(t61, -t195, miss__elbow_1_2) / ops.select(t168, below__elbow_1_2, 1.0)
+    t211 = ops.select(t64, 0.0, t210)
+    t212 = t211 * t211
+    t213 = 1.0 / ops.select(t167, 1.0 + t212, 1.0)
+    cosine__elbow_1_2 = ops.select(t70, t213 * (1.0 - t212), 1.0)
+    sine__elbow_1_2 = ops.select(t70, -(2.0 * t211 * t213), 0.0)
+    t214 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t215 = ops.select(tangent_elbow, t184 * cosine__elbow_1_2 - t214, t184)
+    celbow_2 = ops.select(no_link_elbow, t176, -t215)
+    t216 = ops.select(t33, 0.0, t172 * t175)
+    t217 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t218 = ops.select(tangent_elbow, t184 * sine__elbow_1_2 + t217, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t216, -t218)
+    t219 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t220 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t219 - d3 * t220
+    t221 = ops.abs(v_x_2)
+    t222 = d5 - a4 * t220 + d3 * t219
+    below6_2 = ops.max(reach_2 + t222, 0.0)
+    above6_2 = ops.max(reach_2 - t222, 0.0)
+    t223 = below6_2 * above6_2
+    held6_2 = ops.select(t84, ops.max(0.0, -((t45 - t221) * (t45 + t221))), t223)
+    t224 = ops.select(t202 & ops.opposite(tangent6), t223, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t203, held6_2, 1.0)), ops.sqrt(t224))
+    t225 = below6_2 - above6_2
+    t226 = ops.select(t203, 4.0 * held6_2 + t225 * t225, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t226), below6_2 + above6_2)
+    t227 = 1.0 / ops.select(t202, reach_2 * span6_2, 1.0)
+    t228 = t91 * kept6_2 * t227
+    t229 = t227 * (u_x * t225)
+    s6_2 = ops.select(free6, 0.0, t228 - t229)
+    t230 = t227 * (t88 * kept6_2)
+    t231 = t227 * (s_z * t225)
+    c6_2 = ops.select(free6, 1.0, t230 + t231)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t228 = t103 & ops.opposite(on_axis_5)
-    t229 = w_y * v_x_2
-    t230 = t229 * t229
-    t231 = t230 + ops.select(t228, dot_5_2 * dot_5_2, 1.0)
-    t232 = ops.select(t228, ops.sqrt(ops.select(t228, t231, 1.0)), 1.0)
-    t233 = 1.0 / t232
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t233)
+    t232 = t104 & ops.opposite(on_axis_5)
+    t233 = w_y * v_x_2
+    t234 = t233 * t233
+    t235 = t234 + ops.select(t232, dot_5_2 * dot_5_2, 1.0)
+    t236 = ops.select(t232, ops.sqrt(ops.select(t232, t235, 1.0)), 1.0)
+    t237 = 1.0 / t236
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t237)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t234 = ops.select(on_axis_5, 0.0, t229 * t233)
-    R3_21 = c5_2 * R2_21 - R1_23 * t234
-    R4_23_2 = t215 * R2_23 + ops.select(t103, t216 * R3_21, 1.0)
-    t235 = t103 & ops.opposite(aligned_wrist)
+    t238 = ops.select(on_axis_5, 0.0, t233 * t237)
+    R3_21 = c5_2 * R2_21 - R1_23 * t238
+    R4_23_2 = t219 * R2_23 + ops.select(t104, t220 * R3_21, 1.0)
+    t239 = t104 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t234
-    R4_13_2 = t215 * R2_13 + ops.select(t103, t216 * R3_11, 1.0)
-    t236 = ops.select(t235, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
-    t237 = 1.0 / ops.select(t235, ops.sqrt(t236), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t237)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t237)
-    t238 = ops.atan2(s_wrist, ops.select(t103, c_wrist, 1.0))
-    t239 = ops.select(failed, ops.nan, ops.wrap_cut(t238))
+    R3_11 = c5_2 * R2_11 - R1_13 * t238
+    R4_13_2 = t219 * R2_13 + ops.select(t104, t220 * R3_11, 1.0)
+    t240 = ops.select(t239, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
+    t241 = 1.0 / ops.select(t239, ops.sqrt(t240), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t241)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t241)
+    t242 = ops.atan2(s_wrist, ops.select(t104, c_wrist, 1.0))
+    t243 = ops.select(failed, ops.nan, ops.wrap_cut(t242))
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t234
-    R4_33 = t215 * (R1_31 * s6_2 - T33 * c6_2) + ops.select(t103, t216 * R3_31, 1.0)
-    t240 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t103, R4_33, 1.0))
-    t241 = ops.select(failed, ops.nan, ops.wrap_cut(t240))
-    t242 = t216 * R2_13 - ops.select(t103, t215 * R3_11, 1.0)
-    t243 = t216 * R2_23 - ops.select(t103, t215 * R3_21, 1.0)
-    t244 = ops.select(t103, s_wrist * (R2_11 * t234 + R1_13 * c5_2), 1.0)
-    t245 = ops.select(t103, c_wrist * (t234 * R2_21 + R1_23 * c5_2), 1.0)
-    t246 = ops.atan2(s_wrist * t242 - c_wrist * t243, ops.select(t103, t244 - t245, 1.0))
-    t247 = ops.select(failed, ops.nan, ops.wrap_cut(t246))
-    t248 = ops.wrap_cut(ops.atan2(t216, ops.select(t108, t215, 1.0)))
-    t249 = ops.select(failed, ops.nan, t248)
-    t250 = ops.wrap_cut(-ops.atan2(t234, ops.select(t103, c5_2, 1.0)))
-    t251 = ops.select(failed, ops.nan, t250)
-    t252 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t103, c6_2, 1.0)))
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t238
+    R4_33 = t219 * (R1_31 * s6_2 - T33 * c6_2) + ops.select(t104, t220 * R3_31, 1.0)
+    t244 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t104, R4_33, 1.0))
+    t245 = ops.select(failed, ops.nan, ops.wrap_cut(t244))
+    t246 = t220 * R2_13 - ops.select(t104, t219 * R3_11, 1.0)
+    t247 = t220 * R2_23 - ops.select(t104, t219 * R3_21, 1.0)
+    t248 = ops.select(t104, s_wrist * (R2_11 * t238 + R1_13 * c5_2), 1.0)
+    t249 = ops.select(t104, c_wrist * (t238 * R2_21 + R1_23 * c5_2), 1.0)
+    t250 = ops.atan2(s_wrist * t246 - c_wrist * t247, ops.select(t104, t248 - t249, 1.0))
+    t251 = ops.select(failed, ops.nan, ops.wrap_cut(t250))
+    t252 = ops.wrap_cut(ops.atan2(t220, ops.select(t110, t219, 1.0)))
     t253 = ops.select(failed, ops.nan, t252)
-    t254 = ops.atan2(s_x_theta7, ops.select(t154, c_x_theta7, 1.0))
-    t255 = ops.wrap_cut(t254)
-    t256 = ops.select(failed, ops.nan, t255)
+    t254 = ops.wrap_cut(-ops.atan2(t238, ops.select(t104, c5_2, 1.0)))
+    t255 = ops.select(failed, ops.nan, t254)
+    t256 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t104, c6_2, 1.0)))
+    t257 = ops.select(failed, ops.nan, t256)
+    t258 = ops.atan2(s_x_theta7, ops.select(t158, c_x_theta7, 1.0))
+    t259 = ops.wrap_cut(t258)
+    t260 = ops.select(failed, ops.nan, t259)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t257 = ops.select(failed, ops.nan, ops.wrap(t238 + flip_wrist))
-    t258 = ops.select(failed, ops.nan, ops.wrap_cut(-t240))
-    t259 = ops.select(failed, ops.nan, ops.wrap(t246 + flip_wrist))
-    t260 = t76 * (R1_11 * t104 + T13 * c6_bent_behind_front)
-    on_axis_5_bent_behind_front = ops.min(t81, t106) <= t39
+    t261 = ops.select(failed, ops.nan, ops.wrap(t242 + flip_wrist))
+    t262 = ops.select(failed, ops.nan, ops.wrap_cut(-t244))
+    t263 = ops.select(failed, ops.nan, ops.wrap(t250 + flip_wrist))
+    t264 = t76 * (R1_11 * t105 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t95, t107) <= t39
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t261 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t262 = 1.0 / ops.sqrt(t97 + t261)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t262)
-    t263 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t104)
-    t264 = ops.select(on_axis_5_bent_behind_front, 0.0, t96 * t262)
-    t265 = t260 - t75 * (t263 - R1_13 * t264)
-    t266 = t76 * (R1_21 * t104 + T23 * c6_bent_behind_front)
-    t267 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t104)
-    t268 = t266 - t75 * (t267 - R1_23 * t264)
-    aligned_wrist_bent_behind_front = ops.sqrt(t265 * t265 + t268 * t268) <= t102
-    t269 = ops.select(free6, 0.0, t224 + t225)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t227 - t226)
-    t270 = R1_21 * t269 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t269)
-    t271 = t107 & ops.opposite(on_axis_5_bent_behind_front)
-    t272 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t273 = ops.select(t271, t230 + ops.select(t271, t272, 1.0), 1.0)
-    t274 = 1.0 / ops.select(t271, ops.sqrt(t273), 1.0)
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t274)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t269
-    t275 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t276 = ops.select(on_axis_5_bent_behind_front, 0.0, t229 * t274)
-    R3_21_bent_behind_front = t275 - R1_23 * t276
-    t277 = ops.select(t107, t216 * R3_21_bent_behind_front, 1.0)
-    t278 = t215 * t270 - t277
-    t279 = ops.opposite(aligned_wrist_bent_behind_front)
-    t280 = t107 & t279
-    t281 = R1_11 * t269 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t269
-    t282 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t282 - R1_13 * t276
-    t283 = ops.select(t107, t216 * R3_11_bent_behind_front, 1.0)
-    t284 = t215 * t281 - t283
-    t285 = ops.select(t280, t284 * t284 + t278 * t278, 1.0)
-    t286 = 1.0 / ops.select(t280, ops.sqrt(t285), 1.0)
-    t287 = ops.select(aligned_wrist_bent_behind_front, 0.0, t278 * t286)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t284 * t286))
-    t288 = ops.select(t107, c_wrist_bent_behind_front, 1.0)
-    t289 = ops.atan2(t287, t288)
-    t290 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t289))
-    t291 = t284 * c_wrist_bent_behind_front - t278 * t287
-    t292 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t269)
-    t293 = ops.select(t107, t216 * (t292 - R1_33 * t276), 1.0)
-    t294 = t215 * (R1_31 * t269 + T33 * c6_bent_behind_front_2)
-    t295 = ops.atan2(t291, ops.select(t107, t293 - t294, 1.0))
-    t296 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t295))
-    t297 = ops.select(t107, t215 * R3_11_bent_behind_front, 1.0)
-    t298 = ops.select(t107, t215 * R3_21_bent_behind_front, 1.0)
-    t299 = c_wrist_bent_behind_front * (t216 * t270 + t298)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t276 + R1_13 * c5_bent_behind_front_2
-    t300 = ops.select(t107, t287 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t276 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t301 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t302 = ops.select(t107, -(t300 + ops.select(t107, t301, 1.0)), 1.0)
-    t303 = ops.atan2(t287 * (t216 * t281 + t297) + t299, t302)
-    t304 = ops.select(failed_2, ops.nan, ops.wrap_cut(t303))
-    t305 = ops.select(failed_2, ops.nan, t248)
-    t306 = ops.select(t107, c5_bent_behind_front_2, 1.0)
-    t307 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t276, t306)))
-    t308 = ops.select(t107, c6_bent_behind_front_2, 1.0)
-    t309 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t269, t308)))
-    t310 = ops.select(failed_2, ops.nan, t255)
+    t265 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t266 = 1.0 / ops.sqrt(t98 + t265)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t266)
+    t267 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t105)
+    t268 = ops.select(on_axis_5_bent_behind_front, 0.0, t97 * t266)
+    t269 = t264 - t75 * (t267 - R1_13 * t268)
+    t270 = t76 * (R1_21 * t105 + T23 * c6_bent_behind_front)
+    t271 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t105)
+    t272 = t270 - t75 * (t271 - R1_23 * t268)
+    aligned_wrist_bent_behind_front = ops.sqrt(t269 * t269 + t272 * t272) <= t103
+    t273 = ops.select(free6, 0.0, t228 + t229)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t231 - t230)
+    t274 = R1_21 * t273 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t273)
+    t275 = t109 & ops.opposite(on_axis_5_bent_behind_front)
+    t276 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t277 = ops.select(t275, t234 + ops.select(t275, t276, 1.0), 1.0)
+    t278 = 1.0 / ops.select(t275, ops.sqrt(t277), 1.0)
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t278)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t273
+    t279 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t280 = ops.select(on_axis_5_bent_behind_front, 0.0, t233 * t278)
+    R3_21_bent_behind_front = t279 - R1_23 * t280
+    t281 = ops.select(t109, t220 * R3_21_bent_behind_front, 1.0)
+    t282 = t219 * t274 - t281
+    t283 = ops.opposite(aligned_wrist_bent_behind_front)
+    t284 = t109 & t283
+    t285 = R1_11 * t273 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t273
+    t286 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t286 - R1_13 * t280
+    t287 = ops.select(t109, t220 * R3_11_bent_behind_front, 1.0)
+    t288 = t219 * t285 - t287
+    t289 = ops.select(t284, t288 * t288 + t282 * t282, 1.0)
+    t290 = 1.0 / ops.select(t284, ops.sqrt(t289), 1.0)
+    t291 = ops.select(aligned_wrist_bent_behind_front, 0.0, t282 * t290)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t288 * t290))
+    t292 = ops.select(t109, c_wrist_bent_behind_front, 1.0)
+    t293 = ops.atan2(t291, t292)
+    t294 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t293))
+    t295 = t288 * c_wrist_bent_behind_front - t282 * t291
+    t296 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t273)
+    t297 = ops.select(t109, t220 * (t296 - R1_33 * t280), 1.0)
+    t298 = t219 * (R1_31 * t273 + T33 * c6_bent_behind_front_2)
+    t299 = ops.atan2(t295, ops.select(t109, t297 - t298, 1.0))
+    t300 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t299))
+    t301 = ops.select(t109, t219 * R3_11_bent_behind_front, 1.0)
+    t302 = ops.select(t109, t219 * R3_21_bent_behind_front, 1.0)
+    t303 = c_wrist_bent_behind_front * (t220 * t274 + t302)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t280 + R1_13 * c5_bent_behind_front_2
+    t304 = ops.select(t109, t291 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t280 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t305 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t306 = ops.select(t109, -(t304 + ops.select(t109, t305, 1.0)), 1.0)
+    t307 = ops.atan2(t291 * (t220 * t285 + t301) + t303, t306)
+    t308 = ops.select(failed_2, ops.nan, ops.wrap_cut(t307))
+    t309 = ops.select(failed_2, ops.nan, t252)
+    t310 = ops.select(t109, c5_bent_behind_front_2, 1.0)
+    t311 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t280, t310)))
+    t312 = ops.select(t109, c6_bent_behind_front_2, 1.0)
+    t313 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t273, t312)))
+    t314 = ops.select(failed_2, ops.nan, t259)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t311 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t289))
-    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(t295))
-    t313 = ops.select(failed_2, ops.nan, ops.wrap(t303 + flip_wrist_bent_behind_back))
+    t315 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t293))
+    t316 = ops.select(failed_2, ops.nan, ops.wrap_cut(t299))
+    t317 = ops.select(failed_2, ops.nan, ops.wrap(t307 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t136, t148) <= t39
+    on_axis_5_over_ahead_front = ops.min(t150, t149) <= t39
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t314 = w_y * v_x_over_ahead_front
-    t315 = t314 * t314
-    t316 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t317 = 1.0 / ops.sqrt(t315 + t316)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t317)
+    t318 = w_y * v_x_over_ahead_front
+    t319 = t318 * t318
+    t320 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t321 = 1.0 / ops.sqrt(t319 + t320)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t321)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t318 = ops.select(on_axis_5_over_ahead_front, 0.0, t314 * t317)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t318
-    R4_13_over_ahead_front = t131 * R2_13_over_ahead_front + t130 * R3_11_over_ahead_front
-    t319 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t322 = ops.select(on_axis_5_over_ahead_front, 0.0, t318 * t321)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t322
+    R4_13_over_ahead_front = t133 * R2_13_over_ahead_front + t132 * R3_11_over_ahead_front
+    t323 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t318
-    R4_23_over_ahead_front = t131 * R2_23_over_ahead_front + t130 * R3_21_over_ahead_front
-    t320 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t319 + t320) <= t102
-    t321 = t181 - t183
-    t322 = t185 + t186
-    qx__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t321 - d3 * t322, d3 * t321 - (d5 - a4 * t322))
-    t323 = t188 - t189
-    t324 = qx__elbow_1_over_ahead_front_2 * t323
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t322
+    R4_23_over_ahead_front = t133 * R2_23_over_ahead_front + t132 * R3_21_over_ahead_front
+    t324 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t323 + t324) <= t103
+    t325 = t185 - t187
+    t326 = t189 + t190
+    qx__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t325 - d3 * t326, d3 * t325 - (d5 - a4 * t326))
+    t327 = t192 - t193
+    t328 = qx__elbow_1_over_ahead_front_2 * t327
     square__elbow_1_over_ahead_front_2 = qx__elbow_1_over_ahead_front_2 * qx__elbow_1_over_ahead_front_2
-    t325 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
-    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t325)
-    above__elbow_1_over_ahead_front_2 = ops.select(t115, -t324, miss__elbow_1_over_ahead_front_2)
-    bend__elbow_1_over_ahead_front_2 = t323 * t323
-    t326 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
-    t327 = ops.select(t200, ops.max(0.0, t324 * t324 - t326), 1.0)
-    below__elbow_1_over_ahead_front_2 = ops.select(t115, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * (t324 - t116 * ops.sqrt(t327))))
-    t328 = ops.select(t159, below__elbow_1_over_ahead_front_2, 1.0)
-    t329 = ops.select(t118, 0.0, above__elbow_1_over_ahead_front_2 / t328)
-    t330 = t329 * t329
-    t331 = 1.0 / ops.select(t158, 1.0 + t330, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t125, t331 * (1.0 - t330), 1.0)
-    sine__elbow_1_over_ahead_front_2 = ops.select(t125, -(2.0 * t329 * t331), 0.0)
-    t332 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t333 = t180 * cosine__elbow_1_over_ahead_front_2 + t332
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t172, -ops.select(tangent_elbow, t333, t180))
-    t334 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t335 = t334 - t180 * sine__elbow_1_over_ahead_front_2
-    t336 = ops.select(tangent_elbow, t335, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t212, t336)
-    t337 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t338 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t337 - d3 * t338
-    t339 = ops.abs(v_x_over_ahead_front_2)
-    t340 = d5 - a4 * t338 + d3 * t337
-    below6_over_ahead_front_2 = ops.max(reach_2 + t340, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t340, 0.0)
-    t341 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t138, ops.max(0.0, -((t45 - t339) * (t45 + t339))), t341)
-    t342 = ops.select(t194, held6_over_ahead_front_2, 1.0)
-    t343 = t193 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t342), ops.sqrt(ops.select(t343, t341, 1.0)))
-    t344 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t345 = ops.select(t194, 4.0 * held6_over_ahead_front_2 + t344 * t344, 1.0)
+    t329 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
+    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t329)
+    above__elbow_1_over_ahead_front_2 = ops.select(t117, -t328, miss__elbow_1_over_ahead_front_2)
+    bend__elbow_1_over_ahead_front_2 = t327 * t327
+    t330 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
+    t331 = ops.select(t204, ops.max(0.0, t328 * t328 - t330), 1.0)
+    below__elbow_1_over_ahead_front_2 = ops.select(t117, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * (t328 - t118 * ops.sqrt(t331))))
+    t332 = ops.select(t163, below__elbow_1_over_ahead_front_2, 1.0)
+    t333 = ops.select(t120, 0.0, above__elbow_1_over_ahead_front_2 / t332)
+    t334 = t333 * t333
+    t335 = 1.0 / ops.select(t162, 1.0 + t334, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t127, t335 * (1.0 - t334), 1.0)
+    sine__elbow_1_over_ahead_front_2 = ops.select(t127, -(2.0 * t333 * t335), 0.0)
+    t336 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t337 = t184 * cosine__elbow_1_over_ahead_front_2 + t336
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t176, -ops.select(tangent_elbow, t337, t184))
+    t338 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t339 = t338 - t184 * sine__elbow_1_over_ahead_front_2
+    t340 = ops.select(tangent_elbow, t339, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t216, t340)
+    t341 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t342 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t341 - d3 * t342
+    t343 = ops.abs(v_x_over_ahead_front_2)
+    t344 = d5 - a4 * t342 + d3 * t341
+    below6_over_ahead_front_2 = ops.max(reach_2 + t344, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t344, 0.0)
+    t345 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t139, ops.max(0.0, -((t45 - t343) * (t45 + t343))), t345)
+    t346 = ops.select(t198, held6_over_ahead_front_2, 1.0)
+    t347 = t197 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t346), ops.sqrt(ops.select(t347, t345, 1.0)))
+    t348 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t349 = ops.select(t198, 4.0 * held6_over_ahead_front_2 + t348 * t348, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t345), width6_over_ahead_front_2)
-    t346 = ops.select(t193, reach_2 * span6_over_ahead_front_2, 1.0)
-    t347 = 1.0 / t346
-    t348 = t92 * kept6_over_ahead_front_2 * t347
-    t349 = t347 * (u_x * t344)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t348 - t349)
-    t350 = t347 * (t89 * kept6_over_ahead_front_2)
-    t351 = t347 * (s_z * t344)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t350 + t351)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t349), width6_over_ahead_front_2)
+    t350 = ops.select(t197, reach_2 * span6_over_ahead_front_2, 1.0)
+    t351 = 1.0 / t350
+    t352 = t91 * kept6_over_ahead_front_2 * t351
+    t353 = t351 * (u_x * t348)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t352 - t353)
+    t354 = t351 * (t88 * kept6_over_ahead_front_2)
+    t355 = t351 * (s_z * t348)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t354 + t355)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t352 = t149 & ops.opposite(on_axis_5_over_ahead_front)
-    t353 = w_y * v_x_over_ahead_front_2
-    t354 = t353 * t353
-    t355 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t356 = ops.select(t352, t354 + ops.select(t352, t355, 1.0), 1.0)
-    t357 = 1.0 / ops.select(t352, ops.sqrt(t356), 1.0)
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t357)
+    t356 = t152 & ops.opposite(on_axis_5_over_ahead_front)
+    t357 = w_y * v_x_over_ahead_front_2
+    t358 = t357 * t357
+    t359 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t360 = ops.select(t356, t358 + ops.select(t356, t359, 1.0), 1.0)
+    t361 = 1.0 / ops.select(t356, ops.sqrt(t360), 1.0)
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t361)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t358 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t359 = ops.select(on_axis_5_over_ahead_front, 0.0, t353 * t357)
-    R3_21_over_ahead_front_2 = t358 - R1_23 * t359
-    t360 = ops.select(t149, t338 * R3_21_over_ahead_front_2, 1.0)
-    R4_23_over_ahead_front_2 = t337 * R2_23_over_ahead_front_2 + t360
-    t361 = t149 & ops.opposite(aligned_wrist_over_ahead_front)
+    t362 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t363 = ops.select(on_axis_5_over_ahead_front, 0.0, t357 * t361)
+    R3_21_over_ahead_front_2 = t362 - R1_23 * t363
+    t364 = ops.select(t152, t342 * R3_21_over_ahead_front_2, 1.0)
+    R4_23_over_ahead_front_2 = t341 * R2_23_over_ahead_front_2 + t364
+    t365 = t152 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t362 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t362 - R1_13 * t359
-    t363 = ops.select(t149, t338 * R3_11_over_ahead_front_2, 1.0)
-    R4_13_over_ahead_front_2 = t337 * R2_13_over_ahead_front_2 + t363
-    t364 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t365 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t366 = ops.select(t361, ops.sqrt(ops.select(t361, t364 + t365, 1.0)), 1.0)
-    t367 = 1.0 / t366
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t367)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t367)
-    t368 = ops.select(t149, c_wrist_over_ahead_front, 1.0)
-    t369 = ops.atan2(s_wrist_over_ahead_front, t368)
-    t370 = ops.select(failed_3, ops.nan, ops.wrap_cut(t369))
-    t371 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t372 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t366 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t366 - R1_13 * t363
+    t367 = ops.select(t152, t342 * R3_11_over_ahead_front_2, 1.0)
+    R4_13_over_ahead_front_2 = t341 * R2_13_over_ahead_front_2 + t367
+    t368 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t369 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t370 = ops.select(t365, ops.sqrt(ops.select(t365, t368 + t369, 1.0)), 1.0)
+    t371 = 1.0 / t370
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t371)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t371)
+    t372 = ops.select(t152, c_wrist_over_ahead_front, 1.0)
+    t373 = ops.atan2(s_wrist_over_ahead_front, t372)
+    t374 = ops.select(failed_3, ops.nan, ops.wrap_cut(t373))
+    t375 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t376 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t373 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    t374 = ops.select(t149, t338 * (t373 - R1_33 * t359), 1.0)
-    t375 = ops.select(t149, t337 * R2_33_over_ahead_front + t374, 1.0)
-    t376 = ops.atan2(t371 + t372, t375)
-    t377 = ops.select(failed_3, ops.nan, ops.wrap_cut(t376))
-    t378 = ops.select(t149, t337 * R3_11_over_ahead_front_2, 1.0)
-    t379 = s_wrist_over_ahead_front * (t338 * R2_13_over_ahead_front_2 - t378)
-    t380 = ops.select(t149, t337 * R3_21_over_ahead_front_2, 1.0)
-    t381 = c_wrist_over_ahead_front * (t338 * R2_23_over_ahead_front_2 - t380)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t359 + R1_13 * c5_over_ahead_front_2
-    t382 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t359 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t383 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t384 = ops.select(t149, t382, 1.0) - ops.select(t149, t383, 1.0)
-    t385 = ops.atan2(t379 - t381, ops.select(t149, t384, 1.0))
-    t386 = ops.select(failed_3, ops.nan, ops.wrap_cut(t385))
-    t387 = ops.wrap_cut(ops.atan2(t338, ops.select(t155, t337, 1.0)))
-    t388 = ops.select(failed_3, ops.nan, t387)
-    t389 = ops.atan2(t359, ops.select(t149, c5_over_ahead_front_2, 1.0))
-    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t389))
-    t391 = ops.atan2(s6_over_ahead_front_2, ops.select(t149, c6_over_ahead_front_2, 1.0))
-    t392 = ops.select(failed_3, ops.nan, ops.wrap_cut(t391))
-    t393 = ops.select(failed_3, ops.nan, t255)
+    t377 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    t378 = ops.select(t152, t342 * (t377 - R1_33 * t363), 1.0)
+    t379 = ops.select(t152, t341 * R2_33_over_ahead_front + t378, 1.0)
+    t380 = ops.atan2(t375 + t376, t379)
+    t381 = ops.select(failed_3, ops.nan, ops.wrap_cut(t380))
+    t382 = ops.select(t152, t341 * R3_11_over_ahead_front_2, 1.0)
+    t383 = s_wrist_over_ahead_front * (t342 * R2_13_over_ahead_front_2 - t382)
+    t384 = ops.select(t152, t341 * R3_21_over_ahead_front_2, 1.0)
+    t385 = c_wrist_over_ahead_front * (t342 * R2_23_over_ahead_front_2 - t384)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t363 + R1_13 * c5_over_ahead_front_2
+    t386 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t363 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t387 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t388 = ops.select(t152, t386, 1.0) - ops.select(t152, t387, 1.0)
+    t389 = ops.atan2(t383 - t385, ops.select(t152, t388, 1.0))
+    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(t389))
+    t391 = ops.wrap_cut(ops.atan2(t342, ops.select(t159, t341, 1.0)))
+    t392 = ops.select(failed_3, ops.nan, t391)
+    t393 = ops.atan2(t363, ops.select(t152, c5_over_ahead_front_2, 1.0))
+    t394 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t393))
+    t395 = ops.atan2(s6_over_ahead_front_2, ops.select(t152, c6_over_ahead_front_2, 1.0))
+    t396 = ops.select(failed_3, ops.nan, ops.wrap_cut(t395))
+    t397 = ops.select(failed_3, ops.nan, t259)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t394 = ops.select(failed_3, ops.nan, ops.wrap(t369 + flip_wrist_over_ahead_back))
-    t395 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t376))
-    t396 = ops.select(failed_3, ops.nan, ops.wrap(t385 + flip_wrist_over_ahead_back))
-    t397 = t131 * (R1_11 * t150 + T13 * c6_over_behind_front)
-    on_axis_5_over_behind_front = ops.min(t136, t152) <= t39
+    t398 = ops.select(failed_3, ops.nan, ops.wrap(t373 + flip_wrist_over_ahead_back))
+    t399 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t380))
+    t400 = ops.select(failed_3, ops.nan, ops.wrap(t389 + flip_wrist_over_ahead_back))
+    t401 = t133 * (R1_11 * t153 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t150, t155) <= t39
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t398 = dot_5_over_behind_front * dot_5_over_behind_front
-    t399 = 1.0 / ops.sqrt(t315 + t398)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t399)
-    t400 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t150)
-    t401 = ops.select(on_axis_5_over_behind_front, 0.0, t314 * t399)
-    t402 = t397 - t130 * (t400 - R1_13 * t401)
-    t403 = t131 * (R1_21 * t150 + T23 * c6_over_behind_front)
-    t404 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t150)
-    t405 = t403 - t130 * (t404 - R1_23 * t401)
-    aligned_wrist_over_behind_front = ops.sqrt(t402 * t402 + t405 * t405) <= t102
-    t406 = ops.select(free6, 0.0, t348 + t349)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t351 - t350)
-    t407 = R1_21 * t406 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t406)
-    t408 = t153 & ops.opposite(on_axis_5_over_behind_front)
-    t409 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t410 = ops.select(t408, t354 + ops.select(t408, t409, 1.0), 1.0)
-    t411 = 1.0 / ops.select(t408, ops.sqrt(t410), 1.0)
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t411)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t406
-    t412 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t413 = ops.select(on_axis_5_over_behind_front, 0.0, t353 * t411)
-    R3_21_over_behind_front = t412 - R1_23 * t413
-    t414 = ops.select(t153, t338 * R3_21_over_behind_front, 1.0)
-    t415 = t337 * t407 - t414
-    t416 = ops.opposite(aligned_wrist_over_behind_front)
-    t417 = t153 & t416
-    t418 = R1_11 * t406 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t406
-    t419 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t419 - R1_13 * t413
-    t420 = ops.select(t153, t338 * R3_11_over_behind_front, 1.0)
-    t421 = t337 * t418 - t420
-    t422 = ops.select(t417, t421 * t421 + t415 * t415, 1.0)
-    t423 = 1.0 / ops.select(t417, ops.sqrt(t422), 1.0)
-    t424 = ops.select(aligned_wrist_over_behind_front, 0.0, t415 * t423)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t421 * t423))
-    t425 = ops.select(t153, c_wrist_over_behind_front, 1.0)
-    t426 = ops.atan2(t424, t425)
-    t427 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t426))
-    t428 = t421 * c_wrist_over_behind_front - t415 * t424
-    t429 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t406)
-    t430 = ops.select(t153, t338 * (t429 - R1_33 * t413), 1.0)
-    t431 = t337 * (R1_31 * t406 + T33 * c6_over_behind_front_2)
-    t432 = ops.atan2(t428, ops.select(t153, t430 - t431, 1.0))
-    t433 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t432))
-    t434 = ops.select(t153, t337 * R3_11_over_behind_front, 1.0)
-    t435 = ops.select(t153, t337 * R3_21_over_behind_front, 1.0)
-    t436 = c_wrist_over_behind_front * (t338 * t407 + t435)
-    R3_13_over_behind_front = R2_11_over_behind_front * t413 + R1_13 * c5_over_behind_front_2
-    t437 = ops.select(t153, t424 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t413 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t438 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t439 = ops.select(t153, -(t437 + ops.select(t153, t438, 1.0)), 1.0)
-    t440 = ops.atan2(t424 * (t338 * t418 + t434) + t436, t439)
-    t441 = ops.select(failed_4, ops.nan, ops.wrap_cut(t440))
-    t442 = ops.select(failed_4, ops.nan, t387)
-    t443 = ops.select(t153, c5_over_behind_front_2, 1.0)
-    t444 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t413, t443)))
-    t445 = ops.select(t153, c6_over_behind_front_2, 1.0)
-    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t406, t445)))
-    t447 = ops.select(failed_4, ops.nan, t255)
+    t402 = dot_5_over_behind_front * dot_5_over_behind_front
+    t403 = 1.0 / ops.sqrt(t319 + t402)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t403)
+    t404 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t153)
+    t405 = ops.select(on_axis_5_over_behind_front, 0.0, t318 * t403)
+    t406 = t401 - t132 * (t404 - R1_13 * t405)
+    t407 = t133 * (R1_21 * t153 + T23 * c6_over_behind_front)
+    t408 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t153)
+    t409 = t407 - t132 * (t408 - R1_23 * t405)
+    aligned_wrist_over_behind_front = ops.sqrt(t406 * t406 + t409 * t409) <= t103
+    t410 = ops.select(free6, 0.0, t352 + t353)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t355 - t354)
+    t411 = R1_21 * t410 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t410)
+    t412 = t157 & ops.opposite(on_axis_5_over_behind_front)
+    t413 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t414 = ops.select(t412, t358 + ops.select(t412, t413, 1.0), 1.0)
+    t415 = 1.0 / ops.select(t412, ops.sqrt(t414), 1.0)
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t415)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t410
+    t416 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t417 = ops.select(on_axis_5_over_behind_front, 0.0, t357 * t415)
+    R3_21_over_behind_front = t416 - R1_23 * t417
+    t418 = ops.select(t157, t342 * R3_21_over_behind_front, 1.0)
+    t419 = t341 * t411 - t418
+    t420 = ops.opposite(aligned_wrist_over_behind_front)
+    t421 = t157 & t420
+    t422 = R1_11 * t410 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t410
+    t423 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t423 - R1_13 * t417
+    t424 = ops.select(t157, t342 * R3_11_over_behind_front, 1.0)
+    t425 = t341 * t422 - t424
+    t426 = ops.select(t421, t425 * t425 + t419 * t419, 1.0)
+    t427 = 1.0 / ops.select(t421, ops.sqrt(t426), 1.0)
+    t428 = ops.select(aligned_wrist_over_behind_front, 0.0, t419 * t427)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t425 * t427))
+    t429 = ops.select(t157, c_wrist_over_behind_front, 1.0)
+    t430 = ops.atan2(t428, t429)
+    t431 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t430))
+    t432 = t425 * c_wrist_over_behind_front - t419 * t428
+    t433 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t410)
+    t434 = ops.select(t157, t342 * (t433 - R1_33 * t417), 1.0)
+    t435 = t341 * (R1_31 * t410 + T33 * c6_over_behind_front_2)
+    t436 = ops.atan2(t432, ops.select(t157, t434 - t435, 1.0))
+    t437 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t436))
+    t438 = ops.select(t157, t341 * R3_11_over_behind_front, 1.0)
+    t439 = ops.select(t157, t341 * R3_21_over_behind_front, 1.0)
+    t440 = c_wrist_over_behind_front * (t342 * t411 + t439)
+    R3_13_over_behind_front = R2_11_over_behind_front * t417 + R1_13 * c5_over_behind_front_2
+    t441 = ops.select(t157, t428 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t417 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t442 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t443 = ops.select(t157, -(t441 + ops.select(t157, t442, 1.0)), 1.0)
+    t444 = ops.atan2(t428 * (t342 * t422 + t438) + t440, t443)
+    t445 = ops.select(failed_4, ops.nan, ops.wrap_cut(t444))
+    t446 = ops.select(failed_4, ops.nan, t391)
+    t447 = ops.select(t157, c5_over_behind_front_2, 1.0)
+    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t417, t447)))
+    t449 = ops.select(t157, c6_over_behind_front_2, 1.0)
+    t450 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t410, t449)))
+    t451 = ops.select(failed_4, ops.nan, t259)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t448 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t426))
-    t449 = ops.select(failed_4, ops.nan, ops.wrap_cut(t432))
-    t450 = ops.select(failed_4, ops.nan, ops.wrap(t440 + flip_wrist_over_behind_back))
-    t451 = no_link_elbow | free6
-    t452 = ops.status(invalid, unreachable, t451 | on_axis_5 | aligned_wrist)
-    t453 = t451 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t454 = ops.status(invalid, unreachable_2, t453)
-    t455 = t451 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t456 = ops.status(invalid, unreachable_3, t455)
-    t457 = t451 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t458 = ops.status(invalid, unreachable_4, t457)
+    t452 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t430))
+    t453 = ops.select(failed_4, ops.nan, ops.wrap_cut(t436))
+    t454 = ops.select(failed_4, ops.nan, ops.wrap(t444 + flip_wrist_over_behind_back))
+    t455 = no_link_elbow | free6
+    t456 = ops.status(invalid, unreachable, t455 | on_axis_5 | aligned_wrist)
+    t457 = t455 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t458 = ops.status(invalid, unreachable_2, t457)
+    t459 = t455 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t460 = ops.status(invalid, unreachable_3, t459)
+    t461 = t455 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t462 = ops.status(invalid, unreachable_4, t461)
     return (
-        t239,
-        t241,
-        t247,
-        t249,
+        t243,
+        t245,
         t251,
         t253,
-        t256,
+        t255,
         t257,
-        t258,
-        t259,
-        t249,
-        t251,
+        t260,
+        t261,
+        t262,
+        t263,
         t253,
-        t256,
-        t290,
-        t296,
-        t304,
-        t305,
-        t307,
+        t255,
+        t257,
+        t260,
+        t294,
+        t300,
+        t308,
         t309,
-        t310,
         t311,
-        t312,
         t313,
-        t305,
-        t307,
+        t314,
+        t315,
+        t316,
+        t317,
         t309,
-        t310,
-        t370,
-        t377,
-        t386,
-        t388,
+        t311,
+        t313,
+        t314,
+        t374,
+        t381,
         t390,
         t392,
-        t393,
         t394,
-        t395,
         t396,
-        t388,
-        t390,
+        t397,
+        t398,
+        t399,
+        t400,
         t392,
-        t393,
-        t427,
-        t433,
-        t441,
-        t442,
-        t444,
+        t394,
+        t396,
+        t397,
+        t431,
+        t437,
+        t445,
         t446,
-        t447,
         t448,
-        t449,
         t450,
-        t442,
-        t444,
+        t451,
+        t452,
+        t453,
+        t454,
         t446,
-        t447,
-        t452,
-        t452,
-        t454,
-        t454,
+        t448,
+        t450,
+        t451,
         t456,
         t456,
         t458,
         t458,
+        t460,
+        t460,
+        t462,
+        t462,
     )
 
 

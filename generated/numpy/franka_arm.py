@@ -11,8 +11,8 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 256 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
-#   ik where nothing vanishes: 162 compare and select, 228 add, 23 atan2, 17 divide, 312 multiply,
+#   ik: 260 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
+#   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
@@ -1211,7 +1211,7 @@ def _ik(
     del t64
     t65 = below6 - above6
     span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t65 * t65), below6 + above6)
-    del above6, below6, held6, tangent6
+    del above6, below6, held6
     t66 = 1.0 / (reach * span6)
     del span6
     t67 = t55 * kept6 * t66
@@ -1282,451 +1282,459 @@ def _ik(
     del t14, t17, t18
     t96 = t95 & (-t94 <= t58) & (-t94 <= t59)
     del t58, t59
-    unreachable = np.logical_not(t96 & (np.abs(t72 - t73) <= t94))
+    t97 = np.abs(_runtime.select(tangent6, t73 - t72, 0.0))
     del t73
-    t97 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t96 & (t97 <= t94))
+    del t97
+    t98 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t98 = t56 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t77)
-    t99 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t54 * (R1_31 * s6 - T33 * c6) + t98)
-    del R4_13, R4_23, t98
-    t100 = s_wrist * (t56 * R2_13 - t54 * R3_11) - c_wrist * (t56 * R2_23 - t54 * R3_21)
+    t99 = t56 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t77)
+    t100 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t54 * (R1_31 * s6 - T33 * c6) + t99)
+    del R4_13, R4_23, t99
+    t101 = s_wrist * (t56 * R2_13 - t54 * R3_11) - c_wrist * (t56 * R2_23 - t54 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t101 = s_wrist * (R2_11 * t77 + R1_13 * c5) - c_wrist * (t77 * R2_21 + R1_23 * c5)
+    t102 = s_wrist * (R2_11 * t77 + R1_13 * c5) - c_wrist * (t77 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t102 = np.arctan2(t100, t101)
-    del t100, t101
-    t103 = _runtime.wrap_cut(np.arctan2(t56, t54))
-    t104 = t103 + t97
-    t105 = _runtime.wrap_cut(-np.arctan2(t77, c5)) + t97
+    t103 = np.arctan2(t101, t102)
+    del t101, t102
+    t104 = _runtime.wrap_cut(np.arctan2(t56, t54))
+    t105 = t104 + t98
+    t106 = _runtime.wrap_cut(-np.arctan2(t77, c5)) + t98
     del c5, t77
-    t106 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t97
+    t107 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t98
     del c6, s6
-    t107 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t108 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t108 = t107 + t97
+    t109 = t108 + t98
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t109 = _runtime.select(free6, 0.0, t67 + t68)
+    t110 = _runtime.select(free6, 0.0, t67 + t68)
     del t67, t68
     c6_bent_behind_front = _runtime.select(free6, 1.0, t71 - t70)
     del t70, t71
-    t110 = R1_11 * t109 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t109
-    t111 = w_x_bent_behind_front * w_x_bent_behind_front
-    t112 = np.sqrt(t12 + t111)
-    del t111
-    on_axis_5_bent_behind_front = np.minimum(t72, t112) <= t20
+    t111 = R1_11 * t110 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t110
+    t112 = w_x_bent_behind_front * w_x_bent_behind_front
+    t113 = np.sqrt(t12 + t112)
+    del t112
+    on_axis_5_bent_behind_front = np.minimum(t72, t113) <= t20
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t113 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t114 = 1.0 / np.sqrt(t75 + t113)
-    del t113, t75
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t114)
+    t114 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t115 = 1.0 / np.sqrt(t75 + t114)
+    del t114, t75
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t115)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t109
-    t115 = c5_bent_behind_front * R2_11_bent_behind_front
-    t116 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t74 * t114)
-    del t114, t74
-    R3_11_bent_behind_front = t115 - R1_13 * t116
-    del t115
-    t117 = t54 * t110 - t56 * R3_11_bent_behind_front
-    t118 = R1_21 * t109 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t109
-    t119 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t119 - R1_23 * t116
-    del t119
-    t120 = t54 * t118 - t56 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t117 * t117 + t120 * t120)
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t110
+    t116 = c5_bent_behind_front * R2_11_bent_behind_front
+    t117 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t74 * t115)
+    del t115, t74
+    R3_11_bent_behind_front = t116 - R1_13 * t117
+    del t116
+    t118 = t54 * t111 - t56 * R3_11_bent_behind_front
+    t119 = R1_21 * t110 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t110
+    t120 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t120 - R1_23 * t117
+    del t120
+    t121 = t54 * t119 - t56 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t118 * t118 + t121 * t121)
     aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t78
-    t121 = 1.0 / h_wrist_bent_behind_front
+    t122 = 1.0 / h_wrist_bent_behind_front
     del h_wrist_bent_behind_front
-    t122 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t120 * t121)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t117 * t121))
-    del t121
-    t123 = np.arctan2(t122, c_wrist_bent_behind_front)
-    unreachable_2 = np.logical_not(t96 & (np.abs(t72 - t112) <= t94))
-    del t112, t72, t96
-    t124 = _runtime.poison(invalid | unreachable_2)
-    t125 = t117 * c_wrist_bent_behind_front - t120 * t122
-    del t117, t120
-    t126 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t109)
-    t127 = t54 * (R1_31 * t109 + T33 * c6_bent_behind_front)
-    t128 = np.arctan2(t125, t56 * (t126 - R1_33 * t116) - t127)
-    del t125, t126, t127
-    t129 = t122 * (t56 * t110 + t54 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t110
-    t130 = c_wrist_bent_behind_front * (t56 * t118 + t54 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t118, t54, t56
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t116 + R1_13 * c5_bent_behind_front
+    t123 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t121 * t122)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t118 * t122))
+    del t122
+    t124 = np.arctan2(t123, c_wrist_bent_behind_front)
+    t125 = np.abs(_runtime.select(tangent6, t113 - t72, 0.0))
+    del t113, t72, tangent6
+    unreachable_2 = np.logical_not(t96 & (t125 <= t94))
+    del t125, t96
+    t126 = _runtime.poison(invalid | unreachable_2)
+    t127 = t118 * c_wrist_bent_behind_front - t121 * t123
+    del t118, t121
+    t128 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t110)
+    t129 = t54 * (R1_31 * t110 + T33 * c6_bent_behind_front)
+    t130 = np.arctan2(t127, t56 * (t128 - R1_33 * t117) - t129)
+    del t127, t128, t129
+    t131 = t123 * (t56 * t111 + t54 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t111
+    t132 = c_wrist_bent_behind_front * (t56 * t119 + t54 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t119, t54, t56
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t117 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t116 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    R3_23_bent_behind_front = t117 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
     del R2_21_bent_behind_front
-    t131 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t133 = c_wrist_bent_behind_front * R3_23_bent_behind_front
     del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t132 = np.arctan2(t129 + t130, -(t122 * R3_13_bent_behind_front + t131))
-    del R3_13_bent_behind_front, t122, t129, t130, t131
-    t133 = t103 + t124
-    del t103
-    t134 = _runtime.wrap_cut(-np.arctan2(t116, c5_bent_behind_front))
-    del c5_bent_behind_front, t116
-    t135 = t134 + t124
-    del t134
-    t136 = _runtime.wrap_cut(-np.arctan2(t109, c6_bent_behind_front))
-    del c6_bent_behind_front, t109
-    t137 = t136 + t124
+    t134 = np.arctan2(t131 + t132, -(t123 * R3_13_bent_behind_front + t133))
+    del R3_13_bent_behind_front, t123, t131, t132, t133
+    t135 = t104 + t126
+    del t104
+    t136 = _runtime.wrap_cut(-np.arctan2(t117, c5_bent_behind_front))
+    del c5_bent_behind_front, t117
+    t137 = t136 + t126
     del t136
-    t138 = t107 + t124
+    t138 = _runtime.wrap_cut(-np.arctan2(t110, c6_bent_behind_front))
+    del c6_bent_behind_front, t110
+    t139 = t138 + t126
+    del t138
+    t140 = t108 + t126
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t139 = _runtime.wrap(flip_wrist_bent_behind_back - t123)
-    t140 = _runtime.wrap(t132 + flip_wrist_bent_behind_back)
+    t141 = _runtime.wrap(flip_wrist_bent_behind_back - t124)
+    t142 = _runtime.wrap(t134 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t141 = t27 - t28
+    t143 = t27 - t28
     del t27, t28
-    t142 = t30 + t31
+    t144 = t30 + t31
     del t30, t31
-    qx__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t141 - d3 * t142, d3 * t141 - (d5 - a4 * t142))
-    del t141, t142, t26
-    t143 = t33 - t34
+    qx__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t143 - d3 * t144, d3 * t143 - (d5 - a4 * t144))
+    del t143, t144, t26
+    t145 = t33 - t34
     del t33, t34
-    t144 = qx__elbow_1_over_ahead_front * t143
+    t146 = qx__elbow_1_over_ahead_front * t145
     square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
     del qx__elbow_1_over_ahead_front
-    t145 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
+    t147 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
     del high__elbow_1
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t145)
-    del low__elbow_1, square__elbow_1_over_ahead_front, t145
-    bend__elbow_1_over_ahead_front = t143 * t143
-    del t143
-    t146 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t144 * t144 - t146
-    del t146
-    t147 = inner__elbow_1_over_ahead_front < 0.0
-    t148 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
-    del inner__elbow_1_over_ahead_front
-    t149 = 2.0 * (t144 - _runtime.sign(-t144) * np.sqrt(t148))
+    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t147)
+    del low__elbow_1, square__elbow_1_over_ahead_front, t147
+    bend__elbow_1_over_ahead_front = t145 * t145
+    del t145
+    t148 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
+    inner__elbow_1_over_ahead_front = t146 * t146 - t148
     del t148
-    below__elbow_1_over_ahead_front = _runtime.select(t147, 2.0 * bend__elbow_1_over_ahead_front, -t149)
-    del bend__elbow_1_over_ahead_front, t149
-    above__elbow_1_over_ahead_front = _runtime.select(t147, -t144, miss__elbow_1_over_ahead_front)
-    del miss__elbow_1_over_ahead_front, t144, t147
-    t150 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
-    t151 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
+    t149 = inner__elbow_1_over_ahead_front < 0.0
+    t150 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    del inner__elbow_1_over_ahead_front
+    t151 = 2.0 * (t146 - _runtime.sign(-t146) * np.sqrt(t150))
+    del t150
+    below__elbow_1_over_ahead_front = _runtime.select(t149, 2.0 * bend__elbow_1_over_ahead_front, -t151)
+    del bend__elbow_1_over_ahead_front, t151
+    above__elbow_1_over_ahead_front = _runtime.select(t149, -t146, miss__elbow_1_over_ahead_front)
+    del miss__elbow_1_over_ahead_front, t146, t149
+    t152 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
+    t153 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
     del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front
-    t152 = _runtime.select(t150, 0.0, t151)
-    del t150, t151
-    t153 = t152 * t152
-    t154 = 1.0 / (1.0 + t153)
-    t155 = 2.0 * t152 * t154
-    del t152
-    by_c__elbow_1_over_ahead_front = t154 * (1.0 - t153)
-    del t153, t154
-    t156 = t155 * t155 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t156, 1.0 - by_c__elbow_1_over_ahead_front)
-    del t156
-    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t155) + t48 * versine__elbow_1_over_ahead_front
-    del lever_elbow, t48, versine__elbow_1_over_ahead_front
-    t157 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t157, by_c__elbow_1_over_ahead_front, 1.0)
-    del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t157, -t155, 0.0)
-    del t155, t157
-    t158 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t159 = t24 * cosine__elbow_1_over_ahead_front + t158
+    t154 = _runtime.select(t152, 0.0, t153)
+    del t152, t153
+    t155 = t154 * t154
+    t156 = 1.0 / (1.0 + t155)
+    t157 = 2.0 * t154 * t156
+    del t154
+    by_c__elbow_1_over_ahead_front = t156 * (1.0 - t155)
+    del t155, t156
+    t158 = t157 * t157 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t158, 1.0 - by_c__elbow_1_over_ahead_front)
     del t158
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t159, t24))
-    del t159, t8
-    t160 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t157) + t48 * versine__elbow_1_over_ahead_front
+    del lever_elbow, t48, versine__elbow_1_over_ahead_front
+    t159 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    del cost__elbow_1_over_ahead_front, whole__elbow_1
+    cosine__elbow_1_over_ahead_front = _runtime.select(t159, by_c__elbow_1_over_ahead_front, 1.0)
+    del by_c__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t159, -t157, 0.0)
+    del t157, t159
+    t160 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t161 = t24 * cosine__elbow_1_over_ahead_front + t160
+    del t160
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t161, t24))
+    del t161, t8
+    t162 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
     del cosine__elbow_1_over_ahead_front
-    t161 = _runtime.select(tangent_elbow, t160 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t160, t24, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, t51, t161)
-    del t161, t51
-    t162 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t163 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t163 = _runtime.select(tangent_elbow, t162 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t162, t24, tangent_elbow
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t51, t163)
+    del t163, t51
+    t164 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t165 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t164 = d5 - a4 * t163 + d3 * t162
-    t165 = reach + t164
-    t166 = reach - t164
-    del t164
-    tangent6_over_ahead_front = np.sqrt(np.abs(t165 * t166)) - t60 <= t61
+    t166 = d5 - a4 * t165 + d3 * t164
+    t167 = reach + t166
+    t168 = reach - t166
+    del t166
+    tangent6_over_ahead_front = np.sqrt(np.abs(t167 * t168)) - t60 <= t61
     del t60, t61
-    v_x_over_ahead_front = a5 - a4 * t162 - d3 * t163
-    t167 = np.abs(v_x_over_ahead_front)
-    t168 = np.maximum(0.0, -((t25 - t167) * (t25 + t167)))
+    v_x_over_ahead_front = a5 - a4 * t164 - d3 * t165
+    t169 = np.abs(v_x_over_ahead_front)
+    t170 = np.maximum(0.0, -((t25 - t169) * (t25 + t169)))
     del t25
-    below6_over_ahead_front = np.maximum(t165, 0.0)
-    above6_over_ahead_front = np.maximum(t166, 0.0)
-    t169 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = _runtime.select(t167 < reach, t168, t169)
-    del t167, t168
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t169))
-    del t169
-    t170 = below6_over_ahead_front - above6_over_ahead_front
-    t171 = np.sqrt(4.0 * held6_over_ahead_front + t170 * t170)
+    below6_over_ahead_front = np.maximum(t167, 0.0)
+    above6_over_ahead_front = np.maximum(t168, 0.0)
+    t171 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t169 < reach, t170, t171)
+    del t169, t170
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t171))
+    del t171
+    t172 = below6_over_ahead_front - above6_over_ahead_front
+    t173 = np.sqrt(4.0 * held6_over_ahead_front + t172 * t172)
     del held6_over_ahead_front
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t171, width6_over_ahead_front)
-    del t171, tangent6_over_ahead_front, width6_over_ahead_front
-    t172 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t173, width6_over_ahead_front)
+    del t173, width6_over_ahead_front
+    t174 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t173 = t55 * kept6_over_ahead_front * t172
+    t175 = t55 * kept6_over_ahead_front * t174
     del t55
-    t174 = t172 * (u_x * t170)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t173 - t174)
-    t175 = t172 * (t69 * kept6_over_ahead_front)
+    t176 = t174 * (u_x * t172)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t175 - t176)
+    t177 = t174 * (t69 * kept6_over_ahead_front)
     del kept6_over_ahead_front, t69
-    t176 = t172 * (s_z * t170)
-    del t170, t172
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t175 + t176)
+    t178 = t174 * (s_z * t172)
+    del t172, t174
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t177 + t178)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t177 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t179 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t178 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
-    t179 = np.sqrt(t178)
-    del t178
-    on_axis_5_over_ahead_front = np.minimum(t177, t179) <= t20
+    t180 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
+    t181 = np.sqrt(t180)
+    del t180
+    on_axis_5_over_ahead_front = np.minimum(t179, t181) <= t20
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t180 = w_y * v_x_over_ahead_front
+    t182 = w_y * v_x_over_ahead_front
     del w_y
-    t181 = t180 * t180
-    t182 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t183 = 1.0 / np.sqrt(t181 + t182)
-    del t182
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t183)
+    t183 = t182 * t182
+    t184 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t185 = 1.0 / np.sqrt(t183 + t184)
+    del t184
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t185)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t184 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t180 * t183)
-    del t183
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t184
-    R4_13_over_ahead_front = t162 * R2_13_over_ahead_front + t163 * R3_11_over_ahead_front
-    t185 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t186 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t182 * t185)
+    del t185
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t186
+    R4_13_over_ahead_front = t164 * R2_13_over_ahead_front + t165 * R3_11_over_ahead_front
+    t187 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t184
-    R4_23_over_ahead_front = t162 * R2_23_over_ahead_front + t163 * R3_21_over_ahead_front
-    t186 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t185 + t186)
-    del t185, t186
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t186
+    R4_23_over_ahead_front = t164 * R2_23_over_ahead_front + t165 * R3_21_over_ahead_front
+    t188 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t187 + t188)
+    del t187, t188
     aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t78
-    t187 = 1.0 / h_wrist_over_ahead_front
+    t189 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t187)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t187)
-    del t187
-    t188 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    t189 = t95 & (-t94 <= t165) & (-t94 <= t166)
-    del t165, t166, t95
-    unreachable_3 = np.logical_not(t189 & (np.abs(t177 - t179) <= t94))
-    del t179
-    t190 = _runtime.poison(invalid | unreachable_3)
-    t191 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t189)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t189)
+    del t189
+    t190 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    t191 = t95 & (-t94 <= t167) & (-t94 <= t168)
+    del t167, t168, t95
+    t192 = _runtime.select(tangent6_over_ahead_front, t181 - t179, 0.0)
+    del t181
+    unreachable_3 = np.logical_not(t191 & (np.abs(t192) <= t94))
+    del t192
+    t193 = _runtime.poison(invalid | unreachable_3)
+    t194 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t192 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t195 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t184
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t186
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t162 * R2_33_over_ahead_front + t163 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t164 * R2_33_over_ahead_front + t165 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t193 = np.arctan2(t191 + t192, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t191, t192
-    t194 = t163 * R2_13_over_ahead_front - t162 * R3_11_over_ahead_front
+    t196 = np.arctan2(t194 + t195, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t194, t195
+    t197 = t165 * R2_13_over_ahead_front - t164 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t195 = t163 * R2_23_over_ahead_front - t162 * R3_21_over_ahead_front
+    t198 = t165 * R2_23_over_ahead_front - t164 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t196 = s_wrist_over_ahead_front * t194 - c_wrist_over_ahead_front * t195
-    del t194, t195
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t184 + R1_13 * c5_over_ahead_front
+    t199 = s_wrist_over_ahead_front * t197 - c_wrist_over_ahead_front * t198
+    del t197, t198
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t186 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t197 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t200 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t184 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t186 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t198 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t201 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t199 = np.arctan2(t196, t197 - t198)
-    del t196, t197, t198
-    t200 = _runtime.wrap_cut(np.arctan2(t163, t162))
-    t201 = t200 + t190
-    t202 = _runtime.wrap_cut(-np.arctan2(t184, c5_over_ahead_front))
-    del c5_over_ahead_front, t184
-    t203 = t202 + t190
-    del t202
-    t204 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t202 = np.arctan2(t199, t200 - t201)
+    del t199, t200, t201
+    t203 = _runtime.wrap_cut(np.arctan2(t165, t164))
+    t204 = t203 + t193
+    t205 = _runtime.wrap_cut(-np.arctan2(t186, c5_over_ahead_front))
+    del c5_over_ahead_front, t186
+    t206 = t205 + t193
+    del t205
+    t207 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t205 = _runtime.wrap_cut(t204) + t190
-    del t204
-    t206 = t107 + t190
+    t208 = _runtime.wrap_cut(t207) + t193
+    del t207
+    t209 = t108 + t193
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t207 = _runtime.wrap(t188 + flip_wrist_over_ahead_back)
-    t208 = _runtime.wrap(t199 + flip_wrist_over_ahead_back)
+    t210 = _runtime.wrap(t190 + flip_wrist_over_ahead_back)
+    t211 = _runtime.wrap(t202 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t209 = _runtime.select(free6, 0.0, t173 + t174)
-    del t173, t174
-    c6_over_behind_front = _runtime.select(free6, 1.0, t176 - t175)
+    t212 = _runtime.select(free6, 0.0, t175 + t176)
     del t175, t176
-    t210 = R1_11 * t209 + T13 * c6_over_behind_front
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t209
+    c6_over_behind_front = _runtime.select(free6, 1.0, t178 - t177)
+    del t177, t178
+    t213 = R1_11 * t212 + T13 * c6_over_behind_front
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t212
     del s_z, u_x
-    t211 = w_x_over_behind_front * w_x_over_behind_front
-    t212 = np.sqrt(t12 + t211)
-    del t12, t211
-    on_axis_5_over_behind_front = np.minimum(t177, t212) <= t20
+    t214 = w_x_over_behind_front * w_x_over_behind_front
+    t215 = np.sqrt(t12 + t214)
+    del t12, t214
+    on_axis_5_over_behind_front = np.minimum(t179, t215) <= t20
     del t20
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t213 = dot_5_over_behind_front * dot_5_over_behind_front
-    t214 = 1.0 / np.sqrt(t181 + t213)
-    del t181, t213
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t214)
+    t216 = dot_5_over_behind_front * dot_5_over_behind_front
+    t217 = 1.0 / np.sqrt(t183 + t216)
+    del t183, t216
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t217)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t209
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t212
     del R1_11
-    t215 = c5_over_behind_front * R2_11_over_behind_front
-    t216 = _runtime.select(on_axis_5_over_behind_front, 0.0, t180 * t214)
-    del t180, t214
-    R3_11_over_behind_front = t215 - R1_13 * t216
-    del t215
-    t217 = t162 * t210 - t163 * R3_11_over_behind_front
-    t218 = R1_21 * t209 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t209
+    t218 = c5_over_behind_front * R2_11_over_behind_front
+    t219 = _runtime.select(on_axis_5_over_behind_front, 0.0, t182 * t217)
+    del t182, t217
+    R3_11_over_behind_front = t218 - R1_13 * t219
+    del t218
+    t220 = t164 * t213 - t165 * R3_11_over_behind_front
+    t221 = R1_21 * t212 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t212
     del R1_21
-    t219 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t219 - R1_23 * t216
-    del t219
-    t220 = t162 * t218 - t163 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t217 * t217 + t220 * t220)
+    t222 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t222 - R1_23 * t219
+    del t222
+    t223 = t164 * t221 - t165 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t220 * t220 + t223 * t223)
     aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t78
     del t78
-    t221 = 1.0 / h_wrist_over_behind_front
+    t224 = 1.0 / h_wrist_over_behind_front
     del h_wrist_over_behind_front
-    t222 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t220 * t221)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t217 * t221))
-    del t221
-    t223 = np.arctan2(t222, c_wrist_over_behind_front)
-    unreachable_4 = np.logical_not(t189 & (np.abs(t177 - t212) <= t94))
-    del t177, t189, t212, t94
-    t224 = _runtime.poison(invalid | unreachable_4)
-    t225 = t217 * c_wrist_over_behind_front - t220 * t222
-    del t217, t220
-    t226 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t209)
-    t227 = t162 * (R1_31 * t209 + T33 * c6_over_behind_front)
+    t225 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t223 * t224)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t220 * t224))
+    del t224
+    t226 = np.arctan2(t225, c_wrist_over_behind_front)
+    t227 = _runtime.select(tangent6_over_ahead_front, t215 - t179, 0.0)
+    del t179, t215, tangent6_over_ahead_front
+    unreachable_4 = np.logical_not(t191 & (np.abs(t227) <= t94))
+    del t191, t227, t94
+    t228 = _runtime.poison(invalid | unreachable_4)
+    t229 = t220 * c_wrist_over_behind_front - t223 * t225
+    del t220, t223
+    t230 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t212)
+    t231 = t164 * (R1_31 * t212 + T33 * c6_over_behind_front)
     del R1_31
-    t228 = np.arctan2(t225, t163 * (t226 - R1_33 * t216) - t227)
-    del R1_33, t225, t226, t227
-    t229 = t222 * (t163 * t210 + t162 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t210
-    t230 = c_wrist_over_behind_front * (t163 * t218 + t162 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t162, t163, t218
-    R3_13_over_behind_front = R2_11_over_behind_front * t216 + R1_13 * c5_over_behind_front
+    t232 = np.arctan2(t229, t165 * (t230 - R1_33 * t219) - t231)
+    del R1_33, t229, t230, t231
+    t233 = t225 * (t165 * t213 + t164 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t213
+    t234 = c_wrist_over_behind_front * (t165 * t221 + t164 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t164, t165, t221
+    R3_13_over_behind_front = R2_11_over_behind_front * t219 + R1_13 * c5_over_behind_front
     del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t216 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    R3_23_over_behind_front = t219 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
     del R1_23, R2_21_over_behind_front
-    t231 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t235 = c_wrist_over_behind_front * R3_23_over_behind_front
     del R3_23_over_behind_front, c_wrist_over_behind_front
-    t232 = np.arctan2(t229 + t230, -(t222 * R3_13_over_behind_front + t231))
-    del R3_13_over_behind_front, t222, t229, t230, t231
-    t233 = t200 + t224
-    del t200
-    t234 = _runtime.wrap_cut(-np.arctan2(t216, c5_over_behind_front))
-    del c5_over_behind_front, t216
-    t235 = t234 + t224
-    del t234
-    t236 = _runtime.wrap_cut(-np.arctan2(t209, c6_over_behind_front))
-    del c6_over_behind_front, t209
-    t237 = t236 + t224
-    del t236
-    t238 = t107 + t224
-    del t107
+    t236 = np.arctan2(t233 + t234, -(t225 * R3_13_over_behind_front + t235))
+    del R3_13_over_behind_front, t225, t233, t234, t235
+    t237 = t203 + t228
+    del t203
+    t238 = _runtime.wrap_cut(-np.arctan2(t219, c5_over_behind_front))
+    del c5_over_behind_front, t219
+    t239 = t238 + t228
+    del t238
+    t240 = _runtime.wrap_cut(-np.arctan2(t212, c6_over_behind_front))
+    del c6_over_behind_front, t212
+    t241 = t240 + t228
+    del t240
+    t242 = t108 + t228
+    del t108
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t239 = _runtime.wrap(flip_wrist_over_behind_back - t223)
-    t240 = _runtime.wrap(t232 + flip_wrist_over_behind_back)
+    t243 = _runtime.wrap(flip_wrist_over_behind_back - t226)
+    t244 = _runtime.wrap(t236 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t241 = no_link_elbow | free6
+    t245 = no_link_elbow | free6
     del free6, no_link_elbow
-    t242 = _runtime.status(invalid, unreachable, t241 | on_axis_5 | aligned_wrist)
+    t246 = _runtime.status(invalid, unreachable, t245 | on_axis_5 | aligned_wrist)
     del aligned_wrist, on_axis_5, unreachable
-    t243 = t241 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t247 = t245 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t244 = _runtime.status(invalid, unreachable_2, t243)
-    del t243, unreachable_2
-    t245 = t241 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t248 = _runtime.status(invalid, unreachable_2, t247)
+    del t247, unreachable_2
+    t249 = t245 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t246 = _runtime.status(invalid, unreachable_3, t245)
-    del t245, unreachable_3
-    t247 = t241 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t241
-    t248 = _runtime.status(invalid, unreachable_4, t247)
-    del invalid, t247, unreachable_4
+    t250 = _runtime.status(invalid, unreachable_3, t249)
+    del t249, unreachable_3
+    t251 = t245 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t245
+    t252 = _runtime.status(invalid, unreachable_4, t251)
+    del invalid, t251, unreachable_4
     return (
-        _runtime.wrap_cut(t80) + t97,
-        _runtime.wrap_cut(t99) + t97,
-        _runtime.wrap_cut(t102) + t97,
-        t104,
+        _runtime.wrap_cut(t80) + t98,
+        _runtime.wrap_cut(t100) + t98,
+        _runtime.wrap_cut(t103) + t98,
         t105,
         t106,
-        t108,
-        _runtime.wrap(t80 + flip_wrist) + t97,
-        _runtime.wrap_cut(-t99) + t97,
-        _runtime.wrap(t102 + flip_wrist) + t97,
-        t104,
+        t107,
+        t109,
+        _runtime.wrap(t80 + flip_wrist) + t98,
+        _runtime.wrap_cut(-t100) + t98,
+        _runtime.wrap(t103 + flip_wrist) + t98,
         t105,
         t106,
-        t108,
-        _runtime.wrap_cut(-t123) + t124,
-        _runtime.wrap_cut(-t128) + t124,
-        _runtime.wrap_cut(t132) + t124,
-        t133,
+        t107,
+        t109,
+        _runtime.wrap_cut(-t124) + t126,
+        _runtime.wrap_cut(-t130) + t126,
+        _runtime.wrap_cut(t134) + t126,
         t135,
         t137,
-        t138,
-        t139 + t124,
-        _runtime.wrap_cut(t128) + t124,
-        t140 + t124,
-        t133,
+        t139,
+        t140,
+        t141 + t126,
+        _runtime.wrap_cut(t130) + t126,
+        t142 + t126,
         t135,
         t137,
-        t138,
-        _runtime.wrap_cut(t188) + t190,
-        _runtime.wrap_cut(t193) + t190,
-        _runtime.wrap_cut(t199) + t190,
-        t201,
-        t203,
-        t205,
+        t139,
+        t140,
+        _runtime.wrap_cut(t190) + t193,
+        _runtime.wrap_cut(t196) + t193,
+        _runtime.wrap_cut(t202) + t193,
+        t204,
         t206,
-        t207 + t190,
-        _runtime.wrap_cut(-t193) + t190,
-        t208 + t190,
-        t201,
-        t203,
-        t205,
+        t208,
+        t209,
+        t210 + t193,
+        _runtime.wrap_cut(-t196) + t193,
+        t211 + t193,
+        t204,
         t206,
-        _runtime.wrap_cut(-t223) + t224,
-        _runtime.wrap_cut(-t228) + t224,
-        _runtime.wrap_cut(t232) + t224,
-        t233,
-        t235,
+        t208,
+        t209,
+        _runtime.wrap_cut(-t226) + t228,
+        _runtime.wrap_cut(-t232) + t228,
+        _runtime.wrap_cut(t236) + t228,
         t237,
-        t238,
-        t239 + t224,
-        _runtime.wrap_cut(t228) + t224,
-        t240 + t224,
-        t233,
-        t235,
+        t239,
+        t241,
+        t242,
+        t243 + t228,
+        _runtime.wrap_cut(t232) + t228,
+        t244 + t228,
         t237,
-        t238,
+        t239,
+        t241,
         t242,
-        t242,
-        t244,
-        t244,
         t246,
         t246,
         t248,
         t248,
+        t250,
+        t250,
+        t252,
+        t252,
     )
 
 
@@ -1851,339 +1859,318 @@ def _ik_common(
     t56 = _runtime.FEASIBILITY * (size * 0.5)
     t57 = (-t56 <= t11) & (-t56 <= t14) & (-t56 <= t15)
     del t11, t14, t15
-    t58 = t57 & (-t56 <= t28) & (-t56 <= t27)
-    t59 = np.sqrt(v_x * v_x)
-    t60 = np.sqrt(t9 + w_x * w_x)
-    del w_x
-    unreachable = np.logical_not(t58 & (np.abs(t59 - t60) <= t56))
-    t61 = _runtime.poison(invalid | unreachable)
+    t58 = np.abs(0.0) <= t56
+    unreachable = np.logical_not(t57 & (-t56 <= t28) & (-t56 <= t27) & t58)
+    t59 = _runtime.poison(invalid | unreachable)
     h_wrist = np.sqrt(t41 * t41 + t40 * t40)
-    t62 = 1.0 / h_wrist
-    t63 = t41 * t62
-    t64 = t40 * t62
-    del t62
+    t60 = 1.0 / h_wrist
+    t61 = t41 * t60
+    t62 = t40 * t60
+    del t60
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t65 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
-    t66 = np.arctan2(t41 * t63 + t40 * t64, t65 - t21 * (R1_31 * s6 - T33 * c6))
-    del t40, t41, t65
-    t67 = t63 * (t25 * R2_23 + t21 * R3_21) - t64 * (t25 * R2_13 + t21 * R3_11)
+    t63 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
+    t64 = np.arctan2(t41 * t61 + t40 * t62, t63 - t21 * (R1_31 * s6 - T33 * c6))
+    del t40, t41, t63
+    t65 = t61 * (t25 * R2_23 + t21 * R3_21) - t62 * (t25 * R2_13 + t21 * R3_11)
     del R2_13, R2_23, R3_11, R3_21
-    t68 = t63 * (R2_21 * t39 + R1_23 * c5) - t64 * (t39 * R2_11 + R1_13 * c5)
-    del R2_11, R2_21, c5, t39, t63, t64
-    t69 = np.arctan2(t67, t68)
-    del t67, t68
-    t70 = _runtime.wrap_cut(np.arctan2(t25, -t21))
-    t71 = t70 + t61
-    t72 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t61
+    t66 = t61 * (R2_21 * t39 + R1_23 * c5) - t62 * (t39 * R2_11 + R1_13 * c5)
+    del R2_11, R2_21, c5, t39, t61, t62
+    t67 = np.arctan2(t65, t66)
+    del t65, t66
+    t68 = _runtime.wrap_cut(np.arctan2(t25, -t21)) + t59
+    t69 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t59
     del dot_5
-    t73 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t61
+    t70 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t59
     del c6, s6
-    t74 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t71 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t75 = t74 + t61
-    t76 = t30 - t32
+    t72 = t71 + t59
+    t73 = t30 - t32
     del t30, t32
-    t77 = t34 + t35
+    t74 = t34 + t35
     del t34, t35
-    t78 = R1_21 * t76 - T23 * t77
-    t79 = u_x * t77 + s_z * t76
-    t80 = v_x * t79
-    del v_x
-    t81 = 1.0 / np.sqrt(t37 + t80 * t80)
+    t75 = R1_21 * t73 - T23 * t74
+    t76 = u_x * t74 + s_z * t73
+    t77 = v_x * t76
+    t78 = 1.0 / np.sqrt(t37 + t77 * t77)
     del t37
-    t82 = t80 * t81
-    t83 = R1_21 * t77 + T23 * t76
-    t84 = t36 * t81
-    del t81
-    R3_21_bent_behind_front = t82 * t83 - R1_23 * t84
-    t85 = t21 * t78 + t25 * R3_21_bent_behind_front
-    t86 = R1_11 * t76 - T13 * t77
-    t87 = R1_11 * t77 + T13 * t76
-    R3_11_bent_behind_front = t82 * t87 - R1_13 * t84
-    t88 = t21 * t86 + t25 * R3_11_bent_behind_front
-    t89 = np.arctan2(t85, t88)
-    t90 = np.sqrt(t9 + t79 * t79)
-    del t79
-    unreachable_2 = np.logical_not(t58 & (np.abs(t59 - t90) <= t56))
-    del t58
-    t91 = _runtime.poison(invalid | unreachable_2)
-    h_wrist_bent_behind_front = np.sqrt(t88 * t88 + t85 * t85)
-    t92 = 1.0 / h_wrist_bent_behind_front
-    c_wrist_bent_behind_front = t88 * t92
-    t93 = t85 * t92
-    del t92
-    t94 = -(t88 * c_wrist_bent_behind_front + t85 * t93)
-    del t85, t88
-    R3_31_bent_behind_front = t82 * (R1_31 * t77 + T33 * t76) - R1_33 * t84
-    R4_33_bent_behind_front = t21 * (R1_31 * t76 - T33 * t77) + t25 * R3_31_bent_behind_front
+    t79 = t77 * t78
+    t80 = R1_21 * t74 + T23 * t73
+    t81 = t36 * t78
+    del t78
+    R3_21_bent_behind_front = t79 * t80 - R1_23 * t81
+    t82 = t21 * t75 + t25 * R3_21_bent_behind_front
+    t83 = R1_11 * t73 - T13 * t74
+    t84 = R1_11 * t74 + T13 * t73
+    R3_11_bent_behind_front = t79 * t84 - R1_13 * t81
+    t85 = t21 * t83 + t25 * R3_11_bent_behind_front
+    t86 = np.arctan2(t82, t85)
+    h_wrist_bent_behind_front = np.sqrt(t85 * t85 + t82 * t82)
+    t87 = 1.0 / h_wrist_bent_behind_front
+    c_wrist_bent_behind_front = t85 * t87
+    t88 = t82 * t87
+    del t87
+    t89 = -(t85 * c_wrist_bent_behind_front + t82 * t88)
+    del t82, t85
+    R3_31_bent_behind_front = t79 * (R1_31 * t74 + T33 * t73) - R1_33 * t81
+    R4_33_bent_behind_front = t21 * (R1_31 * t73 - T33 * t74) + t25 * R3_31_bent_behind_front
     del R3_31_bent_behind_front
-    t95 = np.arctan2(t94, R4_33_bent_behind_front)
-    del R4_33_bent_behind_front, t94
-    t96 = c_wrist_bent_behind_front * (t25 * t78 - t21 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t78
-    t97 = t93 * (t25 * t86 - t21 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t21, t25, t86
-    t98 = c_wrist_bent_behind_front * (t83 * t84 + R1_23 * t82)
-    del c_wrist_bent_behind_front, t83
-    t99 = np.arctan2(t96 - t97, t98 - t93 * (t84 * t87 + R1_13 * t82))
-    del t82, t84, t87, t93, t96, t97, t98
-    t100 = t70 + t91
-    del t70
-    t101 = _runtime.wrap_cut(-np.arctan2(t36, -t80)) + t91
-    del t36, t80
-    t102 = _runtime.wrap_cut(-np.arctan2(t76, -t77)) + t91
-    del t76, t77
-    t103 = t74 + t91
-    t104 = t19 - t20
+    t90 = np.arctan2(t89, R4_33_bent_behind_front)
+    del R4_33_bent_behind_front, t89
+    t91 = c_wrist_bent_behind_front * (t25 * t75 - t21 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t75
+    t92 = t88 * (t25 * t83 - t21 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t21, t25, t83
+    t93 = c_wrist_bent_behind_front * (t80 * t81 + R1_23 * t79)
+    del c_wrist_bent_behind_front, t80
+    t94 = np.arctan2(t91 - t92, t93 - t88 * (t81 * t84 + R1_13 * t79))
+    del t79, t81, t84, t88, t91, t92, t93
+    t95 = _runtime.wrap_cut(-np.arctan2(t36, -t77)) + t59
+    del t36, t77
+    t96 = _runtime.wrap_cut(-np.arctan2(t73, -t74)) + t59
+    del t73, t74
+    t97 = t19 - t20
     del t19, t20
-    t105 = t23 + t24
+    t98 = t23 + t24
     del t23, t24
-    t106 = d5 - a4 * t105 - d3 * t104
-    t107 = reach - t106
-    above6_over_ahead_front = np.maximum(t107, 0.0)
-    t108 = reach + t106
-    del t106
-    below6_over_ahead_front = np.maximum(t108, 0.0)
-    t109 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = np.sqrt(t109)
-    del t109
+    t99 = d5 - a4 * t98 - d3 * t97
+    t100 = reach - t99
+    above6_over_ahead_front = np.maximum(t100, 0.0)
+    t101 = reach + t99
+    del t99
+    below6_over_ahead_front = np.maximum(t101, 0.0)
+    t102 = above6_over_ahead_front * below6_over_ahead_front
+    root6_over_ahead_front = np.sqrt(t102)
+    del t102
     width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
-    t110 = 1.0 / (reach * width6_over_ahead_front)
+    t103 = 1.0 / (reach * width6_over_ahead_front)
     del width6_over_ahead_front
-    t111 = t22 * root6_over_ahead_front * t110
+    t104 = t22 * root6_over_ahead_front * t103
     del t22
-    t112 = above6_over_ahead_front - below6_over_ahead_front
+    t105 = above6_over_ahead_front - below6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    t113 = t110 * (u_x * t112)
-    s6_over_ahead_front = t111 + t113
-    t114 = t110 * (t33 * root6_over_ahead_front)
+    t106 = t103 * (u_x * t105)
+    s6_over_ahead_front = t104 + t106
+    t107 = t103 * (t33 * root6_over_ahead_front)
     del root6_over_ahead_front, t33
-    t115 = t110 * (s_z * t112)
-    del t110, t112
-    c6_over_ahead_front = t114 - t115
+    t108 = t103 * (s_z * t105)
+    del t103, t105
+    c6_over_ahead_front = t107 - t108
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
-    v_x_over_ahead_front = a5 + a4 * t104 - d3 * t105
+    v_x_over_ahead_front = a5 + a4 * t97 - d3 * t98
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t116 = w_y * v_x_over_ahead_front
+    t109 = w_y * v_x_over_ahead_front
     del w_y
-    t117 = t116 * t116
-    t118 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t119 = 1.0 / np.sqrt(t117 + t118)
-    del t118
-    c5_over_ahead_front = dot_5_over_ahead_front * t119
+    t110 = t109 * t109
+    t111 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t112 = 1.0 / np.sqrt(t110 + t111)
+    del t111
+    c5_over_ahead_front = dot_5_over_ahead_front * t112
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    t120 = t116 * t119
-    del t119
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t120
-    t121 = t104 * R2_23_over_ahead_front - t105 * R3_21_over_ahead_front
+    t113 = t109 * t112
+    del t112
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t113
+    t114 = t97 * R2_23_over_ahead_front - t98 * R3_21_over_ahead_front
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t120
-    t122 = t104 * R2_13_over_ahead_front - t105 * R3_11_over_ahead_front
-    t123 = np.arctan2(t121, -t122)
-    t124 = t57 & (-t56 <= t108) & (-t56 <= t107)
-    del t57
-    t125 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    t126 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
-    del w_x_over_ahead_front
-    t127 = np.sqrt(t126)
-    del t126
-    unreachable_3 = np.logical_not(t124 & (np.abs(t125 - t127) <= t56))
-    t128 = _runtime.poison(invalid | unreachable_3)
-    h_wrist_over_ahead_front = np.sqrt(t122 * t122 + t121 * t121)
-    t129 = 1.0 / h_wrist_over_ahead_front
-    t130 = t122 * t129
-    t131 = t121 * t129
-    del t129
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t113
+    t115 = t97 * R2_13_over_ahead_front - t98 * R3_11_over_ahead_front
+    t116 = np.arctan2(t114, -t115)
+    unreachable_2 = np.logical_not(t57 & (-t56 <= t101) & (-t56 <= t100) & t58)
+    del t56, t57, t58
+    t117 = _runtime.poison(invalid | unreachable_2)
+    h_wrist_over_ahead_front = np.sqrt(t115 * t115 + t114 * t114)
+    t118 = 1.0 / h_wrist_over_ahead_front
+    t119 = t115 * t118
+    t120 = t114 * t118
+    del t118
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t120
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t113
     del R2_31_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
-    R4_33_over_ahead_front = t105 * R3_31_over_ahead_front - t104 * R2_33_over_ahead_front
+    R4_33_over_ahead_front = t98 * R3_31_over_ahead_front - t97 * R2_33_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t132 = np.arctan2(t122 * t130 + t121 * t131, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t121, t122
-    t133 = t105 * R2_23_over_ahead_front + t104 * R3_21_over_ahead_front
+    t121 = np.arctan2(t115 * t119 + t114 * t120, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t114, t115
+    t122 = t98 * R2_23_over_ahead_front + t97 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t134 = t105 * R2_13_over_ahead_front + t104 * R3_11_over_ahead_front
+    t123 = t98 * R2_13_over_ahead_front + t97 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    R3_23_over_ahead_front = R2_21_over_ahead_front * t120 + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = R2_21_over_ahead_front * t113 + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    R3_13_over_ahead_front = t120 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
-    del R2_11_over_ahead_front, c5_over_ahead_front, t120
-    t135 = t130 * R3_23_over_ahead_front - t131 * R3_13_over_ahead_front
+    R3_13_over_ahead_front = t113 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
+    del R2_11_over_ahead_front, c5_over_ahead_front, t113
+    t124 = t119 * R3_23_over_ahead_front - t120 * R3_13_over_ahead_front
     del R3_13_over_ahead_front, R3_23_over_ahead_front
-    t136 = np.arctan2(t130 * t133 - t131 * t134, t135)
-    del t130, t131, t133, t134, t135
-    t137 = _runtime.wrap_cut(np.arctan2(t105, -t104))
-    t138 = t137 + t128
-    t139 = _runtime.wrap_cut(-np.arctan2(t116, dot_5_over_ahead_front))
+    t125 = np.arctan2(t119 * t122 - t120 * t123, t124)
+    del t119, t120, t122, t123, t124
+    t126 = _runtime.wrap_cut(np.arctan2(t98, -t97)) + t117
+    t127 = _runtime.wrap_cut(-np.arctan2(t109, dot_5_over_ahead_front))
     del dot_5_over_ahead_front
-    t140 = t139 + t128
-    del t139
-    t141 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t128 = t127 + t117
+    del t127
+    t129 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t142 = _runtime.wrap_cut(t141) + t128
-    del t141
-    t143 = t74 + t128
-    t144 = _runtime.wrap(3.141592653589793 - t123) + t128
-    t145 = _runtime.wrap(3.141592653589793 + t136) + t128
-    t146 = t111 - t113
-    del t111, t113
-    t147 = t114 + t115
-    del t114, t115
-    t148 = R1_21 * t146 - T23 * t147
-    t149 = u_x * t147 + s_z * t146
+    t130 = _runtime.wrap_cut(t129) + t117
+    del t129
+    t131 = t71 + t117
+    del t71
+    t132 = _runtime.wrap(3.141592653589793 - t116) + t117
+    t133 = _runtime.wrap(3.141592653589793 + t125) + t117
+    t134 = t104 - t106
+    del t104, t106
+    t135 = t107 + t108
+    del t107, t108
+    t136 = R1_21 * t134 - T23 * t135
+    t137 = u_x * t135 + s_z * t134
     del s_z, u_x
-    t150 = v_x_over_ahead_front * t149
-    del v_x_over_ahead_front
-    t151 = 1.0 / np.sqrt(t117 + t150 * t150)
-    del t117
-    t152 = t150 * t151
-    t153 = R1_21 * t147 + T23 * t146
+    t138 = v_x_over_ahead_front * t137
+    t139 = 1.0 / np.sqrt(t110 + t138 * t138)
+    del t110
+    t140 = t138 * t139
+    t141 = R1_21 * t135 + T23 * t134
     del R1_21
-    t154 = t116 * t151
-    del t151
-    R3_21_over_behind_front = t152 * t153 - R1_23 * t154
-    t155 = t104 * t148 + t105 * R3_21_over_behind_front
-    t156 = R1_11 * t146 - T13 * t147
-    t157 = R1_11 * t147 + T13 * t146
+    t142 = t109 * t139
+    del t139
+    R3_21_over_behind_front = t140 * t141 - R1_23 * t142
+    t143 = t97 * t136 + t98 * R3_21_over_behind_front
+    t144 = R1_11 * t134 - T13 * t135
+    t145 = R1_11 * t135 + T13 * t134
     del R1_11
-    R3_11_over_behind_front = t152 * t157 - R1_13 * t154
-    t158 = t104 * t156 + t105 * R3_11_over_behind_front
-    t159 = np.arctan2(t155, t158)
-    t160 = np.sqrt(t9 + t149 * t149)
-    del t149, t9
-    unreachable_4 = np.logical_not(t124 & (np.abs(t125 - t160) <= t56))
-    del t124, t56
-    t161 = _runtime.poison(invalid | unreachable_4)
-    h_wrist_over_behind_front = np.sqrt(t158 * t158 + t155 * t155)
-    t162 = 1.0 / h_wrist_over_behind_front
-    c_wrist_over_behind_front = t158 * t162
-    t163 = t155 * t162
-    del t162
-    t164 = t158 * c_wrist_over_behind_front + t155 * t163
-    del t155, t158
-    R3_31_over_behind_front = t152 * (R1_31 * t147 + T33 * t146) - R1_33 * t154
+    R3_11_over_behind_front = t140 * t145 - R1_13 * t142
+    t146 = t97 * t144 + t98 * R3_11_over_behind_front
+    t147 = np.arctan2(t143, t146)
+    h_wrist_over_behind_front = np.sqrt(t146 * t146 + t143 * t143)
+    t148 = 1.0 / h_wrist_over_behind_front
+    c_wrist_over_behind_front = t146 * t148
+    t149 = t143 * t148
+    del t148
+    t150 = t146 * c_wrist_over_behind_front + t143 * t149
+    del t143, t146
+    R3_31_over_behind_front = t140 * (R1_31 * t135 + T33 * t134) - R1_33 * t142
     del R1_33
-    R4_33_over_behind_front = t104 * (R1_31 * t146 - T33 * t147) + t105 * R3_31_over_behind_front
+    R4_33_over_behind_front = t97 * (R1_31 * t134 - T33 * t135) + t98 * R3_31_over_behind_front
     del R1_31, R3_31_over_behind_front
-    t165 = np.arctan2(-t164, R4_33_over_behind_front)
-    del R4_33_over_behind_front, t164
-    t166 = c_wrist_over_behind_front * (t105 * t148 - t104 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t148
-    t167 = t163 * (t105 * t156 - t104 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t104, t105, t156
-    t168 = c_wrist_over_behind_front * (t153 * t154 + R1_23 * t152)
-    del R1_23, c_wrist_over_behind_front, t153
-    t169 = np.arctan2(t166 - t167, t168 - t163 * (t154 * t157 + R1_13 * t152))
-    del R1_13, t152, t154, t157, t163, t166, t167, t168
-    t170 = t137 + t161
-    del t137
-    t171 = _runtime.wrap_cut(-np.arctan2(t116, -t150)) + t161
-    del t116, t150
-    t172 = _runtime.wrap_cut(-np.arctan2(t146, -t147)) + t161
-    del t146, t147
-    t173 = t74 + t161
-    del t74
-    t174 = _runtime.wrap(3.141592653589793 + t159) + t161
-    t175 = _runtime.wrap(3.141592653589793 + t169) + t161
-    t176 = _runtime.status(invalid, unreachable, np.False_)
+    t151 = np.arctan2(-t150, R4_33_over_behind_front)
+    del R4_33_over_behind_front, t150
+    t152 = c_wrist_over_behind_front * (t98 * t136 - t97 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t136
+    t153 = t149 * (t98 * t144 - t97 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t144, t97, t98
+    t154 = c_wrist_over_behind_front * (t141 * t142 + R1_23 * t140)
+    del R1_23, c_wrist_over_behind_front, t141
+    t155 = np.arctan2(t152 - t153, t154 - t149 * (t142 * t145 + R1_13 * t140))
+    del R1_13, t140, t142, t145, t149, t152, t153, t154
+    t156 = _runtime.wrap_cut(-np.arctan2(t109, -t138)) + t117
+    del t109, t138
+    t157 = _runtime.wrap_cut(-np.arctan2(t134, -t135)) + t117
+    del t134, t135
+    t158 = _runtime.wrap(3.141592653589793 + t147) + t117
+    t159 = _runtime.wrap(3.141592653589793 + t155) + t117
+    t160 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t177 = _runtime.status(invalid, unreachable_2, np.False_)
-    del unreachable_2
-    t178 = _runtime.status(invalid, unreachable_3, np.False_)
-    del unreachable_3
-    t179 = _runtime.status(invalid, unreachable_4, np.False_)
-    del invalid, unreachable_4
-    t180 = _runtime.VANISHING * size
+    t161 = _runtime.status(invalid, unreachable_2, np.False_)
+    del invalid, unreachable_2
+    t162 = _runtime.VANISHING * size
     no_link_elbow = upper * fore <= _runtime.VANISHING * (t5 * t5)
     del fore, t5, upper
-    t181 = (lever_elbow - size * 0.00390625 <= t180) | no_link_elbow
+    t163 = (lever_elbow - size * 0.00390625 <= t162) | no_link_elbow
     del lever_elbow, no_link_elbow, size
-    t182 = reach * 0.00390625
-    t183 = reach * _runtime.VANISHING
-    t184 = t181 | (np.sqrt(np.abs(t27 * t28)) - t182 <= t183)
-    del t181, t27, t28
-    t185 = t184 | (reach <= t180) | (np.minimum(t59, t60) <= t180)
-    del reach, t184, t60
-    t186 = _runtime.VANISHING * 16.0
-    t187 = t185 | (h_wrist <= t186) | (np.minimum(t59, t90) <= t180)
-    del h_wrist, t185, t59, t90
-    t188 = t187 | (h_wrist_bent_behind_front <= t186) | (np.sqrt(np.abs(t107 * t108)) - t182 <= t183)
-    del h_wrist_bent_behind_front, t107, t108, t182, t183, t187
-    t189 = t188 | (np.minimum(t125, t127) <= t180) | (h_wrist_over_ahead_front <= t186)
-    del h_wrist_over_ahead_front, t127, t188
-    t190 = t189 | (np.minimum(t125, t160) <= t180) | (h_wrist_over_behind_front <= t186)
-    del h_wrist_over_behind_front, t125, t160, t180, t186, t189
+    t164 = reach * 0.00390625
+    t165 = reach * _runtime.VANISHING
+    t166 = t163 | (np.sqrt(np.abs(t27 * t28)) - t164 <= t165)
+    del t163, t27, t28
+    t167 = np.sqrt(v_x * v_x)
+    del v_x
+    on_axis_5 = np.minimum(t167, np.sqrt(t9 + w_x * w_x)) <= t162
+    del w_x
+    t168 = _runtime.VANISHING * 16.0
+    t169 = t166 | (reach <= t162) | on_axis_5 | (h_wrist <= t168)
+    del h_wrist, on_axis_5, reach, t166
+    on_axis_5_bent_behind_front = np.minimum(t167, np.sqrt(t9 + t76 * t76)) <= t162
+    del t167, t76
+    t170 = t169 | on_axis_5_bent_behind_front | (h_wrist_bent_behind_front <= t168)
+    del h_wrist_bent_behind_front, on_axis_5_bent_behind_front, t169
+    t171 = t170 | (np.sqrt(np.abs(t100 * t101)) - t164 <= t165)
+    del t100, t101, t164, t165, t170
+    t172 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    del v_x_over_ahead_front
+    t173 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
+    del w_x_over_ahead_front
+    t174 = t171 | (np.minimum(t172, np.sqrt(t173)) <= t162)
+    del t171, t173
+    on_axis_5_over_behind_front = np.minimum(t172, np.sqrt(t9 + t137 * t137)) <= t162
+    del t137, t162, t172, t9
+    t175 = t174 | (h_wrist_over_ahead_front <= t168) | on_axis_5_over_behind_front
+    del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t174
     return (
-        _runtime.wrap_cut(-t42) + t61,
-        _runtime.wrap_cut(t66) + t61,
-        _runtime.wrap_cut(t69) + t61,
-        t71,
+        _runtime.wrap_cut(-t42) + t59,
+        _runtime.wrap_cut(t64) + t59,
+        _runtime.wrap_cut(t67) + t59,
+        t68,
+        t69,
+        t70,
         t72,
-        t73,
-        t75,
-        _runtime.wrap(3.141592653589793 - t42) + t61,
-        _runtime.wrap_cut(-t66) + t61,
-        _runtime.wrap(3.141592653589793 + t69) + t61,
-        t71,
+        _runtime.wrap(3.141592653589793 - t42) + t59,
+        _runtime.wrap_cut(-t64) + t59,
+        _runtime.wrap(3.141592653589793 + t67) + t59,
+        t68,
+        t69,
+        t70,
         t72,
-        t73,
-        t75,
-        _runtime.wrap_cut(t89) + t91,
-        _runtime.wrap_cut(-t95) + t91,
-        _runtime.wrap_cut(t99) + t91,
-        t100,
-        t101,
-        t102,
-        t103,
-        _runtime.wrap(3.141592653589793 + t89) + t91,
-        _runtime.wrap_cut(t95) + t91,
-        _runtime.wrap(3.141592653589793 + t99) + t91,
-        t100,
-        t101,
-        t102,
-        t103,
-        _runtime.wrap_cut(-t123) + t128,
-        _runtime.wrap_cut(t132) + t128,
-        _runtime.wrap_cut(t136) + t128,
-        t138,
-        t140,
-        t142,
-        t143,
-        t144,
-        _runtime.wrap_cut(-t132) + t128,
-        t145,
-        t138,
-        t140,
-        t142,
-        t143,
-        _runtime.wrap_cut(t159) + t161,
-        _runtime.wrap_cut(-t165) + t161,
-        _runtime.wrap_cut(t169) + t161,
-        t170,
-        t171,
-        t172,
-        t173,
-        t174,
-        _runtime.wrap_cut(t165) + t161,
-        t175,
-        t170,
-        t171,
-        t172,
-        t173,
-        t176,
-        t176,
-        t177,
-        t177,
-        t178,
-        t178,
-        t179,
-        t179,
-        t190,
+        _runtime.wrap_cut(t86) + t59,
+        _runtime.wrap_cut(-t90) + t59,
+        _runtime.wrap_cut(t94) + t59,
+        t68,
+        t95,
+        t96,
+        t72,
+        _runtime.wrap(3.141592653589793 + t86) + t59,
+        _runtime.wrap_cut(t90) + t59,
+        _runtime.wrap(3.141592653589793 + t94) + t59,
+        t68,
+        t95,
+        t96,
+        t72,
+        _runtime.wrap_cut(-t116) + t117,
+        _runtime.wrap_cut(t121) + t117,
+        _runtime.wrap_cut(t125) + t117,
+        t126,
+        t128,
+        t130,
+        t131,
+        t132,
+        _runtime.wrap_cut(-t121) + t117,
+        t133,
+        t126,
+        t128,
+        t130,
+        t131,
+        _runtime.wrap_cut(t147) + t117,
+        _runtime.wrap_cut(-t151) + t117,
+        _runtime.wrap_cut(t155) + t117,
+        t126,
+        t156,
+        t157,
+        t131,
+        t158,
+        _runtime.wrap_cut(t151) + t117,
+        t159,
+        t126,
+        t156,
+        t157,
+        t131,
+        t160,
+        t160,
+        t160,
+        t160,
+        t161,
+        t161,
+        t161,
+        t161,
+        t175 | (h_wrist_over_behind_front <= t168),
     )
 
 

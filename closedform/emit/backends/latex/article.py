@@ -94,7 +94,7 @@ class Page(Sheet):
             read = plain(subject.function, own, self.free_angles, results)
             subject = replace(subject, function=read.function)
             self.algorithms[function.name] = Algorithm(
-                self, subject, means, earlier, letters, read.names
+                self, subject, means=means, model=earlier, letters=letters, replaced=read.names
             )
         algorithm = self.algorithms[function.name]
         self.printer.rename(algorithm.names)

@@ -9,6 +9,9 @@ import sympy as sp
 from closedform.model.derivation import Derivation
 from closedform.model.functions import reject_text
 
+LONGEST = 60
+"""A value with more characters is shortened in messages."""
+
 
 class RowError(ValueError):
     """A row of a table of joints that cannot be read."""
@@ -29,20 +32,29 @@ def constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
     return matrix
 
 
+def _short(value: sp.Expr) -> str:
+    """A value in a message; of a long one, six digits or the beginning."""
+    text = str(value)
+    if len(text) <= LONGEST:
+        return text
+    return f"{float(value):.6g}" if value.is_number else f"{text[:LONGEST]}..."
+
+
 def check_unit(w: sp.Matrix, where: str) -> None:
     length = sp.simplify(sp.sqrt(w.dot(w)))
     if length == 1:
         return
-    text = ", ".join(map(str, w))
+    text = ", ".join(map(_short, w))
     if length == 0:
         raise RowError(f"{where}: the direction ({text}) is zero; an axis needs a unit vector")
     if w.free_symbols:
         remedy = "write numbers, or the cosine and the sine of an angle"
     elif all(e.is_Integer for e in w):
-        remedy = f"write ({', '.join(map(str, w / length))})"
+        unit = ", ".join(map(str, w / length))
+        remedy = f"write ({unit})" if len(unit) <= LONGEST else "divide it by its length"
     else:
         remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
-    size = str(length) if w.free_symbols else f"{float(length):.6g}"
+    size = _short(length) if w.free_symbols else f"{float(length):.6g}"
     raise RowError(f"{where}: the direction ({text}) has the length {size}, not 1; {remedy}")
 
 
@@ -55,8 +67,9 @@ def rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
     R = T[:3, :3]
     if sp.simplify(R.T * R) != sp.eye(3):
         raise RowError(
-            f"{where}: {R.tolist()} is not a rotation: {_not_orthonormal(R)}; the rows must be "
-            f"unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+            f"{where}: [{', '.join(map(_short, R))}] is not a rotation: {_not_orthonormal(R)}; the "
+            f"rows must be unit vectors at right angles to each other, written exactly (sqrt(3)/2, "
+            f"not 0.866)"
         )
     if sp.simplify(R.det()) != 1:
         raise RowError(

@@ -106,7 +106,7 @@ def law_of_cosines(
         letters=triangle.letters,
     )
     loci = [{gone: sp.S.Zero, r: other} for gone, other in ((l1, l2), (l2, l1)) if gone.is_Symbol]
-    returned = "0" if toward is ANYWHERE else "one within reach"
+    returned = "0" if free.s == 0 else "one within reach"
     cases = degenerate(
         flag, loci, x, f"a link without length: {x} is free, {returned} is returned."
     )

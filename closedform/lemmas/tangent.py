@@ -276,17 +276,38 @@ class LinkAtHeight(Goal):
         return turn.with_square(p.let(f"held{suffix}", square, nonnegative=True), tangent)
 
 
+class Nearest(Goal):
+    """A goal that changes the pair of a turn, by no more than rounding, where it is tangent."""
+
+    def reached(self, turn: Tangency) -> Reached:
+        chain, at, suffix = turn.chain, turn.at, turn.suffix
+        found = turn.pair(turn.root, turn.width)
+        tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
+        near = self.nearest(
+            Turn(
+                chain=chain,
+                pair=found,
+                lever=turn.root,
+                beside=at.c,
+                allowance=turn.allowance,
+                name=suffix,
+            ).renamed(found, f"{suffix}_1")
+        )
+        s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
+        return Reached(Pair(s, c), None, tangent)
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair that reaches the goal and is nearest to that of the turn."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class Between(Goal):
+class Between(Nearest):
     """A point of a plane, linear in the pair of a turn, between two distances from the origin."""
 
     q: Callable[[Pair], sp.Matrix]
     low: sp.Expr
     high: sp.Expr
-
-    def reached(self, turn: Tangency) -> Reached:
-        """The pair of the turn, changed by no more than rounding where it is tangent."""
-        return _changed_where_tangent(self, turn)
 
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q between the distances."""
@@ -337,38 +358,16 @@ class TwoTurns(Goal):
 
 
 @dataclass(frozen=True)
-class Links(Goal):
+class Links(Nearest):
     """Two links that have to reach the point q of their plane, linear in the pair of a turn."""
 
     q: Callable[[Pair], sp.Matrix]
     l1: sp.Expr
     l2: sp.Expr
 
-    def reached(self, turn: Tangency) -> Reached:
-        """The pair of the turn, changed by no more than rounding where it is tangent."""
-        return _changed_where_tangent(self, turn)
-
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q within reach."""
         return Between(self.q, sp.Abs(self.l1 - self.l2), self.l1 + self.l2).nearest(turn)
-
-
-def _changed_where_tangent(goal: Between | Links, turn: Tangency) -> Reached:
-    chain, at, suffix = turn.chain, turn.at, turn.suffix
-    found = turn.pair(turn.root, turn.width)
-    tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
-    near = goal.nearest(
-        Turn(
-            chain=chain,
-            pair=found,
-            lever=turn.root,
-            beside=at.c,
-            allowance=turn.allowance,
-            name=suffix,
-        ).renamed(found, f"{suffix}_1")
-    )
-    s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
-    return Reached(Pair(s, c), None)
 
 
 @dataclass(frozen=True)

@@ -82,16 +82,14 @@ class Page(Sheet):
         if function.name not in self.algorithms:
             model, subject = self.model(function), Subject.of(self.derivation, function)
             means = {n: m for s in self.derivation.solved for n, m in s.lemma.means.items()}
-            own = [s.lemma for s in subject.solved]
             if inverse := subject.inverse:
                 means |= inverse.rank.meaning
-                for link in inverse.links:
-                    means |= link.lemma.means if link.lemma else {}
-                    own += [link.lemma] if link.lemma else []
-            letters = {s: letter for lemma in own for s, letter in lemma.letters.items()}
+            lemmas = subject.lemmas
+            means |= {n: m for lemma in lemmas for n, m in lemma.means.items()}
+            letters = {s: letter for lemma in lemmas for s, letter in lemma.letters.items()}
             earlier = self.algorithm(model) if model else None
             results = inverse.unknowns if inverse else ()
-            read = plain(subject.function, own, self.free_angles, results)
+            read = plain(subject.function, lemmas, self.free_angles, results)
             subject = replace(subject, function=read.function)
             self.algorithms[function.name] = Algorithm(
                 self, subject, means=means, model=earlier, letters=letters, replaced=read.names

@@ -50,10 +50,8 @@ class Cases:
         """What the algorithms before this one say of a flag that they have."""
         if self.algorithm.model is None or flag not in self.algorithm.model.flags.values():
             return None
-        return [
-            *(Cases(self.algorithm.model)._told(flag) or ()),
-            *Cases(self.algorithm.model)._effect(flag),
-        ]
+        model = Cases(self.algorithm.model)
+        return [*(model._told(flag) or ()), *model._effect(flag)]
 
     @property
     def has_cases_of_model(self) -> bool:

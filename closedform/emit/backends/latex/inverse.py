@@ -27,10 +27,6 @@ from closedform.model.functions import (
 from closedform.model.inverse import Combination, Degenerate, Inverse
 from closedform.proof.inverse import InverseResult
 
-FEW = 4
-"""More parts of the target than that are not listed."""
-NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
-
 
 class Told:
     """The text of one function that has a status for each branch."""

@@ -81,7 +81,7 @@ def plain(
 def _own_names(function: Function, results: Sequence[sp.Symbol]) -> dict[sp.Basic, sp.Symbol]:
     """The symbols of outputs that have another name in the program."""
     outputs = [e for a in function.outputs for e in a.entries]
-    made = {s.symbol for s in function.body if isinstance(s, Let | Bound)}
+    made = _made(function.body)
     if len(outputs) != len(results):
         return {}
     own = {e: r for e, r in zip(outputs, results, strict=True) if e in made and r not in made}
@@ -213,6 +213,11 @@ def _usual(body: Sequence[Statement]) -> dict[sp.Basic, Any]:
     return {s.symbol: sp.false for s in body if isinstance(s, Vanishes)}
 
 
+def _made(body: Sequence[Statement]) -> set[sp.Symbol]:
+    """The names of values."""
+    return {s.symbol for s in body if isinstance(s, Let | Bound)}
+
+
 def is_rounding(flag: Vanishes) -> bool:
     """Whether the flag compares with a tiny multiple, which no exact quantity does."""
     tiny = any(q.q >= 2**8 for q in flag.value.atoms(sp.Rational))
@@ -260,7 +265,7 @@ def _exact(body: Sequence[Statement]) -> tuple[list[Statement], dict[sp.Basic, s
 def _known_directly(body: Sequence[Statement], lemmas: Sequence[Lemma]) -> list[Statement]:
     """The statements with the values that lemmas prove of their names."""
     known = {name: e for lemma in lemmas for name, e in lemma.premises.items()}
-    names = {s.symbol for s in body if isinstance(s, Let | Bound)}
+    names = _made(body)
     before: set[sp.Basic] = set()
     done: list[Statement] = []
     for s in body:
@@ -281,7 +286,7 @@ def _solutions(
 
 def _angles(body: Sequence[Statement], lemmas: Sequence[Lemma]) -> dict[sp.Symbol, sp.Expr]:
     """The angles that lemmas give otherwise than by names for their sine and cosine."""
-    made = {s.symbol for s in body if isinstance(s, Let | Bound)}
+    made = _made(body)
     found: dict[sp.Symbol, sp.Expr] = {}
     for lemma in lemmas:
         for angle, value in lemma.solution.items():
@@ -296,7 +301,7 @@ def _pairs(
     body: Sequence[Statement], lemmas: Sequence[Lemma], angles: Mapping[sp.Symbol, sp.Expr]
 ) -> dict[sp.Symbol, sp.Expr]:
     """The names of the sines and cosines of these angles, and of sums of them."""
-    made = {s.symbol for s in body if isinstance(s, Let | Bound)}
+    made = _made(body)
     return {
         name: meaning
         for lemma in lemmas
@@ -306,4 +311,4 @@ def _pairs(
     }
 
 
-__all__ = ["Plain", "plain"]
+__all__ = ["Plain", "is_rounding", "plain"]

@@ -21,6 +21,7 @@ from closedform.model.functions import (
     Vanishes,
 )
 from closedform.model.inverse import Inverse
+from closedform.model.lemma import Lemma
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,12 @@ class Subject:
         if derivation.alike is None:
             return whole
         return _Legs(derivation.alike, function).subject(whole) or whole
+
+    @property
+    def lemmas(self) -> list[Lemma]:
+        """The lemmas of the function, and those of the links of its inverse."""
+        links = self.inverse.links if self.inverse else ()
+        return [s.lemma for s in self.solved] + [k.lemma for k in links if k.lemma]
 
 
 class _Legs:

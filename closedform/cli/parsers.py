@@ -56,7 +56,7 @@ def derive_options(parser: argparse.ArgumentParser) -> None:
 
 def check_options(parser: argparse.ArgumentParser) -> None:
     jobs_option(parser)
-    parser.add_argument("--fresh", action="store_true", help="ignore stored proofs")
+    parser.add_argument("--fresh", action="store_true", help="ignore stored proofs and pages")
 
 
 def verify_options(parser: argparse.ArgumentParser) -> None:

@@ -177,7 +177,7 @@ def array(name: str, value: Any) -> Array:
         shape, entries = (), [value]
     else:
         nested = sp.ImmutableDenseNDimArray(value)
-        shape, entries = tuple(nested.shape), list(sp.flatten(nested.tolist()))
+        shape, entries = tuple(map(int, nested.shape)), list(sp.flatten(nested.tolist()))
     exact = tuple(sp.sympify(e, strict=True) for e in entries)
     for entry in exact:
         reject_floats(entry, name)

@@ -27,10 +27,12 @@ from typing import TYPE_CHECKING, Any
 from closedform.emit.backends import names as backend_names
 from closedform.pipeline.disk import replace
 from closedform.pipeline.imports import package, sources_of
+from closedform.pipeline.kept import KeptPages, digest_of, keeps, printing_digest
 from closedform.pipeline.workers import each
 
 if TYPE_CHECKING:
     from closedform.algebra.certificates import Record
+    from closedform.emit.pages import Printed as Pages
     from closedform.emit.pages import Share
     from closedform.model.derivation import Derivation
     from closedform.proof.prove import Proof
@@ -209,7 +211,7 @@ def load(source: Source) -> Derivation:
 def _module(source: Source) -> Any:
     if source.module:
         return importlib.import_module(source.module)
-    digested = _digest(sources_of([source.path]))
+    digested = digest_of(sources_of([source.path]))
     if (known := _modules.get(source.path)) and known[0] == digested:
         return known[1]
     folder = str(source.path.parent)
@@ -257,9 +259,9 @@ def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
 
 
 class Store:
-    """Proofs on disk, each with a digest of everything that it depends on, and certificates.
+    """Proofs on disk, each with a digest of everything that it depends on.
 
-    The certificates are in a folder next to that of the proofs.
+    Certificates and printed pages are in folders next to that of the proofs.
     """
 
     def __init__(self, folder: Path | None):
@@ -305,6 +307,24 @@ class Store:
         """The file with the certificates of a proof."""
         return self._path(source).parent.with_name("certificates") / f"{source.name}.json"
 
+    def pages(self, source: Source, digested: str, backends: Sequence[str]) -> Pages | None:
+        """What was printed of a script, if nothing has changed since; not of foreign back ends."""
+        if self._pages and keeps(backends):
+            return self._pages.get(source.name, digested, backends)
+        return None
+
+    def put_pages(
+        self, source: Source, digested: str, backends: Sequence[str], printed: Pages
+    ) -> None:
+        """Keep what was printed.  If the disk is read-only, it is printed again the next time."""
+        if self._pages and keeps(backends):
+            with contextlib.suppress(OSError):
+                self._pages.put(source.name, digested, backends, printed)
+
+    @property
+    def _pages(self) -> KeptPages | None:
+        return KeptPages(self.folder.with_name("pages")) if self.folder else None
+
     def _path(self, source: Source) -> Path:
         if self.folder is None:
             raise FileNotFoundError
@@ -320,18 +340,7 @@ def default_store() -> Store:
 def digest(source: Source) -> str:
     """A digest of the script, of everything that it and the proof import, and of the algebra."""
     algebra = [f"{package} {version(package)}\n" for package in ("sympy", "python-flint")]
-    return _digest(sources_of([source.path, package() / "proof" / "prove.py"]), algebra)
-
-
-def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
-    total = hashlib.sha256()
-    for path in paths:
-        content = path.read_bytes()
-        total.update(f"{path.name} {len(content)}\n".encode())
-        total.update(content)
-    for line in lines:
-        total.update(line.encode())
-    return total.hexdigest()
+    return digest_of(sources_of([source.path, package() / "proof" / "prove.py"]), algebra)
 
 
 # Printing
@@ -406,40 +415,45 @@ def _printed(
     given_up: str,
 ) -> Printed:
     """Print one robot; without its inverse if that was ``given_up`` for a reason."""
-    from closedform.emit.pages import pages
-
-    report(source.name, "deriving")
     start = time.perf_counter()
-    digested = digest(source)
-    derivation = load(source)
-    if given_up:
-        derivation.give_up_inverses(given_up)
-        digested = f"{digested} {given_up}"
-    kept = None if fresh else store.get(source, digested)
-    if kept:
-        proof, seconds = kept
-    else:
-        report(source.name, "proving")
-        proof, record = _proved(derivation, report)
-        seconds = time.perf_counter() - start
-        store.put(source, digested, proof, record, seconds)
-    report(source.name, "generating")
-    _same_choices()
-    try:
-        printed = pages(derivation, proof, backends)
-    except (ValueError, TypeError, KeyError, NotImplementedError) as error:
-        raise DerivationError(source.name, f"not printed: {error}") from error
-    stored = kept is not None
-    files, share = printed.files, printed.share
+    digested = f"{digest(source)} {given_up}".rstrip()
+    printing = printing_digest(digested)
+    known = None if fresh else store.get(source, digested)
+    stored = known is not None
+    pages = store.pages(source, printing, backends) if known else None
+    if known is None or pages is None:
+        report(source.name, "deriving")
+        derivation = load(source)
+        if given_up:
+            derivation.give_up_inverses(given_up)
+        if known is None:
+            report(source.name, "proving")
+            proof, record = _proved(derivation, report)
+            known = proof, time.perf_counter() - start
+            store.put(source, digested, proof, record, known[1])
+        report(source.name, "generating")
+        pages = _pages(derivation, known[0], backends)
+        store.put_pages(source, printing, backends, pages)
+    proof, seconds = known
     return Printed(
         name=source.name,
         proof=proof,
         seconds=seconds,
         stored=stored,
-        files=files,
-        share=share,
+        files=pages.files,
+        share=pages.share,
         given_up=bool(given_up),
     )
+
+
+def _pages(derivation: Derivation, proof: Proof, backends: Sequence[str]) -> Pages:
+    from closedform.emit.pages import pages
+
+    _same_choices()
+    try:
+        return pages(derivation, proof, backends)
+    except (ValueError, TypeError, KeyError, NotImplementedError) as error:
+        raise DerivationError(derivation.name, f"not printed: {error}") from error
 
 
 def run(

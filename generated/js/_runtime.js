@@ -1,13 +1,13 @@
 /**
- * What the generated JavaScript modules share: statuses, tolerances and the evaluation of kernels.
+ * The code that all generated JavaScript modules share: statuses and the evaluation of kernels.
  *
- * A kernel reads an array of numbers, those of the inputs and then the parameters, and writes an
- * array of numbers, those of all results. No call sees what another has left.
+ * A kernel reads one array with the numbers of all inputs and then of the parameters, and writes the
+ * numbers of all results to another. No call depends on an earlier one.
  *
  * @module
  */
 
-/** What an inverse says of each branch. */
+/** The status of one branch of an inverse. */
 export const Status = Object.freeze({ OK: 0, UNREACHABLE: 1, SINGULAR: 2, INVALID: 3 });
 
 export const FEASIBILITY = 1e-12;
@@ -16,19 +16,20 @@ export const DETERMINED = 0.0009765625;
 export const ROTATION = 1e-06;
 
 /**
- * An argument or a result: its name and shape, how many branches it has (0 if it has no such axis)
- * and what its numbers are.
+ * An argument or a result: its name and shape, the number of branches (0 if it has no axis of
+ * branches) and the kind of its numbers.
  *
  * @typedef {object} Spec
  * @property {string} name
- * @property {readonly number[]} shape without the axis of the branches
+ * @property {readonly number[]} shape without the axis of branches
  * @property {number} branches
  * @property {"real" | "status" | "bool"} kind
  */
 
 /**
- * Which numbers are lengths, which results go with which power of a length, and between which sizes
- * of a mechanism, its largest length, these powers stay in the range of a double.
+ * How numbers scale with the size of a mechanism, its largest length. `lengths` are the indices of
+ * the arguments that are lengths. `degrees` are pairs: the index of a result and the power of the
+ * size with which it scales. The powers of sizes from `least` to `most` stay in the range of a double.
  *
  * @typedef {object} Size
  * @property {readonly number[]} lengths
@@ -40,8 +41,8 @@ export const ROTATION = 1e-06;
 /** @typedef {(v: readonly number[], o: Float64Array) => void} Compute */
 
 /**
- * A function of a mechanism. `common`, if there is one, computes the same where nothing vanishes,
- * and then whether something does.
+ * A function of a mechanism. `common`, if there is one, computes the same results, valid unless
+ * something vanishes, and then a number that says whether something does.
  *
  * @typedef {object} Description
  * @property {string} name
@@ -49,20 +50,21 @@ export const ROTATION = 1e-06;
  * @property {Compute | null} common
  * @property {readonly Spec[]} inputs
  * @property {readonly Spec[]} outputs
- * @property {readonly string[]} used the parameters behind the inputs
+ * @property {readonly string[]} used the parameters that follow the inputs
  * @property {Readonly<Record<string, number>>} defaults of all parameters
  * @property {Size | null} size
  */
 
 /**
- * The same, ready to be called: how many numbers each argument and result has, how many all the
- * arguments, what is read where the parameters are the defaults, and where results are left.
+ * A function that is ready to be called, with the number of entries of each argument and result and
+ * of all arguments together (`given`), the array to read if all parameters are defaults (`blank`), and
+ * the array to which results are written (`room`).
  *
  * @typedef {Description & { inputSizes: number[], outputSizes: number[], given: number, blank: number[],
  *     room: Float64Array }} Kernel
  */
 
-/** @typedef {Readonly<Record<string, number | undefined>>} Given parameters of which some are missing */
+/** @typedef {Readonly<Record<string, number | undefined>>} Given parameters; some may be missing */
 
 /**
  * Make a function of a mechanism ready to be called.
@@ -80,12 +82,13 @@ export function kernel(description) {
     return { ...description, inputSizes, outputSizes, given, blank, room };
 }
 
-/** The sine and the cosine that `sincos` has found last. */
+/** The sine and the cosine of the last call of `sincos`. */
 export const found = new Float64Array(2);
 
 /**
- * Sine and cosine, left in `found`, by the operations of `cf_sincos_rounded` in `closedform.h`, in
- * their order: the same to the last bit on every machine, and so is a status that rests on them.
+ * Sine and cosine, written to `found`, by the same operations in the same order as
+ * `cf_sincos_rounded` in `closedform.h`. The results agree to the last bit on every machine, and so
+ * does a status that depends on them.
  *
  * @param {number} angle
  */
@@ -96,9 +99,9 @@ export function sincos(angle) {
         found[1] = Math.cos(angle);
         return;
     }
-    // adding 2^52 rounds to an integer
+    // Adding 2^52 rounds to an integer.
     const n = (size * 0.6366197723675814 + 4503599627370496.0) - 4503599627370496.0;
-    // pi/2 in three parts; the products with the first two are exact
+    // pi/2 is split into three parts; the products with the first two are exact.
     const near = size - n * 1.5707963267923333;
     const part = n * 2.5633441515839558e-12;
     const r = near - part;
@@ -122,7 +125,7 @@ export function sincos(angle) {
 }
 
 /**
- * The nearest integer of either sign; of two that are equally near the even one.
+ * The nearest integer, of either sign; the even one of two that are equally near.
  *
  * @param {number} x
  */
@@ -131,7 +134,7 @@ function nearest(x) {
 }
 
 /**
- * An angle of any size in [-pi, pi], give or take rounding; no less accurate if it is large.
+ * The angle moved to [-pi, pi], up to rounding; a large angle loses no accuracy.
  *
  * @param {number} angle
  */
@@ -143,7 +146,7 @@ export function principal(angle) {
 }
 
 /**
- * The sum of a few angles in (-pi, pi]; one that is there already stays as it is.
+ * The sum of a few angles moved to (-pi, pi]; a sum that is already there does not change.
  *
  * @param {number} angle
  */
@@ -169,7 +172,7 @@ export function single(kernel, args, parameters) {
         place += kernel.inputSizes[i];
     }
     if (parameters !== undefined) readParameters(kernel, parameters, v);
-    // no code of the user runs from here until the results are copied
+    // From here until the results are copied, no code of the caller runs.
     const values = evaluate(kernel, v);
     if (kernel.outputs.length === 1) return shaped(kernel.outputs[0], kernel.outputSizes[0], values, 0);
     /** @type {Record<string, unknown>} */
@@ -184,7 +187,7 @@ export function single(kernel, args, parameters) {
 }
 
 /**
- * Evaluate a kernel for n postures, each array a sequence of planes of n numbers.
+ * Evaluate a kernel for n postures; each array is a sequence of planes of n numbers.
  *
  * @param {Kernel} kernel
  * @param {number} n
@@ -221,7 +224,7 @@ export function batch(kernel, n, args, out, parameters) {
 }
 
 /**
- * How many numbers an argument or a result has.
+ * The number of entries of an argument or a result.
  *
  * @param {Spec} spec
  */
@@ -340,7 +343,7 @@ function planes(kernel, spec, n, given) {
 }
 
 /**
- * Results must not lie over each other or over what is still to be read.
+ * Refuse results that share memory with each other or with an argument.
  *
  * @param {Kernel} kernel
  * @param {readonly (Float64Array | Uint8Array)[]} inputs
@@ -359,7 +362,7 @@ function checkOverlap(kernel, inputs, outputs) {
 }
 
 /**
- * A result as a user sees it: one array a branch, if there are branches.
+ * A result as a user sees it: an array for each branch, if there are branches.
  *
  * @param {Spec} spec
  * @param {number} size
@@ -389,7 +392,7 @@ function entry(spec, size, values, start) {
 }
 
 /**
- * The values of a kernel, of mechanisms of any size.
+ * The results of a kernel, for a mechanism of any size.
  *
  * @param {Kernel} kernel
  * @param {number[]} v
@@ -402,7 +405,7 @@ function evaluate(kernel, v) {
     if ((size.least <= largest && largest <= size.most) || largest === 0 || !Number.isFinite(largest)) {
         return evaluateInRange(kernel, v);
     }
-    // a multiple of 4, so that roots of powers of lengths are multiplied by powers of two as well
+    // A multiple of 4, so that roots of powers of lengths are also multiplied by powers of two.
     const exponent = 4 * Math.trunc(exponentOf(largest) / 4);
     const scaled = v.slice();
     for (const k of size.lengths) scaled[k] = timesPower(v[k], -exponent);
@@ -412,7 +415,7 @@ function evaluate(kernel, v) {
 }
 
 /**
- * Where something vanishes, the values are computed anew.
+ * The results of a kernel; they are computed again if something vanishes.
  *
  * @param {Kernel} kernel
  * @param {number[]} v
@@ -450,7 +453,7 @@ function exponentOf(x) {
  */
 function timesPower(x, e) {
     for (; e > 1023; e -= 1023) x *= 8.98846567431158e+307;
-    // 2^-1022 times 2^53: what is left is not denormal before the last product
+    // 2^-1022 times 2^53: the product before the last one is not denormal.
     for (; e < -1022; e += 969) x *= 2.004168360008973e-292;
     bits.setUint32(4, 0);
     bits.setUint32(0, (e + 1023) << 20);

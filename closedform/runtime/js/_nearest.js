@@ -1,5 +1,5 @@
 /**
- * Of all branches and turns of an inverse, the posture that is nearest to a seed: for every mechanism.
+ * For every mechanism: the posture nearest to a seed, of all branches of the inverse and all turns.
  *
  * @module
  */
@@ -34,7 +34,7 @@ const ANGLES = ["yaw", "pitch", "roll", "psi", "phi", "theta"];
 
 /**
  * @typedef {object} Options
- * @property {readonly [ArrayLike<number>, ArrayLike<number>]} [limits] the lower and the upper ones
+ * @property {readonly [ArrayLike<number>, ArrayLike<number>]} [limits] the lower and the upper limits
  * @property {ArrayLike<number>} [weights] of the squares of the joints in the distance, 1 by default
  * @property {number} [given] what `robot.ik` takes beside the target, by default its value at the seed
  */
@@ -70,7 +70,7 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
     const bounds = { lower, upper, weight };
     const statuses = solutions.status.map((/** @type {number} */ status) => (finite ? status : INVALID));
     statuses.forEach((/** @type {number} */ status, /** @type {number} */ b) => {
-        // rounding may hide that the target is singular
+        // Rounding may hide that the target is singular.
         if (status === OK && nearlySingular(task, every[b])) every[b] = moveTo(task, wanted, every[b], true).q;
     });
     const found = best(task, every, statuses, q0, bounds);
@@ -118,7 +118,7 @@ function givenAt(robot, q, parameters) {
 }
 
 /**
- * Turns the joints of all branches to where they are nearest to the seed, and takes the nearest.
+ * Turn the joints of all branches to where they are nearest to the seed; return the nearest branch.
  *
  * @param {Task} task
  * @param {number[][]} every
@@ -207,13 +207,13 @@ function turnWithin(revolute, q, seed, lower, upper) {
     return turns === 0 ? q : q + TURN * turns;
 }
 
-/** A target, how far postures are from it, and the Jacobian of that, without units. */
+/** A target, the error of a posture and the Jacobian of the error, without units. */
 class Task {
     /**
      * @param {any} robot
      * @param {number[]} x
      * @param {Readonly<Record<string, number | undefined>>} parameters
-     * @param {number | undefined} given counts too, if it is not undefined
+     * @param {number | undefined} given the number beside the target, if there is one
      */
     constructor(robot, x, parameters, given) {
         this.robot = robot;
@@ -230,8 +230,8 @@ class Task {
     }
 
     /**
-     * The same, but what is given counts only if a posture of the inverse has it, and postures to both
-     * sides of that one: where it is undefined it may have any value.
+     * The same task, but the number beside the target counts only if a posture of the inverse has it,
+     * and postures to both sides of that one: where it is undefined it may have any value.
      *
      * @param {readonly number[]} q
      */
@@ -245,7 +245,7 @@ class Task {
     }
 
     /**
-     * How far what is given is from its value at a posture; empty if nothing is.
+     * The error of the number beside the target at a posture; empty if there is no such number.
      *
      * @param {readonly number[]} q
      */
@@ -256,7 +256,7 @@ class Task {
     }
 
     /**
-     * The derivatives of what is given, by the joints.
+     * The derivatives of the number beside the target with respect to the joints.
      *
      * @param {readonly number[]} q
      */
@@ -314,7 +314,7 @@ class Task {
     }
 
     /**
-     * Rows of the Jacobian of the error, or undefined where it is not finite.
+     * The rows of the Jacobian of the error, or undefined if it is not finite.
      *
      * @param {readonly number[]} q
      * @returns {number[][] | undefined}
@@ -465,7 +465,7 @@ function release(task, seed, every, statuses) {
 }
 
 /**
- * Also says whether another side of the curve may be nearer.
+ * Move one branch as above. Also returns whether another side of the curve may be nearer.
  *
  * @param {Task} whole
  * @param {readonly number[]} seed
@@ -529,7 +529,7 @@ function nearSeed(task, seed) {
 }
 
 /**
- * How far joints are apart, whatever their turn.
+ * The distance between two postures; whole turns do not count.
  *
  * @param {Task} task
  * @param {readonly number[]} a

@@ -98,7 +98,7 @@ def _shape(shape: Sequence[int], branches: int = 0) -> str:
     each = f"{branches} branch{'es' if branches > 1 else ''}" if branches else ""
     if not shape:
         return f"One number for each of {each}. " if branches > 1 else ""
-    n = int(prod(shape))
+    n = prod(shape)
     size = f"{n} number{'s' if n > 1 else ''}"
     if len(shape) > 1:
         size += f" ({' x '.join(map(str, shape))} in row order)"

@@ -21,6 +21,7 @@ import sympy as sp
 from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation
 from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.proof.prove import prove
 from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
@@ -111,8 +112,8 @@ def row(robot: Robot, script: Script, start: float) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, f"{robot.path.stem}.py")
         path.write_text(script.text, "utf-8")
-        (source,) = pipeline.find([str(path)])
-        d = pipeline.load(source)
+        (source,) = scripts.find([str(path)])
+        d = scripts.load(source)
         proof = prove(d)
         seconds = seconds_of_computing() - start
         done = pages(d, proof, ["c"])

@@ -122,8 +122,8 @@ from closedform.model.notation import Relation as Relation
 from closedform.model.pair import Pair as Pair
 from closedform.model.paper import Paper as Paper
 from closedform.model.paper import Work as Work
-from closedform.pipeline.run import find as find
-from closedform.pipeline.run import load as load
+from closedform.pipeline.scripts import find as find
+from closedform.pipeline.scripts import load as load
 from closedform.proof.checks.completeness import Cases as Cases
 from closedform.proof.checks.completeness import Listing as Listing
 from closedform.proof.checks.completeness import Replaces as Replaces

@@ -5,7 +5,8 @@ from functools import cache
 
 from closedform.model.claims import Claim
 from closedform.model.derivation import Derivation
-from closedform.pipeline.run import default_store, find, load
+from closedform.pipeline.scripts import find, load
+from closedform.pipeline.store import default_store
 from closedform.proof.claims import ClaimResult, judge
 
 

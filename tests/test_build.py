@@ -14,7 +14,7 @@ import libraries
 import pytest
 
 from closedform.cli.commands import main
-from closedform.pipeline import disk
+from closedform.pipeline import disk, folders, scripts
 from closedform.pipeline import run as pipeline
 
 ROOT = Path(__file__).parents[1]
@@ -454,10 +454,10 @@ def state(pid: int) -> str:
         return ""
 
 
-@pytest.mark.parametrize("name", [source.name for source in pipeline.sources()])
+@pytest.mark.parametrize("name", [source.name for source in scripts.sources()])
 def test_every_derivation_is_verified(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     """What ``make`` proved before the tests."""
-    root = pipeline.checkout()
+    root = folders.checkout()
     if root is None or not (root / "build" / "certificates" / f"{name}.json").exists():
         pytest.skip("nothing was proved here; run make")
     assert main(["verify", name]) == 0, capsys.readouterr().out

@@ -12,8 +12,10 @@ import pytest
 from derivations_for_tests import SLIDER
 
 from closedform.cli.commands import main
+from closedform.pipeline import folders, scripts
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.imports import package, sources_of
+from closedform.pipeline.store import Store, default_store
 
 README = Path(__file__).parents[1] / "README.md"
 GUIDE = README.parent / "docs" / "using.md"
@@ -49,15 +51,16 @@ def slider(tmp_path: Path) -> Path:
 @pytest.fixture
 def only_planar(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     """A repository with one robot and a copy of the generated files; stored proofs are used."""
-    (planar,) = pipeline.find(["planar_2r"])
-    store = pipeline.default_store()
-    monkeypatch.setattr(pipeline, "sources", lambda: [planar])
-    monkeypatch.setattr(pipeline, "default_store", lambda: store)
+    (planar,) = scripts.find(["planar_2r"])
+    store = default_store()
+    monkeypatch.setattr(scripts, "sources", lambda: [planar])
+    for module in ("pipeline.run", "cli.commands"):
+        monkeypatch.setattr(f"closedform.{module}.default_store", lambda: store)
     folder = tmp_path / "generated"
     printed = pipeline.run([planar]).files
     pipeline.write(folder, printed)
-    monkeypatch.setattr(pipeline, "generated", lambda: folder)
-    monkeypatch.setattr(pipeline, "checkout", lambda: tmp_path)
+    monkeypatch.setattr(folders, "generated", lambda: folder)
+    monkeypatch.setattr(folders, "checkout", lambda: tmp_path)
     return folder
 
 
@@ -210,10 +213,10 @@ def test_a_broken_neighbour_does_not_hold_up_a_robot(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    (planar,) = pipeline.sources()
+    (planar,) = scripts.sources()
     slider.write_text(SLIDER.replace("(q1 + a, a + q1)", "(q1 - a, a + q1)"), "utf-8")
-    broken = pipeline.Source("slider", slider)
-    monkeypatch.setattr(pipeline, "sources", lambda: [planar, broken])
+    broken = scripts.Source("slider", slider)
+    monkeypatch.setattr(scripts, "sources", lambda: [planar, broken])
     target = only_planar / "numpy" / "planar_2r.py"
     whole = target.read_text("utf-8")
     target.write_text("stale", "utf-8")
@@ -308,8 +311,8 @@ def test_claims_are_judged_and_changed(slider: Path, capsys: pytest.CaptureFixtu
 def test_claims_beside_the_text_of_the_paper(
     slider: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (planar,) = pipeline.find(["planar_2r"])  # of all derivations, one of another paper
-    monkeypatch.setattr(pipeline, "sources", lambda: [planar])
+    (planar,) = scripts.find(["planar_2r"])  # of all derivations, one of another paper
+    monkeypatch.setattr(scripts, "sources", lambda: [planar])
     text = WRONG_SIGN.replace("{erratum}", ', erratum="sign"')
     slider.write_text(SLIDER + text + ERRATUM, "utf-8")
     paper = slider.parent / "paper.txt"
@@ -332,8 +335,8 @@ def test_a_proof_is_kept_until_something_it_depends_on_changes(
 ) -> None:
     (tmp_path / "lengths.py").write_text("OFFSET = 2\n", "utf-8")
     slider.write_text(SLIDER.replace("import sympy", "import lengths\nimport sympy"), "utf-8")
-    store = pipeline.Store(tmp_path / "proofs")
-    chosen = pipeline.find([str(slider)])
+    store = Store(tmp_path / "proofs")
+    chosen = scripts.find([str(slider)])
 
     def kept(**options: bool) -> bool:
         (robot,) = pipeline.run(chosen, ("numpy",), store=store, **options).robots
@@ -355,7 +358,7 @@ def test_the_digest_of_a_proof_holds_what_is_run() -> None:
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('closedform')))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    (source,) = pipeline.find(["ur_arm"])
+    (source,) = scripts.find(["ur_arm"])
     read = sources_of([source.path, package() / "proof" / "prove.py"])
     assert {Path(name) for name in done.stdout.split()} <= set(read)
     rooms = {path.relative_to(package()).parts[0] for path in read if package() in path.parents}
@@ -365,12 +368,12 @@ def test_the_digest_of_a_proof_holds_what_is_run() -> None:
 def test_processes_print_the_same(slider: Path, tmp_path: Path) -> None:
     other = tmp_path / "sledge.py"
     other.write_text(SLIDER.replace('"slider"', '"sledge"'), "utf-8")
-    chosen = pipeline.find([str(slider), str(other)])
+    chosen = scripts.find([str(slider), str(other)])
     reports: list[str] = []
     results = [
         pipeline.run(
             chosen,
-            store=pipeline.Store(None),
+            store=Store(None),
             jobs=jobs,
             report=lambda name, what: reports.append(name),
         )
@@ -475,7 +478,7 @@ def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:
     (code,) = blocks("c")
     (tmp_path / "main.c").write_text(code, "utf-8")
     for name in ("closedform.h", "planar_2r.h", "planar_2r.c"):
-        shutil.copy(pipeline.generated() / "c" / name, tmp_path)
+        shutil.copy(folders.generated() / "c" / name, tmp_path)
     (line,) = blocks("bash")
     command = shlex.split(line)
     assert command[0] == "cc" and "-lm" in command
@@ -489,7 +492,7 @@ def test_the_javascript_example_of_the_guide_runs(tmp_path: Path) -> None:
     (code,) = blocks("js", GUIDE)
     (tmp_path / "main.mjs").write_text(code, "utf-8")
     package = tmp_path / "node_modules" / "closedform"
-    shutil.copytree(pipeline.generated() / "js", package)
+    shutil.copytree(folders.generated() / "js", package)
     run = [node, str(tmp_path / "main.mjs")]
     done = subprocess.run(run, capture_output=True, text=True, check=True)
     assert "elbow_up [ 0." in done.stdout and "Uint8Array(6) [ 0, 0" in done.stdout
@@ -512,7 +515,7 @@ def test_the_commands_of_the_guide_run(
 
 def test_the_readme_lists_every_mechanism_with_its_picture() -> None:
     text = README.read_text("utf-8")
-    for source in pipeline.sources():
+    for source in scripts.sources():
         name = source.name
         row = f"| ![{name}](docs/figures/{name}.svg) | [`{name}`](derivations/{name}.py) |"
         assert row in text

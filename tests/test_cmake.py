@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from sharing import remembering
 
-from closedform.pipeline.run import generated
+from closedform.pipeline.folders import generated
 
 CONSUMER = Path(__file__).parent / "consumer"
 

@@ -14,7 +14,7 @@ from closedform.emit.backends.c.kernel import Emission
 from closedform.lower import Lowered, lower
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Program, choose, real, used_up
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 SINGULAR = 2
 x, y, z = (real(n) for n in "xyz")
@@ -51,7 +51,7 @@ def test_where_nothing_vanishes_it_is_the_whole_program() -> None:
 def kernels() -> list[tuple[str, str]]:
     """The robots and functions that have a common case."""
     found = []
-    for source in pipeline.sources():
+    for source in scripts.sources():
         module = importlib.import_module(f"closedform.generated.numpy.{source.name}")
         found += [
             (source.name, name)

@@ -11,8 +11,7 @@ import pytest
 from derivations_for_tests import SLIDER
 
 from closedform.cli import console, main
-from closedform.pipeline import run as pipeline
-from closedform.pipeline import versions
+from closedform.pipeline import scripts, versions
 
 COMMANDS = [["list"], ["errata"], ["--help"], ["--version"], ["derive", "--help"]]
 FULL = Path("/dev/full")
@@ -51,7 +50,7 @@ def test_a_terminal_without_unicode(arguments: list[str], monkeypatch: pytest.Mo
 def test_show_on_a_terminal_without_unicode(
     script: Path, form: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pipeline, "find", lambda names: [pipeline.Source("slider", script)])
+    monkeypatch.setattr(scripts, "find", lambda names: [scripts.Source("slider", script)])
     text = in_ascii(monkeypatch, "show", "slider", "--format", form)
     assert not ESCAPE.search(text)
     if form == "text":
@@ -181,15 +180,15 @@ def test_another_algebra_is_mentioned(
     monkeypatch.setattr(versions, "version", installed.__getitem__)
     found = versions.warnings()
     assert [w for w, start in zip(found, warned, strict=True) if w.startswith(start)] == found
-    monkeypatch.setattr(pipeline, "load", stop)
+    monkeypatch.setattr(scripts, "load", stop)
     assert main(["show", "planar_2r"]) == 1
     assert capsys.readouterr().err == "".join(
         f"closedform: {line}\n" for line in [*(f"warning: {w}" for w in found), "planar_2r: enough"]
     )
 
 
-def stop(source: pipeline.Source) -> None:
-    raise pipeline.DerivationError(source.name, "enough")
+def stop(source: scripts.Source) -> None:
+    raise scripts.DerivationError(source.name, "enough")
 
 
 def test_the_installed_algebra_is_the_one_that_is_asked_for() -> None:

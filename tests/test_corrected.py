@@ -14,7 +14,7 @@ from arms import OK, SINGULAR, UNREACHABLE, link
 from chains import printed
 
 from closedform.lemmas import corrected
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.scaffold.new import new
 
 QUARTER = np.pi / 2
@@ -34,7 +34,7 @@ def arm(rows: list, folder: Path) -> ModuleType:
     table.write_text("\n".join(lines), "utf-8")
     script = folder / "arm.py"
     script.write_text(new("arm", "dh", table).text, "utf-8")
-    return printed(pipeline.load(pipeline.find([str(script)])[0]), folder)
+    return printed(scripts.load(scripts.find([str(script)])[0]), folder)
 
 
 def pose(rows: list, q: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Program, real
-from closedform.pipeline.run import find, load
+from closedform.pipeline.scripts import find, load
 from closedform.proof.prove import InverseResult, Proof
 from closedform.scaffold.source import source
 

@@ -11,7 +11,7 @@ import pytest
 from arms import OK, SINGULAR, misses
 from chains import printed
 
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.scaffold.new import InverseSearch, Script, new
 
@@ -99,8 +99,8 @@ def test_the_printed_inverse_returns_to_every_posture(name: str, tmp_path: Path)
     assert found.structure == structure
     path = tmp_path / f"{name}.py"
     path.write_text(found.text, "utf-8")
-    (source,) = pipeline.find([str(path)])
-    module = printed(pipeline.load(source), tmp_path / "printed")
+    (source,) = scripts.find([str(path)])
+    module = printed(scripts.load(source), tmp_path / "printed")
     q = np.random.default_rng(11).uniform(-3, 3, (200, len(module.JOINTS)))
     T = pose(name, q)
     np.testing.assert_allclose(module.pose(q), T, atol=1e-14)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import closedform
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import folders, scripts
 
-ROBOTS = [source.name for source in pipeline.sources()]
+ROBOTS = [source.name for source in scripts.sources()]
 
 
 def module(backend: str, robot: str):
@@ -78,7 +78,7 @@ def test_completion_shows_what_is_public(robot: str) -> None:
 def test_every_parameter_is_documented(robot: str) -> None:
     parameters = module("numpy", robot).Parameters
     assert module("c", robot).Parameters is parameters
-    header = (pipeline.generated() / "c" / f"{robot}.h").read_text("utf-8")
+    header = (folders.generated() / "c" / f"{robot}.h").read_text("utf-8")
     comments = dict(re.findall(r"real_t (\w+); /\* (.*) \*/", header))
     assert tuple(comments) == parameters._fields
     for name, value in parameters()._asdict().items():
@@ -207,7 +207,7 @@ Notes
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_comments_of_the_header(robot: str) -> None:
     """Each function has its inputs and outputs, with the sizes of its prototype."""
-    header = (pipeline.generated() / "c" / f"{robot}.h").read_text("utf-8")
+    header = (folders.generated() / "c" / f"{robot}.h").read_text("utf-8")
     found = re.findall(r"/\*((?:(?!\*/).)*)\*/\nvoid (\w+)\(([^)]*)\);", header, re.S)
     assert [name for _, name, _ in found] == [f"{robot}_{f}" for f in functions(module("c", robot))]
     for comment, _, prototype in found:

@@ -16,7 +16,7 @@ import pytest
 from given import beside
 
 from closedform.check.runners.node import Node
-from closedform.pipeline.run import generated
+from closedform.pipeline.folders import generated
 from closedform.robots.mechanism import given_of
 
 TESTS = Path(__file__).parent

@@ -12,6 +12,7 @@ from closedform.check.runners.python import module
 from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.proof.prove import Proof
 from closedform.robots import Robot
 from closedform.scaffold.new import new
@@ -43,7 +44,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("limits")
     (folder / "arm.urdf").write_text(URDF, "utf-8")
     (folder / "arm.py").write_text(new("arm", "urdf", folder / "arm.urdf").text, "utf-8")
-    d = pipeline.load(pipeline.find([str(folder / "arm.py")])[0])
+    d = scripts.load(scripts.find([str(folder / "arm.py")])[0])
     done = pages(d, Proof(d.name, "own", (), 0, ()), LANGUAGES)
     pipeline.write(folder, {**done.files, **shared_files([done.share], LANGUAGES)})
     return folder

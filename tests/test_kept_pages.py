@@ -7,9 +7,13 @@ from pathlib import Path
 import pytest
 from derivations_for_tests import SLIDER
 
-from closedform.pipeline import kept
+from closedform.emit.pages import Printed as Pages
+from closedform.pipeline import folders, scripts
 from closedform.pipeline import run as pipeline
-from closedform.pipeline.run import Printed, Source, Store
+from closedform.pipeline import store as stored
+from closedform.pipeline.run import Printed
+from closedform.pipeline.scripts import Source
+from closedform.pipeline.store import Store
 
 
 @pytest.fixture
@@ -28,7 +32,7 @@ def store(tmp_path: Path) -> Store:
 def loaded(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The names of the derivations that were loaded."""
     names: list[str] = []
-    load = pipeline.load
+    load = scripts.load
 
     def noted(source: Source) -> object:
         names.append(source.name)
@@ -76,9 +80,9 @@ def test_a_changed_toolkit_prints_again(slider, store, loaded, monkeypatch) -> N
     "path", ["closedform/emit/text.py", "closedform/runtime/numpy/_runtime.py", "a_template"]
 )
 def test_the_digest_covers_the_toolkit(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    root = pipeline.checkout() or pytest.skip("the toolkit is installed from a wheel")
+    root = folders.checkout() or pytest.skip("the toolkit is installed from a wheel")
     file = root / (path if path != "a_template" else "templates/numpy/module.py.jinja")
-    before = kept.printing_digest("derived")
+    before = stored.printing_digest("derived")
     read = Path.read_bytes
     changed = os.path.realpath(file)
 
@@ -86,14 +90,14 @@ def test_the_digest_covers_the_toolkit(path: str, monkeypatch: pytest.MonkeyPatc
         return read(self) + (b"#" if os.path.realpath(self) == changed else b"")
 
     monkeypatch.setattr(Path, "read_bytes", with_a_change)
-    assert kept.printing_digest("derived") != before
+    assert stored.printing_digest("derived") != before
 
 
 def test_the_digest_covers_the_derivation_and_the_tools(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = kept.printing_digest("derived")
-    assert kept.printing_digest("derived otherwise") != before
-    monkeypatch.setattr(kept, "version", lambda _: "0")
-    assert kept.printing_digest("derived") != before
+    before = stored.printing_digest("derived")
+    assert stored.printing_digest("derived otherwise") != before
+    monkeypatch.setattr(stored, "version", lambda _: "0")
+    assert stored.printing_digest("derived") != before
 
 
 def test_a_file_that_is_cut_short_is_written_anew(slider, store, loaded) -> None:
@@ -106,20 +110,25 @@ def test_a_file_that_is_cut_short_is_written_anew(slider, store, loaded) -> None
     assert file.read_bytes() == whole
 
 
-def test_a_kept_file_cannot_run_code(tmp_path: Path) -> None:
+def test_a_kept_file_cannot_run_code(slider, store, tmp_path: Path) -> None:
     class Hostile:
         def __reduce__(self) -> object:
             return os.mkdir, (str(tmp_path / "ran"),)
 
-    pages = kept.KeptPages(tmp_path)
-    (tmp_path / "toy.numpy.pickle").write_bytes(pickle.dumps(("digest", Hostile())))
-    assert pages.get("toy", "digest", ("numpy",)) is None
+    pages = tmp_path / "build" / "pages"
+    pages.mkdir(parents=True)
+    (pages / "slider.numpy.pickle").write_bytes(pickle.dumps(("digest", Hostile())))
+    assert store.pages(slider, "digest", ("numpy",)) is None
     assert not (tmp_path / "ran").exists()
 
 
-def test_a_foreign_back_end_is_not_kept() -> None:
-    assert kept.keeps(("numpy", "closedform.site.backend"))
-    assert not kept.keeps(("numpy", "theirs.backend"))
+def test_a_foreign_back_end_is_not_kept(slider, store) -> None:
+    own = printed(slider, store)
+    pages = Pages(own.files, own.share)
+    for backends in (("numpy", "closedform.site.backend"), ("numpy", "theirs.backend")):
+        store.put_pages(slider, "digest", backends, pages)
+    assert store.pages(slider, "digest", ("numpy", "closedform.site.backend")) == pages
+    assert store.pages(slider, "digest", ("numpy", "theirs.backend")) is None
 
 
 def test_fresh_prints_again(slider, store, loaded) -> None:

@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.emit.backends.latex.plain import plain
 from closedform.emit.backends.latex.subject import Subject
 from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 DIGITS = 40
 LETTERS = ("chi", "omega", "nu", "mu")
@@ -39,8 +39,8 @@ def computed(function: Function, given: Mapping[sp.Basic, sp.Basic]) -> list[sp.
 
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_an_algorithm_gives_what_the_function_gives(name: str) -> None:
-    (source,) = pipeline.find([name])
-    d = pipeline.load(source)
+    (source,) = scripts.find([name])
+    d = scripts.load(source)
     module = importlib.import_module(f"closedform.generated.numpy.{name}")
     drawn = np.random.default_rng(3).uniform(-1, 1, (2000, len(module.JOINTS)))
     image = module.fk(drawn)

@@ -8,7 +8,9 @@ import pytest
 import sympy as sp
 from chains import printed
 
-from closedform.pipeline.run import Store, find, load, print_robot
+from closedform.pipeline.run import print_robot
+from closedform.pipeline.scripts import find, load
+from closedform.pipeline.store import Store
 from closedform.proof import prove as prove_module
 from closedform.scaffold import limit
 from closedform.scaffold import new as scaffold

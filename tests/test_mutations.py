@@ -14,7 +14,7 @@ from closedform.algebra.normal_form import equal
 from closedform.model.claims import HOLDS, NOT_DECIDABLE, PIECE, Check, Claim
 from closedform.model.functions import real
 from closedform.model.notation import Notation, Relation
-from closedform.pipeline.run import Source, sources
+from closedform.pipeline.scripts import Source, sources
 from closedform.proof.checks.equations import Equal
 from closedform.proof.checks.statements import Enumeration, ForAll, Rounded, Undecidable
 from closedform.proof.claims import judged

@@ -11,7 +11,7 @@ from closedform.check.crosscheck import check_forward, check_inverse, module_bac
 from closedform.check.runners.python import module
 from closedform.check.samples import Sample
 from closedform.model.derivation import Derivation
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.proof.prove import prove
 from closedform.scaffold.new import new
 
@@ -36,7 +36,7 @@ def derivation(folder: Path, text: str, name: str = "arm", kind: str = "dh") -> 
     table.write_text(text, "utf-8")
     script = folder / f"{name}.py"
     script.write_text(new(name, kind, table).text, "utf-8")
-    return pipeline.load(pipeline.find([str(script)])[0])
+    return scripts.load(scripts.find([str(script)])[0])
 
 
 @pytest.mark.parametrize(

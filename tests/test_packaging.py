@@ -12,7 +12,7 @@ import numpy
 import pytest
 from sharing import quick_compiler, shared
 
-from closedform.pipeline.run import checkout
+from closedform.pipeline.folders import checkout
 
 ROOT = checkout()
 pytest.importorskip("build", reason="the package build is not installed: pip install build")

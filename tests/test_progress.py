@@ -101,8 +101,8 @@ def test_a_lock_that_is_not_given_back_is_not_waited_for(
     pytest.importorskip("fcntl")
     root = tmp_path / "checkout"
     monkeypatch.setattr("closedform.cli.commands.PATIENCE", 0.2)
-    monkeypatch.setattr("closedform.pipeline.run.checkout", lambda: root)
-    monkeypatch.setattr("closedform.pipeline.run.sources", list)
+    monkeypatch.setattr("closedform.pipeline.folders.checkout", lambda: root)
+    monkeypatch.setattr("closedform.pipeline.scripts.sources", list)
     with locked(root / "build" / "generated.lock"):
         assert main(["check", "-j", "1"]) == 1
     assert "another process has held" in capsys.readouterr().err

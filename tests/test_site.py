@@ -12,7 +12,7 @@ import pytest
 from libraries import FORWARD
 
 from closedform import five_bar
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.site.labels import label
 from closedform.site.markup import Markdown, MarkupError, Place
 
@@ -139,7 +139,7 @@ def pages(site):
 
 
 def test_there_is_a_page_for_each_mechanism(site):
-    for source in pipeline.sources():
+    for source in scripts.sources():
         page = (site / "mechanisms" / f"{source.name}.html").read_text("utf-8")
         assert (f'data-robot="{source.name}"' in page) == (source.name in FORWARD), source.name
         assert ("no explorer" in page) == (source.name not in FORWARD)
@@ -176,7 +176,7 @@ def test_no_command_of_latex_is_left_in_the_text(site, pages):
             assert not SEPARATE.search("".join(found.text)), page
 
 
-@pytest.mark.parametrize("name", [s.name for s in pipeline.sources()])
+@pytest.mark.parametrize("name", [s.name for s in scripts.sources()])
 def test_a_page_has_the_equations_of_the_article(site, name):
     article = (LATEX / f"{name}.tex").read_text("utf-8")
     page = (site / "mechanisms" / f"{name}.html").read_text("utf-8")
@@ -187,7 +187,7 @@ def test_a_page_has_the_equations_of_the_article(site, name):
         assert f">({number})<" in page
 
 
-@pytest.mark.parametrize("name", [s.name for s in pipeline.sources()])
+@pytest.mark.parametrize("name", [s.name for s in scripts.sources()])
 def test_a_page_has_the_verdicts_of_the_article(site, name):
     article = (LATEX / f"{name}.tex").read_text("utf-8")
     page = (site / "mechanisms" / f"{name}.html").read_text("utf-8")

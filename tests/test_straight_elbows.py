@@ -9,7 +9,7 @@ from arms import OK, SINGULAR, misses
 from chains import printed
 from test_urdf import forward
 
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.scaffold.new import InverseSearch, new
 
@@ -25,8 +25,8 @@ def robot(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     script = new(name, "urdf", FOLDER / f"{name}.urdf", search=InverseSearch(fault=fault))
     path = folder / f"{name}.py"
     path.write_text(script.text, "utf-8")
-    (source,) = pipeline.find([str(path)])
-    return name, printed(pipeline.load(source), folder / "printed")
+    (source,) = scripts.find([str(path)])
+    return name, printed(scripts.load(source), folder / "printed")
 
 
 def solved(name: str, module: Any, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

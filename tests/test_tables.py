@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from closedform.cli.commands import main
-from closedform.pipeline.run import find, load
+from closedform.pipeline.scripts import find, load
 
 HEADER = "a, alpha, d, theta\n"
 AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'

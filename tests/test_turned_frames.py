@@ -10,7 +10,7 @@ from chains import printed
 from test_urdf import arm_of, forward
 
 from closedform.model.functions import real
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.scaffold.new import InverseSearch, new
 from closedform.scaffold.recognise import recognised
@@ -31,8 +31,8 @@ def test_the_printed_inverse_returns_to_every_posture(back: str, tmp_path: Path)
     assert script.structure == "turret, three parallel joints and two more (UR)"
     path = tmp_path / "turned.py"
     path.write_text(script.text, "utf-8")
-    (source,) = pipeline.find([str(path)])
-    module = printed(pipeline.load(source), tmp_path / "printed")
+    (source,) = scripts.find([str(path)])
+    module = printed(scripts.load(source), tmp_path / "printed")
     q = np.random.default_rng(4).uniform(-3, 3, (500, 6))
     T = np.array([forward(urdf.read_text("utf-8"), row) for row in q])
     np.testing.assert_allclose(module.pose(q), T, atol=2e-5)  # 1.5708 stands for pi/2

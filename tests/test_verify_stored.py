@@ -14,6 +14,8 @@ from derivations_for_tests import SLIDER
 
 from closedform.cli.commands import main
 from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
+from closedform.pipeline.store import Store
 
 
 @pytest.fixture
@@ -21,9 +23,10 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A script that is proved, with its proof and its certificates in a store of its own."""
     script = tmp_path / "slider.py"
     script.write_text(SLIDER, "utf-8")
-    store = pipeline.Store(tmp_path / "proofs")
-    monkeypatch.setattr(pipeline, "default_store", lambda: store)
-    assert not pipeline.run(pipeline.find([str(script)]), ("numpy",), store=store).failures
+    store = Store(tmp_path / "proofs")
+    for module in ("pipeline.run", "cli.commands"):
+        monkeypatch.setattr(f"closedform.{module}.default_store", lambda: store)
+    assert not pipeline.run(scripts.find([str(script)]), ("numpy",), store=store).failures
     return script
 
 
@@ -72,7 +75,7 @@ def test_stale_and_missing_certificates_fail_and_are_written_again(
 ) -> None:
     path = kept.parent / "certificates" / "slider.json"
     written = path.read_bytes()
-    chosen, store = pipeline.find([str(kept)]), pipeline.default_store()
+    chosen, store = scripts.find([str(kept)]), Store(kept.parent / "proofs")
     for spoil in (path.unlink, lambda: path.write_bytes(written + b"\n")):
         spoil()
         assert main(["verify", str(kept)]) == 1
@@ -100,12 +103,12 @@ def test_the_same_proof_writes_the_same_bytes_whatever_the_hash_seed() -> None:
     code = (
         "import sys\n"
         "from closedform.algebra.certificates import recording\n"
-        "from closedform.pipeline import run as pipeline\n"
+        "from closedform.pipeline import scripts\n"
         "from closedform.proof.prove import prove\n"
-        "(source,) = pipeline.find(['scara'])\n"
+        "(source,) = scripts.find(['scara'])\n"
         "for _ in range(int(sys.argv[1])):\n"
         "    with recording() as record:\n"
-        "        prove(pipeline.load(source))\n"
+        "        prove(scripts.load(source))\n"
         "print(record.text('name', 'digest'))\n"
     )
     runs = (("1", 1), ("2", 2))

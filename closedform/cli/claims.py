@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 if TYPE_CHECKING:
     from closedform.model.claims import Claim
@@ -80,12 +80,12 @@ def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     from closedform.check.coverage import cover
 
     paper, claims = derivation.paper, list(derivation.claims)
-    for source in pipeline.sources():
+    for source in scripts.sources():
         if source.name == derivation.name:
             continue
         try:
-            found = pipeline.load(source)
-        except pipeline.DerivationError as error:
+            found = scripts.load(source)
+        except scripts.DerivationError as error:
             yield f"left out: {error}"
             continue
         if found.paper.key == paper.key:

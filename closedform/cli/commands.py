@@ -19,9 +19,10 @@ from closedform import robots
 from closedform._version import __version__
 from closedform.cli import claims, console, figures, parsers, plot, site
 from closedform.cli.console import Progress
+from closedform.pipeline import folders, scripts, versions
 from closedform.pipeline import run as pipeline
-from closedform.pipeline import versions
 from closedform.pipeline.disk import locked
+from closedform.pipeline.store import default_store
 from closedform.pipeline.workers import WorkerError
 
 DIFF_LINES = 20
@@ -50,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command(options)
     except CommandError as error:
         return _complain(str(error), error.code)
-    except (pipeline.DerivationError, console.StreamError, WorkerError) as error:
+    except (scripts.DerivationError, console.StreamError, WorkerError) as error:
         return _complain(str(error))
     except BrokenPipeError:
         return 1
@@ -139,7 +140,7 @@ def list_command(options: argparse.Namespace) -> None:
     if options.robots:
         console.write(robots_listed(options.sources))
         return
-    sources = pipeline.sources()
+    sources = scripts.sources()
     width = max((len(s.name) for s in sources), default=0)
     console.write("".join(f"{s.name:<{width}}  {s.title}\n" for s in sources))
 
@@ -152,8 +153,8 @@ def show_command(options: argparse.Namespace) -> None:
 
     with Progress() as progress:
         progress(source.name, "deriving")
-        derivation = pipeline.load(source)
-        kept = pipeline.default_store().get(source)
+        derivation = scripts.load(source)
+        kept = default_store().get(source)
         pretty = console.has(PRETTY)
         text = show(derivation, kept[0] if kept else None, options.format, pretty=pretty)
     console.write(text.rstrip("\n") + "\n")
@@ -163,13 +164,13 @@ def derive_command(options: argparse.Namespace) -> None:
     """Derive, prove and print; NAME is a derivation or the path of a script."""
     chosen = _find(options.names)
     backends = tuple(b for b in pipeline.BACKENDS if b in (options.backend or pipeline.BACKENDS))
-    root = options.output or pipeline.generated()
-    own = root.resolve() == pipeline.generated().resolve()
+    root = options.output or folders.generated()
+    own = root.resolve() == folders.generated().resolve()
     if own:
         _require_checkout(chosen)
     elif root.exists() and not root.is_dir():
         raise CommandError(f"cannot write to {root}: it is not a folder")
-    result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
+    result = _run(options, chosen, backends, scripts.sources() if own else chosen)
     if own:
         _update(root, result.files, backends if not options.names else ())
     else:
@@ -204,7 +205,7 @@ def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
 
 
 def _next(
-    robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
+    robot: pipeline.Printed, source: scripts.Source, root: Path, backends: Sequence[str]
 ) -> str:
     """What to do next with a robot that was printed into a folder of the user."""
     if robot.given_up:
@@ -218,7 +219,7 @@ def _next(
     return f"use {', '.join(others)} and {last}" if others else f"use {last}"
 
 
-def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
+def _crosscheck(root: Path, chosen: Sequence[scripts.Source], backends: Sequence[str]) -> None:
     """Compare what was printed with the symbolic source, and write the report."""
     from closedform.check.failures import FailedError
     from closedform.check.report import report
@@ -227,7 +228,7 @@ def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequenc
         for source in chosen:
             progress(source.name, "cross-checking")
             try:
-                text, failures = report(pipeline.load(source), root, backends)
+                text, failures = report(scripts.load(source), root, backends)
             except FailedError as error:
                 raise CommandError(f"{source.name}: {error}") from error
             _write(root, {Path(f"{source.name}-crosscheck.md"): text})
@@ -240,8 +241,8 @@ def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequenc
 
 def check_command(options: argparse.Namespace) -> None:
     """Print everything again and compare it byte for byte with generated/."""
-    root = pipeline.generated()
-    printed = _run(options, pipeline.sources(), pipeline.BACKENDS, pipeline.sources()).files
+    root = folders.generated()
+    printed = _run(options, scripts.sources(), pipeline.BACKENDS, scripts.sources()).files
     with _alone():
         differences = list(_differences(root, printed))
     if differences:
@@ -254,7 +255,7 @@ def verify_command(options: argparse.Namespace) -> None:
     """Check the certificates of the proofs with a program that is independent of the prover."""
     from closedform.pipeline.verified import verify_all
 
-    chosen, store = _find(options.names), pipeline.default_store()
+    chosen, store = _find(options.names), default_store()
     if store.folder is None:
         raise CommandError("an installed package keeps no certificates; use a checkout")
     _require_extra()
@@ -319,7 +320,7 @@ def claims_command(options: argparse.Namespace) -> None:
     _require_extra()
     with Progress() as progress:
         progress(source.name, "deriving")
-        derivation = pipeline.load(source)
+        derivation = scripts.load(source)
     for line in claims.report(options, derivation):
         console.write(f"{line}\n")
 
@@ -349,10 +350,10 @@ def site_command(options: argparse.Namespace) -> None:
     _require_extra()
     from closedform.site.node import NodeError
 
-    root = pipeline.checkout()
+    root = folders.checkout()
     if root is None:
         raise CommandError("the site is built in a checkout of the project")
-    sources = pipeline.sources()
+    sources = scripts.sources()
     printed = _run(options, sources, (site.BACKEND,), sources).files
     try:
         warnings = site.write(options, printed, sources, root, _line)
@@ -376,7 +377,7 @@ def errata_command(options: argparse.Namespace) -> None:
 
 
 def _errata() -> str:
-    path = pipeline.generated() / "errata.md"
+    path = folders.generated() / "errata.md"
     if not path.is_file():
         raise CommandError(f"{path} is missing; run make")
     return path.read_text("utf-8")
@@ -384,7 +385,7 @@ def _errata() -> str:
 
 def _errata_of(options: argparse.Namespace) -> str:
     _require_extra()
-    derivations = {source: pipeline.load(source) for source in pipeline.sources()}
+    derivations = {source: scripts.load(source) for source in scripts.sources()}
     papers = sorted({d.paper.key for d in derivations.values()})
     chosen = {s: d for s, d in derivations.items() if d.paper.key == options.paper}
     if not chosen:
@@ -402,11 +403,11 @@ def _require_extra() -> None:
         console.say(f"closedform: warning: {difference}")
 
 
-def _find(names: Sequence[str]) -> list[pipeline.Source]:
+def _find(names: Sequence[str]) -> list[scripts.Source]:
     try:
-        return pipeline.find(names)
-    except pipeline.UnknownNameError as error:
-        known = [source.name for source in pipeline.sources()]
+        return scripts.find(names)
+    except scripts.UnknownNameError as error:
+        known = [source.name for source in scripts.sources()]
         raise CommandError(_unknown("derivation", str(error), known), 2) from error
 
 
@@ -418,24 +419,24 @@ def _unknown(kind: str, name: str, known: Sequence[str]) -> str:
     return f"unknown {kind} {name}; {hint}"
 
 
-def _require_checkout(chosen: Sequence[pipeline.Source]) -> None:
+def _require_checkout(chosen: Sequence[scripts.Source]) -> None:
     """Refuse to write the generated package except in a checkout and from its own scripts."""
-    if pipeline.checkout() is None:
+    if folders.checkout() is None:
         raise CommandError(
             "this is an installed package, not a checkout; give a folder with -o DIR", 2
         )
     for source in chosen:
         if not source.module:
             raise CommandError(
-                f"{source.path} is not in {pipeline.scripts()}; give a folder with -o DIR", 2
+                f"{source.path} is not in {scripts.scripts()}; give a folder with -o DIR", 2
             )
 
 
 def _run(
     options: argparse.Namespace,
-    chosen: Sequence[pipeline.Source],
+    chosen: Sequence[scripts.Source],
     backends: Sequence[str],
-    together: Sequence[pipeline.Source],
+    together: Sequence[scripts.Source],
 ) -> pipeline.Result:
     _require_extra()
     with Progress() as progress:
@@ -464,7 +465,7 @@ def _write(root: Path, printed: pipeline.Files) -> list[Path]:
 
 def _alone() -> contextlib.AbstractContextManager[None]:
     """Keep other processes from changing the generated package."""
-    root = pipeline.checkout()
+    root = folders.checkout()
     if root is None:
         return contextlib.nullcontext()
     return locked(root / "build" / "generated.lock", patience=PATIENCE)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from closedform.cli.plot import catalogue, drawings, module, write
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 CAPTIONS = "captions.json"
 PAGE = "figures.md"
@@ -18,7 +18,7 @@ OPENING = ("puma560", "branches")
 
 
 def names() -> list[str]:
-    return [source.name for source in pipeline.sources()]
+    return [source.name for source in scripts.sources()]
 
 
 def draw_all(folder: Path, chosen: list[str], suffix: str = ".pdf") -> Iterator[str]:

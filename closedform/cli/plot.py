@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 if TYPE_CHECKING:
     from closedform.plot.catalogue import Figure
@@ -77,7 +77,7 @@ def catalogue(name: str) -> list[Figure]:
 
 def module(name: str) -> ModuleType:
     """The generated module of a mechanism, compiled if it can be."""
-    if name not in [s.name for s in pipeline.sources()]:
+    if name not in [s.name for s in scripts.sources()]:
         raise PlotError(f"there is no mechanism {name!r}; closedform list names them")
     try:
         return import_module(f"closedform.generated.c.{name}")

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from closedform.cli.figures import CAPTIONS, draw_all
-from closedform.pipeline.run import Files, Source
+from closedform.pipeline.run import Files
+from closedform.pipeline.scripts import Source
 
 BACKEND = "closedform.site.backend"
 DRAWN_BY = ("closedform/plot/*.py", "derivations/figures/*.py")

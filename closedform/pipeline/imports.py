@@ -6,6 +6,7 @@ The files are read, not run, so that a stored proof is found without importing S
 from __future__ import annotations
 
 import ast
+import hashlib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
@@ -89,3 +90,15 @@ def _files_of(names: Iterable[tuple[str, int]], folder: Path) -> Iterator[Path]:
             yield root.joinpath(*parts[:depth], "__init__.py")
         if parts:
             yield root.joinpath(*parts).with_suffix(".py")
+
+
+def digest_of(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
+    """A digest of files, with their names, and of lines of text."""
+    total = hashlib.sha256()
+    for path in paths:
+        content = path.read_bytes()
+        total.update(f"{path.name} {len(content)}\n".encode())
+        total.update(content)
+    for line in lines:
+        total.update(line.encode())
+    return total.hexdigest()

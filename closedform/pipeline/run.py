@@ -1,33 +1,21 @@
-"""From derivation scripts to files: find, prove and print them, and write what changed.
-
-SymPy is imported only when a derivation is loaded, so that listing works without it.
-"""
+"""From derivation scripts to files: prove and print them, and write what changed."""
 
 from __future__ import annotations
 
-import ast
-import contextlib
-import hashlib
-import importlib
-import importlib.util
-import json
 import os
 import re
-import sys
 import time
-import traceback
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
-from importlib.metadata import version
-from importlib.resources import files
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from closedform.emit.backends import names as backend_names
 from closedform.pipeline.disk import replace
-from closedform.pipeline.imports import package, sources_of
-from closedform.pipeline.kept import KeptPages, digest_of, keeps, printing_digest
+from closedform.pipeline.imports import sources_of
+from closedform.pipeline.scripts import DerivationError, Source, digest, load, same_choices
+from closedform.pipeline.store import Store, default_store, printing_digest
 from closedform.pipeline.workers import each
 
 if TYPE_CHECKING:
@@ -45,33 +33,6 @@ NOT_PROVED = (ValueError, TypeError, ArithmeticError, NotImplementedError)
 
 Files = dict[Path, str]
 Report = Callable[[str, str], None]
-
-
-class DerivationError(Exception):
-    """A derivation that cannot be loaded or proved: its name, and what is wrong."""
-
-    def __str__(self) -> str:
-        name, message = self.args
-        return f"{name}: {message}"
-
-
-class UnknownNameError(Exception):
-    """There is no derivation of this name."""
-
-
-@dataclass(frozen=True)
-class Source:
-    """A derivation script; ``module`` is empty for a file outside the package."""
-
-    name: str
-    path: Path
-    module: str = ""
-
-    @property
-    def title(self) -> str:
-        """The first line of the script's docstring."""
-        docstring = ast.get_docstring(ast.parse(self.path.read_bytes())) or ""
-        return docstring.partition("\n")[0]
 
 
 @dataclass(frozen=True)
@@ -111,141 +72,11 @@ class Result:
         return {**robots, **self.shared}
 
 
-# Where things are
-
-
-def generated() -> Path:
-    """The folder of the generated package, in a checkout or as installed."""
-    return Path(str(files("closedform.generated")))
-
-
-def checkout() -> Path | None:
-    """The root of the repository, or None if the package was installed from a wheel."""
-    root = generated().parent
-    return root if (root / "pyproject.toml").is_file() else None
-
-
-def scripts() -> Path:
-    """The folder of the derivation scripts."""
-    return Path(str(files("closedform.derivations")))
-
-
-def sources() -> list[Source]:
-    """The derivation scripts of the package, by name."""
-    return [
-        Source(path.stem, path, f"closedform.derivations.{path.stem}")
-        for path in sorted(scripts().glob("*.py"))
-        if _assigns_d(path.read_bytes())
-    ]
-
-
-def find(names: Sequence[str]) -> list[Source]:
-    """The scripts with these names or paths; all scripts of the package if none is given."""
-    known = {source.name: source for source in sources()}
-    if not names:
-        return list(known.values())
-    return [_find(name, known) for name in dict.fromkeys(names)]
-
-
-def _find(name: str, known: Mapping[str, Source]) -> Source:
-    if name in known:
-        return known[name]
-    path = Path(name)
-    if path.suffix != ".py":
-        raise UnknownNameError(name)
-    path = path.resolve()
-    for source in known.values():
-        if source.path.resolve() == path:
-            return source
-    if not path.is_file():
-        raise UnknownNameError(name)
-    return Source(path.stem, path)
-
-
-@cache
-def _assigns_d(text: bytes) -> bool:
-    """Whether a script assigns ``d``.  If it does not parse, True: the error is reported later."""
-    try:
-        statements = ast.parse(text).body
-    except SyntaxError:
-        return True
-    targets: list[ast.expr] = []
-    for statement in statements:
-        if isinstance(statement, ast.Assign):
-            targets += statement.targets
-        elif isinstance(statement, ast.AnnAssign):
-            targets.append(statement.target)
-    return any(isinstance(t, ast.Name) and t.id == "d" for t in targets)
-
-
-# Loading and proving
-
-
-def _same_choices() -> None:
-    """Let SymPy try the same points every time: where it factors, an unlucky one takes minutes."""
-    from sympy.core import random
-
-    random.seed(0)
-
-
-def load(source: Source) -> Derivation:
-    """Run a derivation script."""
-    from closedform.model.derivation import Derivation
-
-    _same_choices()
-    try:
-        module = _module(source)
-    except Exception as error:
-        raise DerivationError(source.name, _located(error, source.path)) from error
-    derivation = getattr(module, "d", None)
-    if not isinstance(derivation, Derivation):
-        raise DerivationError(source.name, f"{source.path.name} must assign a Derivation to d")
-    if derivation.name != source.name:
-        raise DerivationError(
-            source.name,
-            f"the derivation calls itself {derivation.name}; name the file {derivation.name}.py",
-        )
-    return derivation
-
-
-def _module(source: Source) -> Any:
-    if source.module:
-        return importlib.import_module(source.module)
-    digested = digest_of(sources_of([source.path]))
-    if (known := _modules.get(source.path)) and known[0] == digested:
-        return known[1]
-    folder = str(source.path.parent)
-    if folder not in sys.path:
-        sys.path.append(folder)
-    spec = importlib.util.spec_from_file_location(f"_derivation_{source.name}", source.path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    _modules[source.path] = digested, module
-    return module
-
-
-_modules: dict[Path, tuple[str, Any]] = {}
-"""Scripts outside the package that were run, each with a digest of its sources."""
-
-
-def _located(error: Exception, path: Path) -> str:
-    """An error with the last line of the script that led to it."""
-    lines = [
-        frame.lineno
-        for frame in traceback.extract_tb(error.__traceback__)
-        if frame.filename == str(path)
-    ]
-    place = f"{path.name}, line {lines[-1]}: " if lines else ""
-    return f"{place}{type(error).__name__}: {error}"
-
-
 def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
     from closedform.algebra.certificates import recording
     from closedform.proof.prove import prove
 
-    _same_choices()
+    same_choices()
     try:
         with recording() as record:
             proof = prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
@@ -253,94 +84,6 @@ def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
     except NOT_PROVED as error:
         message = str(error).removeprefix(derivation.name).lstrip(",.: ")
         raise DerivationError(derivation.name, f"not proved: {message}") from error
-
-
-# Proofs are kept
-
-
-class Store:
-    """Proofs on disk, each with a digest of everything that it depends on.
-
-    Certificates and printed pages are in folders next to that of the proofs.
-    """
-
-    def __init__(self, folder: Path | None):
-        self.folder = folder
-
-    def get(self, source: Source, digested: str | None = None) -> tuple[Proof, float] | None:
-        """The proof of a script and the seconds it took, if nothing has changed since."""
-        from closedform.proof.prove import Proof
-
-        try:
-            data = self.read(source)
-            certified = hashlib.sha256(self.certificates(source).read_bytes()).hexdigest()
-            if data["digest"] == (digested or digest(source)) and data["certificates"] == certified:
-                return Proof.from_dict(data["proof"]), float(data["seconds"])
-        except (OSError, ValueError, KeyError, TypeError):
-            pass
-        return None
-
-    def put(
-        self, source: Source, digested: str, proof: Proof, record: Record, seconds: float
-    ) -> None:
-        """Keep a proof.  If the disk is read-only, the script is proved again the next time.
-
-        ``digested`` is the digest from before the proof, because a script may be edited meanwhile.
-        """
-        certificates = record.text(source.name, digested).encode()
-        data = {
-            "digest": digested,
-            "certificates": hashlib.sha256(certificates).hexdigest(),
-            "seconds": seconds,
-            "proof": proof.as_dict(),
-        }
-        with contextlib.suppress(OSError):
-            replace(self.certificates(source), certificates)
-            replace(self._path(source), (json.dumps(data, indent=1) + "\n").encode())
-
-    def read(self, source: Source) -> dict[str, Any]:
-        """What is stored of a proof, even if something has changed since."""
-        data: dict[str, Any] = json.loads(self._path(source).read_text("utf-8"))
-        return data
-
-    def certificates(self, source: Source) -> Path:
-        """The file with the certificates of a proof."""
-        return self._path(source).parent.with_name("certificates") / f"{source.name}.json"
-
-    def pages(self, source: Source, digested: str, backends: Sequence[str]) -> Pages | None:
-        """What was printed of a script, if nothing has changed since; not of foreign back ends."""
-        if self._pages and keeps(backends):
-            return self._pages.get(source.name, digested, backends)
-        return None
-
-    def put_pages(
-        self, source: Source, digested: str, backends: Sequence[str], printed: Pages
-    ) -> None:
-        """Keep what was printed.  If the disk is read-only, it is printed again the next time."""
-        if self._pages and keeps(backends):
-            with contextlib.suppress(OSError):
-                self._pages.put(source.name, digested, backends, printed)
-
-    @property
-    def _pages(self) -> KeptPages | None:
-        return KeptPages(self.folder.with_name("pages")) if self.folder else None
-
-    def _path(self, source: Source) -> Path:
-        if self.folder is None:
-            raise FileNotFoundError
-        return self.folder / f"{source.name}.json"
-
-
-def default_store() -> Store:
-    """The store in ``build/`` of a checkout; an installed package keeps nothing."""
-    root = checkout()
-    return Store(root / "build" / "proofs" if root else None)
-
-
-def digest(source: Source) -> str:
-    """A digest of the script, of everything that it and the proof import, and of the algebra."""
-    algebra = [f"{package} {version(package)}\n" for package in ("sympy", "python-flint")]
-    return digest_of(sources_of([source.path, package() / "proof" / "prove.py"]), algebra)
 
 
 # Printing
@@ -449,7 +192,7 @@ def _printed(
 def _pages(derivation: Derivation, proof: Proof, backends: Sequence[str]) -> Pages:
     from closedform.emit.pages import pages
 
-    _same_choices()
+    same_choices()
     try:
         return pages(derivation, proof, backends)
     except (ValueError, TypeError, KeyError, NotImplementedError) as error:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from closedform.algebra.solutions import NotRationalError
 from closedform.mechanics.arm import FORWARD_ALONE
-from closedform.pipeline.run import NOT_PROVED, DerivationError, Source, load
+from closedform.pipeline.run import NOT_PROVED
+from closedform.pipeline.scripts import DerivationError, Source, load
 from closedform.proof.inverse import prove_inverse
 
 

@@ -10,7 +10,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from closedform.pipeline.run import Report, Source, Store, digest
+from closedform.pipeline.run import Report
+from closedform.pipeline.scripts import Source, digest
+from closedform.pipeline.store import Store
 from closedform.pipeline.workers import each
 
 

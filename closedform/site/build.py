@@ -12,7 +12,9 @@ from typing import IO, Any, cast
 
 import closedform
 from closedform.lazy import homes
-from closedform.pipeline.run import Files, generated, sources, write
+from closedform.pipeline.folders import generated
+from closedform.pipeline.run import Files, write
+from closedform.pipeline.scripts import sources
 from closedform.site.bars import with_bars
 from closedform.site.node import MODULES, bundle, install
 

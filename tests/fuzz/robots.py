@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 BACKENDS = ("numpy", "c")
 NEEDED = {"h6ar": ("L1", "L2", "d"), "h6ar_loop_closed": ("L1", "L2", "d")}
@@ -54,23 +54,23 @@ class Robot:
 @cache
 def robots() -> tuple[Robot, ...]:
     """Every mechanism that has a forward map ``fk`` and an inverse ``ik``."""
-    return tuple(_robot(s) for s in pipeline.sources() if pipeline.load(s).has_forward_map)
+    return tuple(_robot(s) for s in scripts.sources() if scripts.load(s).has_forward_map)
 
 
 @cache
 def without_forward_map() -> tuple[str, ...]:
     """Every mechanism that has no ``fk``, of whose postures no targets can be made."""
-    return tuple(s.name for s in pipeline.sources() if not pipeline.load(s).has_forward_map)
+    return tuple(s.name for s in scripts.sources() if not scripts.load(s).has_forward_map)
 
 
 @cache
 def robot(name: str) -> Robot:
-    (source,) = pipeline.find([name])
+    (source,) = scripts.find([name])
     return _robot(source)
 
 
-def _robot(source: pipeline.Source) -> Robot:
-    d = pipeline.load(source)
+def _robot(source: scripts.Source) -> Robot:
+    d = scripts.load(source)
     joints = {j.symbol: j for j in d.joints}
     actuated = d.actuated
     inverse = next(i for i in d.inverses if i.function == "ik")

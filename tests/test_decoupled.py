@@ -35,6 +35,37 @@ def forward(rows: list, q: np.ndarray) -> np.ndarray:
     return T
 
 
+LEVEL = {
+    "2 slides and a yaw": (
+        [(0, pi / 2, None, 0), (H, -pi / 2, None, 0), (0, 0, 1)], "d1 d2 t3",
+    ),
+    "3 slides and a yaw": (
+        [*[(0, pi / 2, None, pi / 2)] * 3, (H, 0, 1)], "d1 d2 d3 t4",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("structure", LEVEL)
+def test_slides_before_a_turn_of_the_level_tool(structure: str, tmp_path: Path) -> None:
+    rows, joints = LEVEL[structure]
+    d, serial = arm(rows, joints)
+    found = propose(serial)
+    assert found.structure == structure
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == 1
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    q = np.random.default_rng(6).uniform(-3, 3, (50, len(rows)))
+    T = forward([[float(e) if e is not None else e for e in row] for row in rows], q)
+    x = {"x": T[:, 0, 3], "y": T[:, 1, 3], "z": T[:, 2, 3]}
+    x["yaw"] = np.arctan2(T[:, 1, 0], T[:, 0, 0])
+    answers, status = robot.ik(np.column_stack([x[n] for n in serial.coordinates().names]))
+    assert (status == OK).all()
+    turned = np.exp(1j * (answers[:, 0, -1] - q[:, -1]))
+    np.testing.assert_allclose(answers[:, 0, :-1], q[:, :-1], atol=1e-13)
+    np.testing.assert_allclose(turned, 1, atol=1e-13)
+
+
 def test_a_slide_may_be_normal_to_the_turn_after_it(tmp_path: Path) -> None:
     """A lift whose arm swings in a plane with it, as that of a Toyota HSR, with a wrist."""
     rows = [(H, -pi / 2, None, 0), (sp.Rational(1, 8), pi / 2, H), (0, -pi / 2, 2),

@@ -4,6 +4,7 @@ Only geometry decides: which axes are parallel, intersect or are normal to each 
 structures are
 
 - planar arms of two or three revolute joints, also with a slide along their axes (SCARA);
+- up to three slides, and a joint after them that turns the tool about z;
 - gantries (three slides) and cylindrical arms (a turn, a slide along it, a slide across);
 - a turret with two parallel joints, or with a joint and a slide (polar arm), and their offsets;
 - these three-joint arms with a spherical wrist;
@@ -98,6 +99,9 @@ class KnownMaker(Maker):
 
     def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
         """Solve an arm with parallel axes: two links and a yaw, with or without a slide."""
+        slide = [row.slides for group in groups for row in group.rows]
+        if all(slide[:-1]) and not slide[-1]:
+            return self._slides_and_yaw(names)
         self.require(
             len(groups) == 1,
             "its axes are not parallel",
@@ -132,6 +136,27 @@ class KnownMaker(Maker):
         (value,) = sp.solve(yaw - sp.Symbol("yaw", real=True), last)
         self.solve("remainder", f"{last}, {source(value)}")
         return "planar arm of two links and a yaw" + (", with a slide (SCARA)" if slides else "")
+
+    def _slides_and_yaw(self, names: Sequence[str]) -> str:
+        """Solve an arm whose last joint turns the tool about z, and whose others slide."""
+        *slides, last = self.arm.joints
+        self.add(f"{', '.join(names)} = ik.x")
+        task = self.arm.coordinates()
+        assert task is not None
+        targets = [sp.Symbol(name, real=True) for name in names]
+        (turned,) = sp.solve(task.values[-1] - targets[-1], last)
+        self.solve("remainder", f"{last}, {source(turned)}")
+        at = [value.subs(last, turned) for value in task.values[:-1]]
+        missed = [value - target for value, target in zip(at, targets, strict=False)]
+        found = sp.solve(missed, slides, dict=True)
+        self.require(
+            len(found) == 1 and set(found[0]) == set(slides),
+            "its slides do not move the tool in independent directions",
+            "Slides need independent directions.",
+        )
+        for joint in slides:
+            self.solve("slide", f"{joint}, {source(found[0][joint])}")
+        return f"{'a slide' if len(slides) == 1 else f'{len(slides)} slides'} and a yaw"
 
     # Arms of three joints that carry a point
 

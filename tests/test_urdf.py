@@ -409,14 +409,87 @@ def test_a_joint_that_mimics_another_is_a_coupling(tmp_path: Path) -> None:
     assert "4 branches" in new("palletiser", "urdf", path).inverse
 
 
+def test_a_joint_that_mimics_another_may_have_an_offset(tmp_path: Path) -> None:
+    text = PALLETISER.replace('multiplier="-1"', 'multiplier="-1" offset="0.7853982"')
+    path = tmp_path / "palletiser.urdf"
+    path.write_text(text, "utf-8")
+    serial = arm_of(path, read_urdf)
+    pose = sp.lambdify(serial.joints, serial.pose, "numpy")
+    for turn, lower, upper in np.random.default_rng(2).uniform(-3, 3, (5, 3)):
+        there = forward(text, np.array([turn, lower, np.pi / 4 - lower, upper]))
+        np.testing.assert_allclose(pose(turn, lower, lower + upper), there, atol=1e-12)
+
+
+LIMITED = '<limit lower="0" upper="0.2"/>'
+
+
+def slide(name: str, parent: str, child: str, place: str, axis: str, more: str) -> str:
+    return joint(name, parent, child, place, axis, more=more).replace("revolute", "prismatic")
+
+
+LIFT = "<robot>" + "".join(
+    [
+        slide("outer", "base", "mast", "0 0 0.3", "0 0 1", LIMITED),
+        joint("turn1", "mast", "column", "0 0 0.1", "0 0 1"),
+        slide("inner", "column", "head", "0.02 0 0", "0 0 -1", MIMIC.format(-0.5)),
+        joint("swing", "head", "arm", "0.1 0 0", "0 0 1"),
+        slide("reach", "arm", "beam", "0.4 0 0", "1 0 0", LIMITED),
+        slide("tip", "beam", "hand", "0.1 0 0.05", "1 0 0", "{}"),
+        joint("grip", "hand", "finger", "0 0 0", "0 1 0"),
+        joint("grip2", "hand", "thumb", "0 0 0", "0 1 0", more='<mimic joint="grip"/>'),
+        "</robot>",
+    ]
+).replace('"lower" multiplier', '"outer" multiplier')
+"""Two stages of a lift with a joint between them, and a beam whose tip moves with it."""
+
+
+def test_slides_that_mimic_others_are_columns(tmp_path: Path) -> None:
+    """Fingers beyond the tool that mimic each other do not matter."""
+    text = LIFT.format('<mimic joint="reach" multiplier="1.5" offset="0.03"/>')
+    path = tmp_path / "lift.urdf"
+    path.write_text(text, "utf-8")
+    table = read_urdf(path, Choice(tool="hand"))
+    assert list(table.joints) == ["outer", "turn1_0", "swing", "reach"]
+    assert {q: str(e) for q, e in table.couplings.items()} == {
+        "outer": "3*m_outer/2",
+        "reach": "5*m_reach/2",
+    }
+    assert table.limits["outer"] == ("0", "3/10") and table.limits["reach"] == ("0", "1/2")
+    serial = arm_of(path, read_urdf, Choice(tool="hand"))
+    pose = sp.lambdify(serial.joints, serial.pose, "numpy")
+    without = text.replace('<joint name="grip" type="revolute"', '<joint name="grip" type="fixed"')
+    for outer, turn, swing, reach in np.random.default_rng(2).uniform(-1, 1, (5, 4)):
+        file = [outer, turn, -0.5 * outer, swing, reach, 1.5 * reach + 0.03, 0]
+        there = forward(without.split('<joint name="grip"')[0] + "</robot>", np.array(file[:6]))
+        moved = pose(1.5 * outer, turn, swing, 2.5 * reach)
+        np.testing.assert_allclose(moved, there, atol=1e-14)
+
+
+def test_the_joints_of_a_chain_may_follow_a_joint_beside_it(tmp_path: Path) -> None:
+    path = tmp_path / "lift.urdf"
+    text = LIFT.format('<mimic joint="grip" multiplier="0.01"/>')
+    path.write_text(text.replace(LIMITED, '<mimic joint="grip" multiplier="0.02"/>', 2), "utf-8")
+    table = read_urdf(path, Choice("arm", "hand"))
+    assert {q: str(e) for q, e in table.couplings.items()} == {"reach": "3*m_reach/2"}
+    said = "reach: it mimics grip and grip is not on the chain"
+    assert any(said in note for note in table.notes)
+
+
+def test_names_of_joints_that_are_words_of_python_are_changed(tmp_path: Path) -> None:
+    path = tmp_path / "palletiser.urdf"
+    path.write_text(PALLETISER.replace('"upper"', '"raise"'), "utf-8")
+    assert "4 branches" in new("palletiser", "urdf", path).inverse
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         (PALLETISER.replace('multiplier="-1"', 'multiplier="0.5"'), "by a whole multiple"),
-        (PALLETISER.replace('"-1"', '"-1" offset="0.1"'), "by a whole multiple"),
+        (PALLETISER.replace('joint="lower"', 'joint="level"'), "which follows it in turn"),
+        (PALLETISER.replace('multiplier="-1"', 'multiplier="0"'), "zero times"),
         (PALLETISER.replace('"-1"', '"x"'), "joint level: multiplier"),
         (PALLETISER.replace("0 0 0.5", "0 0.1 0.5").replace('"0 0 0"', '"0.1 0 0"'), "neighbour"),
-        (PALLETISER.replace('joint="lower"', 'joint="other"'), "which is not on the chain"),
+        (PALLETISER.replace('joint="lower"', 'joint="other"'), "the file has no such joint"),
     ],
 )
 def test_other_joints_that_mimic_are_refused(text: str, message: str, tmp_path: Path) -> None:

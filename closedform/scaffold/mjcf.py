@@ -6,6 +6,7 @@ Only bodies, joints and sites are used, so the meshes of the model need not be t
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,12 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from closedform.scaffold.joints import Joint
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
     DEFAULT,
     LARGEST,
     Choice,
-    Joint,
     meant_angle,
     meant_axis,
     meant_length,
@@ -42,27 +43,42 @@ def read_mjcf(path: Path, choice: Choice = DEFAULT) -> Table:
     """The chain of the ``choice``, whose tool is a body or a site; by default to the end."""
     if b"<mujoco" not in content_of(path, LARGEST, "an MJCF file"):
         raise TableError(f"{path.name}: the file is not MJCF, which begins with <mujoco>")
-    model = _model(path)
-    joints = [j for k in range(1, model.nbody) for j in _body(model, k, path.name)]
+    model, followed = _model(path)
+    found = [j for k in range(1, model.nbody) for j in _body(model, k, path.name)]
+    joints = [_following(j, followed[j.name]) if j.name in followed else j for j in found]
+    sites = [j for k in range(model.nsite) if (j := _site(model, k, path.name))]
     if choice.tool and choice.tool not in {j.child for j in joints}:
-        joints += [j for k in range(model.nsite) if (j := _site(model, k, path.name))]
-    return table_of(joints, path.name, choice)
+        return table_of(joints + sites, path.name, choice)
+    table = table_of(joints, path.name, choice)
+    if beyond := [shown_name(j.child) for j in sites if j.parent == table.end]:
+        table.notes.append(
+            f"{path.name}: a site beyond it can be chosen with --tool: {', '.join(beyond)}"
+        )
+    return table
 
 
-def _model(path: Path) -> Any:
-    """The compiled model, without parts that have to be loaded or may fail."""
+def _model(path: Path) -> tuple[Any, dict[str, Any]]:
+    """The compiled model, without parts that have to be loaded or may fail.
+
+    Also the equations that make one joint follow another, by the name of the one that follows.
+    """
     try:
         import mujoco
     except ModuleNotFoundError as error:
         raise TableError("MJCF is read with MuJoCo; run: pip install 'closedform[mjcf]'") from error
     try:
         spec = mujoco.MjSpec.from_file(str(path))
+        followed = {
+            e.name1: (e.name2, _exact(e.data[:5]))
+            for e in spec.equalities
+            if e.type == mujoco.mjtEq.mjEQ_JOINT and e.active
+        }
         for kind in UNUSED:
             for element in [*getattr(spec, kind, ())]:
                 spec.delete(element)
         for body in spec.bodies:
             body.explicitinertial, body.mass, body.inertia = True, 1.0, [1.0, 1.0, 1.0]
-        return spec.compile()
+        return spec.compile(), followed
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
         raise TableError(f"{path.name} is not a model that MuJoCo reads: {reason}") from error
@@ -93,7 +109,8 @@ def _body(model: Any, k: int, file: str) -> Iterator[Joint]:
         limits = (least, most) if model.jnt_limited[i] else None
         place = (place * back * placed(through, level)).applyfunc(sp.expand)
         written = written * back_written * placed(_exact(joint.pos), level)
-        link = f"{end} after {joint.name or i}"
+        last = i == first + count - 1 and not any(joint.pos)
+        link = end if last else f"{end} after {joint.name or i}"
         name, literal = joint.name or f"q{i + 1}", (written, given)
         yield Joint(
             name=name,
@@ -110,17 +127,37 @@ def _body(model: Any, k: int, file: str) -> Iterator[Joint]:
         at, place, written = link, sp.eye(4), sp.eye(4)
         back = placed([-e for e in through], level)
         back_written = placed([-e for e in _exact(joint.pos)], level)
-    last, literal = place * back, (written * back_written, sp.Matrix([0, 0, 1]))
+    if at == end:
+        return
+    remaining, literal = place * back, (written * back_written, sp.Matrix([0, 0, 1]))
     yield Joint(
         name=f"{end} on {at}",
         kind="fixed",
         parent=at,
         child=end,
-        origin=last,
+        origin=remaining,
         axis=literal[1],
         written=literal,
         notes=tuple(notes),
     )
+
+
+def _following(joint: Joint, equation: tuple[str, list[sp.Rational]]) -> Joint:
+    """A joint that an equality ties to another, or to a constant.
+
+    Their values are counted from ``ref``, as those of the arm are.
+    """
+    other, (offset, factor, *higher) = equation
+    if not other or (factor == 0 and not any(higher)):
+        fault = "an equality holds it; remove the joint, or the equality"
+        return replace(joint, fault=fault)
+    if any(higher):
+        fault = (
+            f"an equality makes it a polynomial of {shown_name(other)}, of degree above 1; "
+            f"remove the equality to read both as joints of their own"
+        )
+        return replace(joint, fault=fault)
+    return replace(joint, mimics=other, factor=factor, offset=offset)
 
 
 def _site(model: Any, k: int, file: str) -> Joint | None:

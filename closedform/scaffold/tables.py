@@ -104,6 +104,8 @@ class Table:
     """Joints that several motors drive: each as a sum of motors, with integers if it turns."""
     notes: list[str] = field(default_factory=list)
     """Entries that were not taken literally, in words for the author of the table."""
+    end: str = ""
+    """The link at the end of a chain."""
     doubt: str = ""
     """A sentence on entries that may not be meant, for an arm without an inverse."""
 

@@ -8,19 +8,17 @@ the notes say so.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.mechanics.frames import homogeneous, rotation
+from closedform.mechanics.frames import exponential, homogeneous, rotation
 from closedform.model.functions import real
 from closedform.scaffold.exact import orthonormal, turned_on, unit_vector, without_squares
+from closedform.scaffold.joints import MOVING, Joint, Mimic, couple, led, symbol_of
 from closedform.scaffold.tables import (
     JOINTS,
-    NUMBERED,
-    TAKEN,
     Table,
     TableError,
     add_joint,
@@ -40,28 +38,6 @@ NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
-MOVING = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A joint of the file, with its place on the parent link and its axis, as they are written."""
-
-    name: str
-    kind: str
-    parent: str
-    child: str
-    origin: sp.Matrix
-    axis: sp.Matrix
-    limits: tuple[str, str] | None = None
-    mimics: str = ""
-    factor: sp.Rational = sp.S.One
-    offset: sp.Rational = sp.S.Zero
-    """Of a joint that mimics another: its value is the factor times that one, plus the offset."""
-    written: tuple[sp.Matrix, sp.Matrix] | None = None
-    """Place and axis without what was taken for other numbers; None if nothing was."""
-    notes: tuple[str, ...] = ()
-    """What was not taken as it is written."""
 
 
 @dataclass(frozen=True)
@@ -83,13 +59,16 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     """The chain of a file, as axes at home."""
     if not joints:
         raise TableError(f"{file}: there are no joints")
-    chain = _chain(joints, choice.base, choice.tool, file)
+    chain = led(_chain(joints, choice.base, choice.tool, file), joints, file)
     table = Table(notes=[note for joint in chain for note in joint.notes])
     moved = Displacement.of(chain)
     chain = _without_short(chain, choice.ignore, file, table.notes)
+    table.end = chain[-1].child
     table.doubt = _doubt(chain)
+    if not choice.tool:
+        table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     place = sp.eye(4)
-    mimics: list[_Mimic] = []
+    mimics: list[Mimic] = []
     for joint in chain:
         where = f"{file}, joint {shown_name(joint.name)}"
         there = _product(place, joint.origin)
@@ -98,11 +77,12 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
         if joint.kind == "fixed":
             continue
         if joint.mimics:
-            mimics.append(_Mimic(joint, place, len(table.axes), where))
+            mimics.append(Mimic(joint, place, len(table.axes), file))
+            place = _product(place, _offset(joint, where, table.notes))
             continue
         if not table.axes and not _along_axes(place):
             table.base, place = place, sp.eye(4)  # what a tilted mount does to all axes stays apart
-        name = _symbol(joint.name)
+        name = symbol_of(joint.name)
         add_joint(table, name, MOVING[joint.kind], where)
         axis = _unit(joint.axis, place[:3, :3], table, where)
         direction = (place[:3, :3] * axis).applyfunc(sp.expand)
@@ -113,8 +93,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
             table.limits[name] = joint.limits
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
-    for mimic in mimics:
-        mimic.couple(table)
+    couple(mimics, table)
     table.home = place
     table.notes.append(
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
@@ -123,6 +102,21 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     table.notes += moved.notes(file)
     use_exact(table, file)
     return table
+
+
+def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:
+    """How far a joint that mimics another is moved if that one is at zero."""
+    if joint.offset == 0:
+        return sp.eye(4)
+    if not orthonormal(joint.axis):
+        raise TableError(
+            f"{where}: it mimics {shown_name(joint.mimics)} with an offset, and its axis is not "
+            f"along the coordinates; put the offset into the origin of the next joint"
+        )
+    if MOVING[joint.kind] == "prismatic":
+        return homogeneous(sp.eye(3), tuple(joint.offset * joint.axis))
+    twist = sp.Matrix([0, 0, 0, *joint.axis])
+    return exponential(twist, meant_angle(joint.offset, f"{where}: offset", notes))
 
 
 class Displacement:
@@ -195,58 +189,6 @@ def _size(value: sp.Matrix) -> float:
     return math.sqrt(sum(float(e.evalf(30)) ** 2 for e in value))
 
 
-@dataclass(frozen=True)
-class _Mimic:
-    """A joint that mimics another, at home, after some number of other joints of the chain."""
-
-    joint: Joint
-    place: sp.Matrix
-    after: int
-    where: str
-
-    def couple(self, table: Table) -> None:
-        """Let a neighbour on the same axis turn by what this joint adds; another has no chain."""
-        mimicked, factor = _symbol(self.joint.mimics), self.joint.factor
-        told = f"{self.where}: it mimics {shown_name(self.joint.mimics)}"
-        if mimicked not in table.joints:
-            raise TableError(f"{told}, which is not on the chain")
-        for k in (self.after, self.after - 1):
-            if 0 <= k < len(table.axes) and (sense := self._sense(*table.axes[k][1:])):
-                name = str(table.axes[k][0])
-                break
-        else:
-            name = ""
-        whole = factor.is_Integer and self.joint.offset == 0
-        turns = {"revolute"} == {
-            MOVING[self.joint.kind],
-            table.joints.get(name),
-            table.joints[mimicked],
-        }
-        if not (whole and turns) or name == mimicked or mimicked in table.couplings:
-            raise TableError(
-                f"{told}; a mimic joint is read if it turns about the axis of a neighbour on the "
-                f"chain that has a motor of its own, and by a whole multiple of the angle of "
-                f"another, as in a parallelogram.  Write the arm as a table of joints and couple "
-                f"the two with d.joint(..., coupling=...)"
-            )
-        own = table.couplings.get(name, real(f"m_{name}"))
-        table.couplings[name] = own + sense * factor * real(f"m_{mimicked}")
-        table.limits.pop(name, None)
-        table.notes.append(
-            f"{told}; both turn about the axis of {name}, whose angle is {table.couplings[name]} "
-            f"in those of the motors"
-        )
-
-    def _sense(self, direction: Sequence[sp.Expr], point: Sequence[sp.Expr]) -> int:
-        """1 or -1 if an axis is that of this joint, in its direction or against it; else 0."""
-        own = (self.place[:3, :3] * self.joint.axis).applyfunc(sp.expand)
-        other, between_axes = sp.Matrix(direction), sp.Matrix(point) - self.place[:3, 3]
-        same = own.cross(other).applyfunc(sp.simplify).is_zero_matrix
-        if not same or not own.cross(between_axes).applyfunc(sp.simplify).is_zero_matrix:
-            return 0
-        return 1 if sp.simplify(own.dot(other)) > 0 else -1
-
-
 def _without_short(
     chain: Sequence[Joint], ignore: float, file: str, notes: list[str]
 ) -> list[Joint]:
@@ -291,6 +233,16 @@ def _doubt(chain: Sequence[Joint]) -> str:
     return (
         f"The file has lengths such as {length:.6g}, of the joint {shown_name(name)}; if they are "
         f"not meant, leave them out with --ignore {_rounded_up(length)}."
+    )
+
+
+def _gripper(chain: Sequence[Joint]) -> str:
+    """What to try if the last joint does not carry the tool: a sentence."""
+    last = [joint for joint in chain if joint.kind in MOVING][-1:]
+    return "".join(
+        f"If the last joint, {shown_name(j.name)}, opens a hand, end the chain before it, with "
+        f"--tool {shown_name(j.parent)}."
+        for j in last
     )
 
 
@@ -376,7 +328,7 @@ def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joi
         if joint.kind in ("ball", "floating", "planar"):
             raise TableError(
                 f"{file}, joint {shown_name(joint.name)}: a {joint.kind} joint has no closed "
-                f"form here; choose a base after it with --base"
+                f"form here; choose a base after it, such as --base {shown_name(joint.child)}"
             )
         if len(found) > 20 * JOINTS:
             raise TableError(f"{file}: the links form a circle")
@@ -413,8 +365,27 @@ def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
         choices = sorted(shown_name(link) for m in longest for link in ends[m])
         raise TableError(
             f"{file}: there are several ends; choose one with --tool: {', '.join(choices)}"
+            f"{_parting([link for m in longest for link in ends[m]], above)}"
         )
     return ends[longest[0]][0]
+
+
+def _parting(ends: Sequence[str], above: Mapping[str, Joint]) -> str:
+    """A clause on the link where the chains to some ends part, if joints that move lead there."""
+    chains = []
+    for end in ends:
+        chain = [end]
+        while chain[0] in above and len(chain) <= 20 * JOINTS:
+            chain.insert(0, above[chain[0]].parent)
+        chains.append(chain)
+    common = [links[0] for links in zip(*chains, strict=False) if len(set(links)) == 1]
+    moving = [above[link].name for link in common if link in above and above[link].kind in MOVING]
+    if not moving:
+        return ""
+    joints = shown_name(moving[0])
+    if len(moving) > 1:
+        joints = f"the {len(moving)} joints {joints} to {shown_name(moving[-1])}"
+    return f"; or {shown_name(common[-1])}, where they part, after {joints}"
 
 
 def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
@@ -428,10 +399,3 @@ def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
     sums = sorted({f.args[0] for f in held}, key=sp.default_sort_key)
     meant = {a: meant_angle(a, f"{where}, together with the turns before it", notes) for a in sums}
     return place.xreplace({f: f.func(meant[f.args[0]]) for f in held})
-
-
-def _symbol(name: str) -> str:
-    """The name of a joint as an identifier that the written script does not use itself."""
-    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
-    known = plain if plain[:1].isalpha() else f"q_{plain}"
-    return f"{known}_0" if known in TAKEN or NUMBERED.fullmatch(known) else known

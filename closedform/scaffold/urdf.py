@@ -14,13 +14,12 @@ from xml.parsers.expat import ExpatError, ParserCreate
 import sympy as sp
 
 from closedform.algebra.formulas import FormulaError, number, shown
+from closedform.scaffold.joints import MOVING, Joint
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
     DEFAULT,
     LARGEST,
-    MOVING,
     Choice,
-    Joint,
     meant_angle,
     meant_axis,
     meant_length,

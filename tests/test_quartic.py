@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from arms import link, newton, wrapped
 from chains import arm, printed, solved
 from flint import arb
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from sympy import cos, pi, sin
 
 from closedform.algebra.balls import Evaluator, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, enclosed
+from closedform.check.crosscheck import check_inverse, module_backend
 from closedform.check.rows import RowEvaluator
 from closedform.emit.backends.latex.article import Page
 from closedform.lemmas.chain import Chain
@@ -151,12 +153,33 @@ WRIST = [(0, pi / 2, 4), (0, -pi / 2, 0), (0, 0, sp.Rational(4, 5))]
 NEAR = (0, pi / 2, 1)
 SHOULDER = [(0, pi / 2, 3), (0, -pi / 2, 0), (0, pi / 2, 4), (1, pi / 3, 1), (2, -pi / 4, 1),
             (sp.Rational(1, 2), pi / 2, 1)]  # fmt: skip
+H, FIFTH = sp.Rational(1, 2), sp.Rational(1, 5)
+MIDDLE = {
+    "general": [(H, pi / 3, 1), (2, 0, H), (1, 0, 0), (H, pi / 2, H), (FIFTH, pi / 3, 1),
+                (0, 0, H)],
+    "level": [(0, pi / 2, 1), (2, 0, 0), (3 * H, 0, 0), (0, pi / 2, H), (FIFTH, pi / 2, H),
+              (0, 0, H)],
+    "oblique": [(FIFTH, pi / 3, 1), (2, 0, H), (1, 0, 0), (FIFTH, pi / 3, H), (FIFTH, pi / 3, 1),
+                (0, 0, H)],
+    "from the tool": [(FIFTH, pi / 3, 1), (H, pi / 2, H), (1, 0, 0), (2, 0, H), (H, pi / 3, 1),
+                      (0, 0, H)],
+}  # fmt: skip
+"""Three parallel axes in the middle, and two skew ones after them, or before them."""
 BEHIND = [(-1, pi / 2, -10), (14, pi / 2, 4), (-14, -pi / 2, 11)]
 """A short distance between skew axes: the ellipse is ten times as large as the arm."""
 
 
 @pytest.mark.parametrize(
-    ("rows", "joint"), [(TILTED + WRIST, 2), (SHOULDER, 3), (BEHIND + WRIST, 2)]
+    ("rows", "joint"),
+    [
+        (TILTED + WRIST, 2),
+        (SHOULDER, 3),
+        (BEHIND + WRIST, 2),
+        (MIDDLE["general"], 4),
+        (MIDDLE["level"], 1),
+        (MIDDLE["oblique"], 2),
+        (MIDDLE["from the tool"], 3),
+    ],
 )
 def test_an_arm_with_skew_axes_gets_all_its_postures(rows: Any, joint: int, tmp_path: Path) -> None:
     """Random postures, and postures at which two solutions meet, are among the answers."""
@@ -200,6 +223,62 @@ def _is_found(code: Any, q: NDArray[Any], gap: float) -> None:
     away = abs((answers - q[:, None] + np.pi) % (2 * np.pi) - np.pi).max(axis=-1)
     free = (status == code.Status.SINGULAR).any(axis=1)
     assert np.nan_to_num(away, nan=9).min(axis=1)[~free].max() < gap
+
+
+@pytest.mark.parametrize("name", ["general", "from the tool"])
+def test_the_postures_are_those_of_a_numeric_inverse(name: str, tmp_path: Path) -> None:
+    """Newton's method from many starts finds the same solutions, and no others."""
+    rows = MIDDLE[name]
+    d, serial = arm(rows)
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    code = printed(d, tmp_path)
+    plain = np.array(rows, dtype=float)
+
+    def pose(q: NDArray[Any]) -> NDArray[Any]:
+        T = np.eye(4)
+        for k, (a, alpha, length) in enumerate(plain):
+            T = T @ link(a, alpha, length, q[:, k])
+        return T
+
+    rng = np.random.default_rng(5)
+    for q in rng.uniform(-np.pi, np.pi, (4, 6)):
+        target = pose(q[None])[0]
+        starts = np.concatenate([q[None], rng.uniform(-np.pi, np.pi, (400, 6))])
+        numeric = newton(pose, target, starts)
+        answers, status = code.ik(target)
+        found = answers[status == code.Status.OK]
+        away = abs(wrapped(numeric[:, None] - found)).max(axis=-1)
+        assert away.min(axis=1).max() < 1e-7 and set(away.argmin(axis=1)) == set(range(len(found)))
+
+
+def test_solutions_that_meet_where_four_axes_are_parallel(tmp_path: Path) -> None:
+    """There the last axis is along the three, and a difference of squares says little."""
+    d, serial = arm(MIDDLE["level"])
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    code = printed(d, tmp_path)
+    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
+    q[:, 4] = np.where(q[:, 4] > 0, np.pi, 0) + 10.0 ** np.random.default_rng(7).uniform(
+        -12, -6, 5000
+    )
+    target = code.fk(q)
+    answers, status = code.ik(target)
+    done = np.isin(status, (code.Status.OK, code.Status.SINGULAR))
+    assert done.any(axis=1).mean() > 0.999
+    missed = abs(code.fk(np.nan_to_num(answers)) - target[:, None]).max(axis=(2, 3))
+    assert missed[done].max() < 1e-11
+
+
+def test_branches_are_named_as_in_exact_arithmetic(tmp_path: Path) -> None:
+    """The names do not depend on how the half of an angle is computed."""
+    d, serial = arm(MIDDLE["oblique"])
+    solved(d, serial, propose(serial).source)
+    prove(d)
+    serial.export(d)
+    code = printed(d, tmp_path)
+    finding = check_inverse(d, d["ik"], d.inverses[0], module_backend("numpy", code))
+    assert not finding.failures and finding.compared > 200
 
 
 def test_a_chain_without_a_quartic_goes_first() -> None:

@@ -18,7 +18,7 @@ from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
 
-POLISHED = 2
+POLISHED = 3
 """The number of steps that remove the rounding of a root."""
 
 theorem(
@@ -69,14 +69,19 @@ class OnCircle:
 
     point: Callable[[Pair], sp.Matrix]
     radius: sp.Expr
+    square: Callable[[Pair], sp.Expr] | None = None
+    """The square of the distance less that of the radius, if there is a more accurate form."""
 
-    def distance(self, chain: Chain, pair: Pair, tag: str) -> sp.Symbol:
-        """The distance of the point from the origin."""
+    def missed(self, chain: Chain, pair: Pair, tag: str) -> sp.Symbol:
+        """The square of the distance of the point from the origin, less that of the radius."""
+        program, r = chain.program, self.radius
+        if self.square is not None:
+            return program.let(f"missed_{tag}", self.square(pair))
         x, y = (
-            chain.program.let(f"{n}_{tag}", e)
-            for n, e in zip("xy", self.point(pair)[:2], strict=True)
+            program.let(f"{n}_{tag}", e) for n, e in zip("xy", self.point(pair)[:2], strict=True)
         )
-        return chain.program.let(f"r_{tag}", sp.sqrt(x**2 + y**2), nonnegative=True)
+        distance = program.let(f"r_{tag}", sp.sqrt(x**2 + y**2), nonnegative=True)
+        return program.let(f"missed_{tag}", (distance - r) * (distance + r))
 
 
 @chain_lemma("p cos 2x + q sin 2x + 2 a cos x + 2 b sin x + e = 0", "the pair of x")
@@ -173,12 +178,16 @@ def quartic(
 def _half(
     chain: Chain, p: sp.Symbol, q: sp.Symbol, size: sp.Symbol, tag: str
 ) -> tuple[Pair, sp.Symbol]:
-    """The pair of half the angle of the vector (p, q) of this size, and whether p is negative."""
+    """The pair of half the angle of the vector (p, q) of this size, and whether p is negative.
+
+    The cosine is not negative, whichever of both is computed first.
+    """
     program = chain.program
     behind = program.vanishes(f"behind_{tag}", p, 0, "p is not positive")
     large = program.let(f"large_{tag}", sp.sqrt((1 + choose(behind, -p, p) / size) / 2))
     small = program.let(f"small_{tag}", q / size / (2 * large))
-    pair = Pair(choose(behind, large, small), choose(behind, small, large))
+    sense = sign_of(q)
+    pair = Pair(choose(behind, sense * large, small), choose(behind, sense * small, large))
     return pair.known_as(program, f"_half_{tag}"), behind
 
 
@@ -228,9 +237,7 @@ def _polished(
     """
     program, ((p, q, a, b), means) = chain.program, equation
     s, c = found.s, found.c
-    r = means.radius
-    distance = means.distance(chain, found, f"{tag}a")
-    missed = program.let(f"missed_{tag}", (distance - r) * (distance + r))
+    missed = means.missed(chain, found, f"{tag}a")
     sine, cosine = 2 * s * c, (c - s) * (c + s)
     rate = program.let(f"rate_{tag}", 2 * (q * cosine - p * sine - a * s + b * c))
     bend = program.let(f"bend_{tag}", -4 * (p * cosine + q * sine) - 2 * (a * c + b * s))
@@ -243,10 +250,10 @@ def _polished(
     t = program.let(f"step_{tag}", choose(still, 0, -above / below))
     unit = program.let(f"unit_{tag}", sp.sqrt(1 + t**2), nonnegative=True)
     ahead = (found + Pair(t / unit, 1 / unit)).known_as(program, f"_{tag}a")
-    after = means.distance(chain, ahead, f"{tag}b")
+    after = means.missed(chain, ahead, f"{tag}b")
     closer = program.vanishes(
         f"closer_{tag}",
-        sp.Abs(after - r) - sp.Abs(distance - r),
+        sp.Abs(after) - sp.Abs(missed),
         0,
         "the step comes closer to the circle",
     )

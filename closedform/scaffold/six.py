@@ -1,7 +1,8 @@
 """Proposes chains for arms of six joints by where their axes are parallel, or meet in a point.
 
 - Three parallel axes leave the component along their direction to the other joints.  They are the
-  first or the last three, or three of the middle; two neighbours of the others meet.
+  first or the last three, or three of the middle; two neighbours of the others meet.  If those
+  after three of the middle are skew, an equation of degree 4 is left.
 - Three axes in the middle that meet in a point leave its distance from where two others meet.
 
 Each also for the arm seen from its tool.
@@ -67,9 +68,10 @@ class SixMaker(SubproblemMaker):
     """Writes the lines for six joints that have no spherical wrist and no spherical shoulder."""
 
     def parallel_middle(self, arm: Singles) -> str:
-        """Axes 2, 3 and 4 are parallel, and axes 5 and 6 meet."""
-        _, two, three, four, *_ = arm.joints
+        """Axes 2, 3 and 4 are parallel, and axes 5 and 6 meet or are skew."""
         self._require_parallel(arm, 1)
+        if not parallel(arm.joints[4]) and arm.met(4, 2) is None:
+            return self._middle_before_skew(arm)
         arm = self._require_met(arm, 4)
         one, two, three, four, five, six = arm.joints
         self.require(
@@ -101,6 +103,101 @@ class SixMaker(SubproblemMaker):
         self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
         names = [j.number for j in (two, three, four, five, six)]
         return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+
+    def _middle_before_skew(self, arm: Singles) -> str:
+        """The same where axes 5 and 6 are skew: an equation of degree 4 for joint 1.
+
+        The direction of the three axes leaves two equations: how far axis 6 is turned toward it,
+        and how far its origin is along it.  Both are linear in the sine and the cosine of joint 5,
+        and in those of joint 1, so that the pair of joint 5 runs along an ellipse if joint 1 turns.
+        It is on the unit circle.
+        """
+        one, two, three, four, five, six = arm.joints
+        numbers = [j.number for j in arm.joints]
+        self.require(
+            not parallel(one) and not parallel(four),
+            f"axes {numbers[0]} and {numbers[1]} or {numbers[3]} and {numbers[4]} are parallel",
+            "Three parallel axes need others that are not parallel to them.",
+        )
+        if self.degree < 4:
+            low, high = sorted(numbers[4:])
+            raise NoChainError(
+                f"axes {low} and {high} do not meet",
+                "Besides the three axes, two neighbouring axes have to meet; otherwise an equation "
+                "of degree 4 remains.",
+                degree=4,
+            )
+        self._seen_from_tool(arm)
+        g, toward, w, s = one.end * Z, four.end.T * Z, five.end * Z, five.shift
+        turned = sp.Matrix([turning(w, toward)[::-1], turning(s, toward)[::-1]])
+        inverse = turned.inv().applyfunc(sp.simplify)
+        height = two.shift[2] + three.shift[2]
+        ends = (sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)]), point("p"))
+        still = (sp.S.Zero, g.dot(one.shift) + height + four.shift[2])
+        centre = [
+            g[2] * end[2] - rest - toward[2] * v[2]
+            for end, rest, v in zip(ends, still, (w, s), strict=True)
+        ]
+        along, aside = ([turning(g, end)[k] for end in ends] for k in (1, 0))
+        for name, seen in (("centre", centre), ("along", along), ("aside", aside)):
+            self.vector(name, source(inverse * sp.Matrix(seen)))
+        double = "(along.dot(along) - aside.dot(aside))/2", "along.dot(aside)"
+        first = self.met_by_circle(one, double, "1", self._near_parallel(one, toward, w))
+        self.vector("on_ellipse", f"centre + along*{first}.c + aside*{first}.s", "across")
+        because = f"{{{self.unknown(one)}: -1}}"
+        fifth = self._rotate(five, "(1, 0)", "on_ellipse", because, scale="1")
+        self.add(f"M = ik.matrix('M_wrist', {times(one.end.T, f'(turned({first}).T * M)')})")
+        q = times(one.end.T, f"(turned({first}).T * p - {source(one.shift)})")
+        self.vector("q", q)
+        inside = times(four.end, f"(turned({fifth}) * {source(s)})")
+        self.vector("to_end", f"{source(four.shift)} + {inside}")
+        lengths = [source(norm(x.shift[:2, 0])) for x in (two, three)]
+        self.carried = Carried("q", "to_end", lengths, point("to_end"))
+        lift = replace(four, turn=two.turn + three.turn + four.turn)
+        x, (along_w, aside_w) = self.unknown(five), turned.row(0)
+
+        def level(factor: str) -> str:
+            return f"{x}: (-{factor}*({source(along_w)}), -{factor}*({source(aside_w)}))"
+
+        self.around((lift, five, six), source(four.end), fifth, level)
+        lever = sp.Abs(turned.det() / norm(toward[:2, 0])).simplify()
+        self.add(f"play = ik.amplified_over({source(lever)})")
+        above = f"q[2] - to_end[2] - ({source(height)})" if height != 0 else "q[2] - to_end[2]"
+        for miss in ("ik.size*(axis[2] - M[2, 2])", above):
+            self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
+        self.vector("q", f"q - turned({self.lifted}) * to_end", "q2")
+        turns, links = [two.turn, three.turn], [two.shift[:2, 0], three.shift[:2, 0]]
+        self.two_links(turns, links, "q[0]", "q[1]")
+        return "axes {1}, {2} and {3} parallel, {4} and {5} skew".format(*numbers)
+
+    def _near_parallel(self, one: Single, toward: sp.Matrix, w: sp.Matrix) -> str:
+        """The argument that says how far the pair of joint 5 is from the unit circle.
+
+        Where axis 6 is nearly along the three axes, two solutions nearly meet, and a difference of
+        squares does not tell them apart.  The sine of joint 5, counted from there, is known to
+        rounding, and so is that of the angle between the axes, which gives the cosine.  Empty if
+        the axes are never parallel.
+        """
+        sense = next((k for k in (1, -1) if sp.simplify(toward[2] - k * w[2]) == 0), 0)
+        if not sense:
+            return ""
+        size = sp.simplify(1 - w[2] ** 2)
+        a, b = (sense * sp.simplify(e) / size for e in turning(w, toward))
+        across, pair = sp.Symbol("across"), [sp.Symbol(f"near[{i}]") for i in (0, 1)]
+        lines = [
+            "def missed(pair):",
+            "    near = centre + along*pair.c + aside*pair.s",
+            f"    aim = {times(one.end.T, '(turned(pair).T * M[:, 2])')}",
+            "    across = aim[0]**2 + aim[1]**2",
+        ]
+        lower = across
+        if w[2] != 0:
+            least = f"Max(1 + {source(sense * sp.Symbol('aim[2]'))}, {source(w[2] ** 2)})"
+            lines.append(f"    lower = {source(across / size)}/{least}")
+            lower = sp.Symbol("lower") * (2 - sp.Symbol("lower"))
+        lines.append(f"    return {source((b * pair[1] - a * pair[0]) ** 2 - lower)}")
+        self.lines += lines
+        return ", missed"
 
     def parallel_first(self, arm: Singles) -> str:
         """Axes 1, 2 and 3 are parallel, and axes 5 and 6 or 4 and 5 meet."""

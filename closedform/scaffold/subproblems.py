@@ -427,7 +427,8 @@ class SubproblemMaker(WristMaker):
         self.add(f"along, aside = {source(ellipse.along)}, {source(ellipse.aside)}")
         self.vector("centre", source(ellipse.centre))
         self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
-        third = self._met_by_circle(three, ellipse)
+        double = source(ellipse.double[0]), source(ellipse.double[1])
+        third = self.met_by_circle(three, double, "radius")
         self.vector("on_ellipse", f"centre + along*{third}.c + aside*{third}.s", "across")
         first = self._rotate(one, "on_ellipse", "p", f"{{{self.unknowns[three.number]}: 1}}")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
@@ -449,16 +450,19 @@ class SubproblemMaker(WristMaker):
             [(first, one.end), (second, two.end), (third, three.end)],
         )
 
-    def _met_by_circle(self, joint: Single, ellipse: Ellipse) -> str:
-        """Solve for where an ellipse meets the circle around the first axis; returns the pair.
+    def met_by_circle(
+        self, joint: Single, double: tuple[str, str], radius: str, more: str = ""
+    ) -> str:
+        """Solve for where an ellipse meets a circle around the origin; returns the pair.
 
-        The equation is the difference of the squares of both distances from the axis.
+        The equation is the difference of the squares of both distances; ``double`` are the
+        coefficients of twice the angle in it.  ``more`` are further arguments of ``OnCircle``.
         """
-        p, q = ellipse.double
-        square = "centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - radius**2"
-        self.add("on_circle = OnCircle(lambda pair: centre + along*pair.c + aside*pair.s, radius)")
+        square = f"centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - {radius}**2"
+        ellipse = "lambda pair: centre + along*pair.c + aside*pair.s"
+        self.add(f"on_circle = OnCircle({ellipse}, {radius}{more})")
         linear = "centre.dot(along), centre.dot(aside)"
-        arguments = f"{self.unknown(joint)}, ({source(p)}, {source(q)}, {linear}, {square})"
+        arguments = f"{self.unknown(joint)}, ({', '.join(double)}, {linear}, {square})"
         pair = f"pair{joint.number}"
         self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
         return pair

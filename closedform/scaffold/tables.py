@@ -42,7 +42,7 @@ LONGEST = 2000
 JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
-IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
+IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Rational", "atan", "atan2")
 CHAIN = (
     "Carrying", "Reaching", "arm_angle", "coordinate_within", "rotation", "sign_of", "turned",
     "within_tilt",
@@ -70,6 +70,7 @@ LINES = {
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "offset",
+    "missed", "near", "aim", "across", "lower",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -7,7 +7,7 @@ middle joint, and two rotations of vectors give the others.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -175,15 +175,31 @@ class WristMaker(Maker):
             a, b = (sp.expand(e) for e in turning(w, g))
             c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
             pair = self._turn(middle, (a, b, c), past, scale="1", choice=FLIP)
-        self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
         of = "" if sense > 0 else "-"
-        because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
+        self.around((first, middle, last), between, pair, lambda e: f"{x}: {of}{e}")
+
+    def around(
+        self,
+        joints: Sequence[Single],
+        between: str,
+        pair: str,
+        level: Callable[[str], str],
+    ) -> None:
+        """Solve the first and the last of three joints for the rotation ``M``.
+
+        The ``pair`` of the middle one is known, and so is the rotation ``between`` the first two.
+        ``level`` writes why a multiple of ``M[2, 2] - axis[2]`` vanishes, with the sign of a tilt.
+        """
+        first, middle, last = joints
+        self.vector("axis", f"{between} * turned({pair}) * {source(middle.end * Z)}")
+        because = f"{{{level('(M[2, 2] + axis[2])')}}}"
         lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16", more=self._free())
         self.add(f"R_last = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
         self.add("R_rest = ik.matrix('R_rest', R_last.T * M)")
-        up = "" if sense > 0 else "-"
         lift = self.unknown(first)
-        each = f"{{{lift}: (-R_last[0, k], -R_last[1, k]), {x}: {up}R_last[2, k]}} for k in (0, 1)"
+        each = (
+            f"{{{lift}: (-R_last[0, k], -R_last[1, k]), {level('R_last[2, k]')}}} for k in (0, 1)"
+        )
         self.solve("spin", f"{self.unknown(last)}, R_rest, [{each}]", f"pair{last.number}")
         self.lifted = lifted
 

@@ -189,9 +189,9 @@ def test_what_to_choose_is_said(name: str, choice: Choice, message: str) -> None
 
 
 def test_a_jaw_and_sites_are_named() -> None:
-    jaw = new("so_arm", "mjcf", MODELS / "so_arm.xml")
-    assert "If the last joint, Jaw, opens a hand" in jaw.advice
-    assert "--tool Fixed_Jaw" in jaw.advice
+    jaw = read_mjcf(MODELS / "so_arm.xml").doubt
+    assert "If the last joint, Jaw, opens a hand" in jaw and "--tool Fixed_Jaw" in jaw
+    assert "Jaw" not in read_mjcf(MODELS / "so_arm.xml", Choice(tool="Moving_Jaw")).doubt
     notes = read_mjcf(MODELS / "ur5e.xml").notes
     assert any("--tool: attachment_site" in note for note in notes)
 

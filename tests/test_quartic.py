@@ -318,10 +318,11 @@ def test_skew_axes_that_meet_are_invalid(tmp_path: Path) -> None:
     [
         ([(4, pi / 2, 3), (4, pi / 2, 0), (2, pi / 2, 0), NEAR, *WRIST[1:]], "on a circle"),
         ([(1, pi / 3, 0), (2, pi / 3, 0), (2, pi / 2, 0), (0, pi / 2, 0), *WRIST[1:]], "to axis 2"),
+        ([*MIDDLE["level"][:4], (sp.Rational(1, 999), pi / 2, H), (0, 0, H)], "that is short"),
     ],
 )
 def test_what_the_chain_cannot_do_well_is_refused(rows: Any, why: str) -> None:
-    """A circle instead of an ellipse, and equal links that fold onto an axis."""
+    """A circle instead of an ellipse, equal links that fold onto an axis, axes that nearly meet."""
     with pytest.raises(NoChainError, match=why) as e:
         propose(arm(rows)[1])
     assert e.value.degree == 4

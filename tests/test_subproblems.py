@@ -109,6 +109,14 @@ def test_eight_joints_are_told_what_to_do() -> None:
     assert "'# t1 = 0.1 rad: held'" in e.value.needed
 
 
+def test_of_eight_joints_a_slide_is_held_in_metres() -> None:
+    """A lift under an arm of seven joints, as of a TIAGo or a Fetch."""
+    rows = [(0, 0, None, 0), *[(0, pi / 2, 1), (0, -pi / 2, 0)] * 3, (0, 0, 1)]
+    with pytest.raises(NoChainError) as e:
+        propose(arm(rows, "d1 t1 t2 t3 t4 t5 t6 t7")[1])
+    assert "'# d1 = 0.1 m: held'" in e.value.needed
+
+
 RAILS = {
     "spherical wrist, axes 3 and 4 parallel, with d1 given": [
         (0, -pi / 2, None, 0), (ROOM, -pi / 2, 1), (2, 0, 0), (ROOM, -pi / 2, 0),

@@ -77,11 +77,12 @@ def _require_few(arm: Serial) -> None:
     """Refuse an arm whose pose leaves more than one joint free."""
     names = [joint.name for joint in arm.joints]
     if (more := len(names) - 6) > 1:
+        unit = "m" if singles(arm).joints[0].slides else "rad"
         raise NoChainError(
             f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
             f"one of them given",
             f"Give values to {more - 1} of them, or to {more}: in a DH table, a line such as "
-            f"'# {names[0]} = 0.1 rad: held' makes a joint a parameter, an input of all printed "
+            f"'# {names[0]} = 0.1 {unit}: held' makes a joint a parameter, an input of all printed "
             f"functions.  Of a URDF file take the part between two links, with --base and --tool.  "
             f"Otherwise use a numeric inverse, such as that of Pinocchio.",
         )

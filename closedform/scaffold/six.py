@@ -22,6 +22,9 @@ from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
 from closedform.scaffold.wrists import Carried, is_normal
 
+SHORT = sp.Rational(1, 1000)
+"""Of the sum of the lengths of an arm: a chain that divides by less loses too many digits."""
+
 
 @dataclass(frozen=True)
 class TurnGoal:
@@ -119,17 +122,26 @@ class SixMaker(SubproblemMaker):
             f"axes {numbers[0]} and {numbers[1]} or {numbers[3]} and {numbers[4]} are parallel",
             "Three parallel axes need others that are not parallel to them.",
         )
+        low, high = sorted(numbers[4:])
         if self.degree < 4:
-            low, high = sorted(numbers[4:])
             raise NoChainError(
                 f"axes {low} and {high} do not meet",
                 "Besides the three axes, two neighbouring axes have to meet; otherwise an equation "
                 "of degree 4 remains.",
                 degree=4,
             )
-        self._seen_from_tool(arm)
         g, toward, w, s = one.end * Z, four.end.T * Z, five.end * Z, five.shift
         turned = sp.Matrix([turning(w, toward)[::-1], turning(s, toward)[::-1]])
+        lever = sp.Abs(turned.det() / norm(toward[:2, 0])).simplify()
+        size = sum(norm(joint.shift) for joint in arm.joints)
+        if not (lever / size).free_symbols and lever < SHORT * size:
+            raise NoChainError(
+                f"axes {low} and {high} pass each other at a distance that is short",
+                "The known chain divides by this distance and loses digits.  If it is not meant, "
+                "let the axes meet.",
+                degree=4,
+            )
+        self._seen_from_tool(arm)
         inverse = turned.inv().applyfunc(sp.simplify)
         height = two.shift[2] + three.shift[2]
         ends = (sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)]), point("p"))
@@ -160,7 +172,6 @@ class SixMaker(SubproblemMaker):
             return f"{x}: (-{factor}*({source(along_w)}), -{factor}*({source(aside_w)}))"
 
         self.around((lift, five, six), source(four.end), fifth, level)
-        lever = sp.Abs(turned.det() / norm(toward[:2, 0])).simplify()
         self.add(f"play = ik.amplified_over({source(lever)})")
         above = f"q[2] - to_end[2] - ({source(height)})" if height != 0 else "q[2] - to_end[2]"
         for miss in ("ik.size*(axis[2] - M[2, 2])", above):
@@ -183,21 +194,21 @@ class SixMaker(SubproblemMaker):
             return ""
         size = sp.simplify(1 - w[2] ** 2)
         a, b = (sense * sp.simplify(e) / size for e in turning(w, toward))
-        across, pair = sp.Symbol("across"), [sp.Symbol(f"near[{i}]") for i in (0, 1)]
+        off_axis, at = sp.Symbol("off_axis"), [sp.Symbol(f"pair_at[{i}]") for i in (0, 1)]
         lines = [
-            "def missed(pair):",
-            "    near = centre + along*pair.c + aside*pair.s",
-            f"    aim = {times(one.end.T, '(turned(pair).T * M[:, 2])')}",
-            "    across = aim[0]**2 + aim[1]**2",
+            "def missed_by(pair):",
+            "    pair_at = centre + along*pair.c + aside*pair.s",
+            f"    aimed = {times(one.end.T, '(turned(pair).T * M[:, 2])')}",
+            "    off_axis = aimed[0]**2 + aimed[1]**2",
         ]
-        lower = across
+        cosine = off_axis
         if w[2] != 0:
-            least = f"Max(1 + {source(sense * sp.Symbol('aim[2]'))}, {source(w[2] ** 2)})"
-            lines.append(f"    lower = {source(across / size)}/{least}")
-            lower = sp.Symbol("lower") * (2 - sp.Symbol("lower"))
-        lines.append(f"    return {source((b * pair[1] - a * pair[0]) ** 2 - lower)}")
+            least = f"Max(1 + {source(sense * sp.Symbol('aimed[2]'))}, {source(w[2] ** 2)})"
+            lines.append(f"    below_one = {source(off_axis / size)}/{least}")
+            cosine = sp.Symbol("below_one") * (2 - sp.Symbol("below_one"))
+        lines.append(f"    return {source((b * at[1] - a * at[0]) ** 2 - cosine)}")
         self.lines += lines
-        return ", missed"
+        return ", missed_by"
 
     def parallel_first(self, arm: Singles) -> str:
         """Axes 1, 2 and 3 are parallel, and axes 5 and 6 or 4 and 5 meet."""

@@ -28,12 +28,12 @@ def read_script(script: str) -> Derivation:
     return space["d"]
 
 
-def derived(name: str, script: str, folder: Path) -> ModuleType:
+def derived(name: str, script: str, folder: Path, *, crosscheck: bool = False) -> ModuleType:
     """The NumPy module that is printed from a script."""
     path, out = folder / f"{name}.py", folder / f"{name}_out"
     path.write_text(script, "utf-8")
-    derive = ["derive", str(path), "-o", str(out), "--backend", "numpy", "--no-crosscheck"]
-    assert main(derive) == 0
+    derive = ["derive", str(path), "-o", str(out), "--backend", "numpy"]
+    assert main([*derive, *["--no-crosscheck"] * (not crosscheck)]) == 0
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         return importlib.import_module(f"{name}_out.numpy.{name}")

@@ -241,7 +241,7 @@ class _Errors:
             moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
             scale += moved / self.backend.eps
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
-        if error > WELL_CONDITIONED and self.values.beside_pose:
+        if error > WELL_CONDITIONED and self.values.near_pole:
             grown = float(self._amplified_scales(row)[k])
             if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
                 return None

@@ -8,7 +8,7 @@ same on every run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from closedform.check.rows import RowEvaluator, inaccurate
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Function
+from closedform.model.functions import Function, substitute
 
 Array = NDArray[np.float64]
 
@@ -202,12 +202,24 @@ class Magnitudes:
     Divisors keep their value.  With ``amplified``, a quotient is multiplied by the natural scale of
     its divisor over the divisor.  Each subexpression is visited once, because the full tree would
     be far too large.
+
+    The expressions may contain ``names``, with a value each, which hold what cancels in a formula
+    that is written out.
     """
 
     def __init__(
-        self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr], *, amplified: bool = False
+        self,
+        symbols: Sequence[sp.Symbol],
+        exprs: Sequence[sp.Expr],
+        *,
+        amplified: bool = False,
+        names: Mapping[sp.Symbol, sp.Expr] | None = None,
     ):
         self._amplified = amplified
+        self._names = names or {}
+        self._written_out: dict[sp.Basic, sp.Expr] = {}
+        for name, value in self._names.items():
+            self._written_out[name] = substitute(value, self._written_out)
         self._places = {s: k for k, s in enumerate(symbols)}
         self._steps: list[Callable[[list[Any], Sequence[Any]], Any]] = []
         self._known: dict[sp.Basic, int] = {}
@@ -235,6 +247,9 @@ class Magnitudes:
         return self._known[e]
 
     def _step(self, e: sp.Basic) -> Callable[[list[Any], Sequence[Any]], Any]:
+        if e in self._names:
+            value = self._place(self._names[e])
+            return lambda done, given: done[value]
         if isinstance(e, (sp.sin, sp.cos)):
             return lambda done, given: 1.0
         if isinstance(e, (sp.atan2, sp.asin, sp.acos, sp.atan)):
@@ -253,7 +268,7 @@ class Magnitudes:
         if isinstance(e, sp.Pow) and e.exp.is_Number and e.exp > 0:
             base, power = self._place(e.base), float(e.exp)
             return lambda done, given: np.power(done[base], power)
-        self._divisors.append(e)
+        self._divisors.append(substitute(e, self._written_out))
         place = len(self._places) + len(self._divisors) - 1
         if self._amplified and isinstance(e, sp.Pow) and e.exp.is_Number:
             inner, power = self._place(e.base), float(e.exp)

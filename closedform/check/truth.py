@@ -69,12 +69,14 @@ class Values:
         self.angles = np.array([isinstance(e, sp.atan2) for e in self.exprs])
         symbols = symbols_of(derivation, function)
         self.exact = RowEvaluator(symbols, self.exprs)
-        self.scales = Magnitudes(symbols, self.exprs)
-        self._symbols = symbols
+        self._symbols, self._function = symbols, function
+        self.scales = self._magnitudes(amplified=False)
         target = {str(s) for s in function.symbols} == set(derivation.task)
         self.beside_pose = len(function.inputs) > 1 or target
         """Whether it takes a target: alone, where the legs may not hold it, or beside joints, of
         which samples do not close the loop, so that what belongs together cancels less well."""
+        self.near_pole = self.beside_pose or function.branches is not None
+        """Whether divisors may nearly cancel: also where assembly modes meet."""
         self.lengths = numbers_of_tool(derivation)
         degrees = Degrees(self.exprs if self.beside_pose else ())
         self._degrees = np.array(degrees.degrees or [0.0] * len(self.exprs))
@@ -84,9 +86,21 @@ class Values:
         self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
 
     @cached_property
-    def amplified(self) -> Magnitudes:
+    def amplified(self) -> Callable[[Array, type], Array]:
         """The natural scales, enlarged where divisors nearly cancel."""
-        return Magnitudes(self._symbols, self.exprs, amplified=True)
+        return self._magnitudes(amplified=True)
+
+    def _magnitudes(self, *, amplified: bool) -> Callable[[Array, type], Array]:
+        """The natural scales; of a loop, those of its lengths before they cancel."""
+        if self._function.branches is None:
+            return Magnitudes(self._symbols, self.exprs, amplified=amplified)
+        flags = dict.fromkeys(_flags_of(self._function), sp.false)
+        outputs = [substitute(e, flags) for a in self._function.outputs for e in a.entries]
+        cases = [
+            Magnitudes(self._symbols, outputs, amplified=amplified, names=_names(self._function, s))
+            for _, s in self._function.cases()
+        ]
+        return lambda rows, dtype: np.concatenate([case(rows, dtype) for case in cases], axis=1)
 
     def powers(self, rows: Array) -> Array:
         """For each entry, the largest length to the power of its degree; 0 for degrees up to 1."""
@@ -102,6 +116,22 @@ class Values:
     def flagged(self, rows: Array, limit: float) -> Array:
         """Where a flag is raised, so that the value is a convention."""
         return _flagged(self._flags, rows, limit)
+
+
+def _flags_of(function: Function) -> list[sp.Symbol]:
+    return [s.symbol for s in function.body if isinstance(s, Vanishes)]
+
+
+def _names(
+    function: Function, signs: Mapping[sp.Symbol, int]
+) -> dict[sp.Symbol, sp.Expr | sp.Basic]:
+    """The names of a function in one of its cases, each with its value; flags are false."""
+    flags = dict.fromkeys(_flags_of(function), sp.false)
+    made = [s for s in function.body if isinstance(s, Let | Bound)]
+    return {
+        **{sign: sp.Integer(value) for sign, value in signs.items()},
+        **{s.symbol: substitute(s.value, flags) for s in made},
+    }
 
 
 class Condition:

@@ -95,7 +95,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
     f, sigma = d.program(), real("sigma_assembly")
     modes = branches((sigma, choice))
     d.assembly_modes = modes.labels
-    size = f.let("size", size_of(d, _slid(driver)))
+    size = f.let("size", size_of(d, (driver, follower), _slid(driver)))
     names = Naming(f, size, "_2", MOVED if _slid(driver) else SHARE)
     found = follower.solve(names, driver.end() - follower.base, sigma)
     d.step(
@@ -206,7 +206,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
 def _inverse(loop: _Loop) -> None:
     d, driver, follower = loop.d, loop.driver, loop.follower
     g, sigma, x = d.program(), real("sigma_driver"), follower.joint
-    size = g.let("size", size_of(d, _slid(follower)))
+    size = g.let("size", size_of(d, (driver, follower), _slid(follower)))
     found = driver.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
     inside = bounds_of(g)
     A = g.let("A", found.rod.dot(follower.rate))

@@ -114,7 +114,7 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     slid = [leg.joint for leg in m.legs if isinstance(leg, Slide | Rail)]
     # the size has to be positive where a leg has a negative length, which does not reach a rail
     stretched = [sp.Abs(q) if m.rails else q for q in stretched]
-    size = f.let("size", size_of(d, slid) + sp.Add(*stretched))
+    size = f.let("size", size_of(d, m.legs, slid) + sp.Add(*stretched))
     ends = [
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
         for (k, _), c in zip(m.numbered, m.centres, strict=True)
@@ -512,7 +512,7 @@ def export(d: Derivation, program: Program, modes: Branches, functions: Sequence
 def _inverse(m: Hand, loop: Step) -> None:
     d, g = m.d, m.d.program()
     slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
-    solved = LegByLeg(d, g, g.let("size", size_of(d, tuple(m.hand) if slides else ())))
+    solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, tuple(m.hand) if slides else ())))
     straight: list[sp.Matrix] = []
     hand = m.hand
     for k, leg in m.numbered:

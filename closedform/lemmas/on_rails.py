@@ -144,7 +144,7 @@ def _forward(m: OnRails, choice: Choice, loop: Step) -> _Posture:
     d, f, sigma = m.d, m.d.program(), real("sigma_assembly")
     yaw, modes = m.target[2], branches((sigma, choice))
     d.assembly_modes = modes.labels
-    size = f.let("size", size_of(d, d.actuated))
+    size = f.let("size", size_of(d, m.legs, d.actuated))
     named = [named_in(f, n, e) for n, e in zip("abc", m.coefficients, strict=True)]
     start = len(f.body)
     at = Amplitude.of(
@@ -359,7 +359,7 @@ def _draw(m: OnRails, at: _Posture) -> None:
 
 def _inverse(m: OnRails, loop: Step) -> None:
     d, g = m.d, m.d.program()
-    solved = LegByLeg(d, g, g.let("size", size_of(d, m.target[:2])))
+    solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, m.target[:2])))
     for (k, leg), arm in zip(m.driven, m.turned, strict=True):
         solved.solve(k, leg, m.hand + arm - leg.base)
     a, b, _ = m.coefficients

@@ -457,7 +457,7 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
     if m.dimensions == 3:
         require_pose(g, m.pose)
     slides = any(isinstance(leg, Slide) for leg in m.legs)
-    solved = LegByLeg(d, g, g.let("size", size_of(d, tuple(m.position) if slides else ())))
+    solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, tuple(m.position) if slides else ())))
     arms = _named_arms(m, g)
     for (k, leg), arm in zip(m.numbered, arms, strict=True):
         solved.solve(k, leg, m.position + arm - leg.base)

@@ -380,7 +380,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
     d, g = m.d, m.d.program()
     legs = [u.leg for u in m.legs]
     moved = m.target[:1] if any(isinstance(leg, Slide) for leg in legs) else ()
-    solved = LegByLeg(d, g, g.let("size", size_of(d, moved)))
+    solved = LegByLeg(d, g, g.let("size", size_of(d, legs, moved)))
     placed = m.placed(g, guarded=True)
     for k, (number, leg) in enumerate(m.numbered):
         corner = placed.corner(leg, k)

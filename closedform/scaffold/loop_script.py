@@ -34,16 +34,17 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
             )
         driven, struts = found.legs(), found.struts()
         legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
-        if found.turning:
+        if found.turning and not (loop.dimensions == 2 and _held(loop)):
             upright = [] if struts or loop.parallelograms else uprights(found)
             if not upright:
                 _check_turning(found, driven, struts)
             legs, task = upright or legs, []
         elif len(legs) != loop.dimensions:
             on_sphere = " beside its strut" if struts else ""
+            held = f"; the parallelogram {_held(loop)[0]} keeps it from turning" * bool(_held(loop))
             raise loop.error(
                 f"{len(driven)} joints are driven, but a hand that does not turn needs "
-                f"{loop.dimensions - len(struts)}{on_sphere}"
+                f"{loop.dimensions - len(struts)}{on_sphere}{held}"
             )
     table = Table()
     for leg in legs:
@@ -51,6 +52,11 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
             kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
             add_joint(table, leg.joint.name, kind, loop.file)
     return "\n".join([*_head(name, loop, legs, task, origin), *_body(table, legs, task)]) + "\n"
+
+
+def _held(loop: Loop) -> list[str]:
+    """The rods that are parallelograms; in a plane one of them keeps the hand from turning."""
+    return [rod for rod in loop.rods if rod in loop.parallelograms]
 
 
 def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> None:
@@ -64,8 +70,9 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
             + f", and leads to an equation of degree {degree}" * (degree is not None)
         )
     if loop.parallelograms:
+        these = "one" if loop.dimensions == 2 else "all"
         raise loop.error(
-            f"{body} may turn; either all of its rods have to be parallelograms, or none"
+            f"{body} may turn; either {these} of its rods must be parallelograms, or no body"
         )
     hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
@@ -127,7 +134,7 @@ def _head(
     used = " ".join(leg.call for leg in legs) + "Rational(" * any(
         f.denominator != 1 for f in fractions
     )
-    functions = [f for f in ("Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
+    functions = [f for f in ("Abs", "Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
     functions += ["pi"] * bool(re.search(r"\bpi\b", used))
     lines = [
         f'"""{title}: a derivation from {origin}."""',

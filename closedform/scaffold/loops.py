@@ -55,7 +55,7 @@ GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
 USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "Derivation", "Paper"}
 USED |= {"Crank", "Parallelogram", "Rail", "Slide", "Stretch", "Strut", "Upright"}
-USED |= {"Rational", "cos", "sin", "sqrt"}
+USED |= {"Abs", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""

@@ -135,11 +135,23 @@ def test_the_words_for_a_single_loop_name_no_hand(tmp_path: Path) -> None:
     assert script.count("joins to the other leg") == 2
 
 
-def test_lengths_in_numbers_reach_as_far_as_parameters(tmp_path: Path) -> None:
+def in_numbers(name: str, second: str, folder: Path) -> ModuleType:
+    """The coaxial five-bar with numbers for lengths; the second rod has its own."""
     text = (FOLDER / "coaxial_five_bar.toml").read_text("utf-8")
-    bodies = text[text.index("[bodies]") :].replace('"l1"', "0.1").replace('"l2"', "0.2")
-    script = script_of("in_numbers", f'hand = "P"\n{bodies}', tmp_path)
-    loop = derived("in_numbers", script, tmp_path)
-    rng = np.random.default_rng(5)
+    bodies = text[text.index("[bodies]") :].replace('"l1"', "0.1")
+    bodies = bodies.replace('"l2"', "0.2", 1).replace('"l2"', second)
+    return derived(name, script_of(name, f'hand = "P"\n{bodies}', folder), folder)
+
+
+def test_lengths_in_numbers_reach_as_far_as_parameters(tmp_path: Path) -> None:
+    loop, rng = in_numbers("same_rods", "0.2", tmp_path), np.random.default_rng(5)
     stretched = 0.3 * np.array([(np.cos(a), np.sin(a)) for a in rng.uniform(-3, 3, 500)])
     assert (loop.ik(stretched).status != UNREACHABLE).all()
+
+
+def test_rods_whose_lengths_are_different_numbers_are_proved(tmp_path: Path) -> None:
+    loop = in_numbers("other_rods", "0.25", tmp_path)
+    p, status = loop.fk([0.3, 2])
+    ends = 0.1 * np.array([(np.cos(a), np.sin(a)) for a in (0.3, 2)])
+    assert not status.any()
+    assert np.allclose(np.linalg.norm(p[:, None] - ends, axis=-1), [0.2, 0.25])

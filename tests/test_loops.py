@@ -467,7 +467,7 @@ def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "other", "message"),
     [
-        ('hand = "P"', 'hand = "Q"', "neither a point nor a joint"),
+        ('hand = "P"', 'hand = "Q"', "is not a point of a body"),
         ("driven = true", "driven = false", "no joint is driven"),
         ('parallelogram = [0, "w", 0]\n', "", "may turn"),
         ('[0, "w", 0]', "true", "a vector along its short sides"),
@@ -485,6 +485,29 @@ def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
         ('at = "C"', 'at = ""', "letters, digits"),
         ('hand = "P"', 'hand = "P\\n"', "letters, digits"),
         ('at = "O"', 'at = "U"', "x has no point U, where b1 is"),
+        ('length = "L"', "length = -0.5", "must be positive, not -1/2"),
+        ('length = "L"\n', 'length = "L"\nQ = [0, 0, 0]\n', "no points, but there is Q"),
+        ('["z", "rod3"]', '["rod3", "rod3"]', "between names rod3 twice"),
+        ('["rod3", "hand"]', '["rod3", "x"]', "it is joined to rod1 and rod3"),
+        (
+            '["rod3", "hand"]\nat = "C"',
+            '["rod3", "half"]\nat = "C"\n[bodies.half]\nC = [0, 0, 0]',
+            "c3 leads to half, not to a body with the point P, which is the hand",
+        ),
+        ("[bodies.hand]", "[bodies.spare]\nS = [0, 0, 0]\n[bodies.hand]", "no joint holds spare"),
+        (
+            "[joints.b1]",
+            "[bodies.rod4]\nlength = 1\n[joints.b4]\nbetween = ['ground', 'rod4']\n"
+            "at = 'O'\n[joints.c4]\nbetween = ['rod4', 'hand']\nat = 'P'\n[joints.b1]",
+            "a hand that does not turn needs 2 beside its strut",
+        ),
+        (
+            "[joints.b1]",
+            "[bodies.tube]\nO = [0, 0, 0]\n[joints.o]\nbetween = ['ground', 'tube']\n"
+            "kind = 'universal'\n[joints.s]\nbetween = ['tube', 'hand']\nat = 'P'\n"
+            "kind = 'prismatic'\n[joints.b1]",
+            "no leg contains o and s;",
+        ),
     ],
 )
 def test_a_file_that_cannot_be_read_says_why(
@@ -492,6 +515,12 @@ def test_a_file_that_cannot_be_read_says_why(
 ) -> None:
     with pytest.raises(TableError, match=message):
         written(SLIDERS.replace(old, other), tmp_path)
+
+
+def test_the_pivot_of_a_crank_has_one_place(tmp_path: Path) -> None:
+    moved = FIVE_BAR.replace("[bodies.crank2]", "[bodies.crank2]\nA2 = [0, 0]")
+    with pytest.raises(TableError, match="A2, where theta2 is, has different coordinates"):
+        written(moved, tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.lemmas.chain import lengths_in_numbers
-from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
 from closedform.lemmas.rails import Rail
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
@@ -174,14 +174,16 @@ def _either(names: Sequence[str]) -> str:
     return f"{', '.join(first)} or {last}" if first else last
 
 
-def size_of(d: Derivation, legs: Sequence[Leg], moved: Sequence[sp.Expr] = ()) -> sp.Expr:
+def size_of(
+    d: Derivation, legs: Sequence[Leg | Crank | Slide | Rail], moved: Sequence[sp.Expr] = ()
+) -> sp.Expr:
     """The sum of the lengths of a mechanism and of the travel of its slides."""
     lengths = [p for p in d.parameters if p.unit != "rad"]
     sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
     return sp.Add(*sized, *map(sp.Abs, moved), *map(_in_numbers, legs))
 
 
-def _in_numbers(leg: Leg) -> sp.Expr:
+def _in_numbers(leg: Leg | Crank | Slide | Rail) -> sp.Expr:
     """The lengths of a leg that are numbers, not parameters."""
     lengths = [0 if isinstance(leg, Rail) else leg.rod, getattr(leg, "length", 0)]
     places = [[length] for length in lengths] + [leg.base, leg.on_hand]

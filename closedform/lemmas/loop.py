@@ -178,7 +178,7 @@ def _on_rods(
     m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
 ) -> _Meeting:
     n = len(m.legs)
-    radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
+    radii = _radii(m, f)
     meet = two_circles if n == 2 else three_spheres
     still = all(isinstance(leg, Crank | Strut) for leg in m.legs)
     hand, share = tuple(m.hand), SHARE if still else MOVED
@@ -208,6 +208,16 @@ def _on_rods(
             NEAR,
         ),
     )
+
+
+def _radii(m: Hand, f: Program) -> list[sp.Symbol]:
+    """The lengths of the rods; numbers that differ have names, because the lemma equates them."""
+    rods = {k: sp.sympify(leg.rod, strict=True) for k, leg in m.numbered}
+    same = len({*rods.values()}) == 1
+    return [
+        rod if rod.is_Symbol or (rod.is_number and same) else f.let(f"r_{k}", rod)
+        for k, rod in rods.items()
+    ]
 
 
 def _on_rails(

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 
 from closedform.algebra.formulas import number
-from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg
+from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
 from closedform.scaffold.source import file_name, literal
 from closedform.scaffold.tables import Table, add_joint
 from closedform.scaffold.uprights import HINGED, uprights
@@ -28,11 +28,14 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
         legs, task = _coupled(found, follower), [loop.hand]
     else:
         points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
+        if follower:
+            raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
         if loop.hand not in points:
             raise loop.error(
-                f"hand = {loop.hand!r} is neither a point nor a joint that is not driven"
+                f"the hand {loop.hand} is not a point of a body, nor where a joint is, nor a joint"
             )
         driven, struts = found.legs(), found.struts()
+        found.check_all_used()
         legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
         if found.turning and not (loop.dimensions == 2 and _held(loop)):
             upright = [] if struts or loop.parallelograms else uprights(found)
@@ -74,6 +77,12 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
         raise loop.error(
             f"{body} may turn; either {these} of its rods must be parallelograms, or no body"
         )
+    fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
+    if fixed and loop.dimensions == 3:
+        raise loop.error(
+            f"{listed(fixed)} would hold {body} by an axis; a leg is known to end on a hand that "
+            f"turns in a spherical or a universal joint"
+        )
     hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
     if struts or len(legs) != needed:
@@ -104,6 +113,7 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     loop.hand = ends[0][1].at
     second = found.leg(follower)
     loop.hand = hand
+    found.check_all_used()
     if first.passive or second.passive:
         raise loop.error("a single loop with a rail is not known; a rod has to close it")
     return [first, second]

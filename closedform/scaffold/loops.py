@@ -202,9 +202,19 @@ def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
                 )
             else:
                 raise TableError(f"{where}: {key} must be a point, such as [0, 0]")
+        if name in loop.rods:
+            _check_rod(loop.rods[name], points, where)
         loop.bodies[name] = points
     if GROUND not in loop.bodies:
         raise loop.error("there is no [bodies.ground]; one body must stand still")
+
+
+def _check_rod(length: sp.Expr, points: Mapping[str, sp.Matrix], where: str) -> None:
+    """Refuse a length that is not positive, and points, which only a body without a length has."""
+    if length.is_number and not length.is_positive:
+        raise TableError(f"{where}: the length of a rod must be positive, not {length}")
+    if points:
+        raise TableError(f"{where}: a rod has a length and no points, but there is {min(points)}")
 
 
 def _read_joints(loop: Loop, joints: Any) -> None:
@@ -219,6 +229,8 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         if not (isinstance(between, list) and len(between) == 2):
             raise TableError(f'{where}: between must be two bodies, such as ["ground", "crank1"]')
         between = [_named(b, f"{where}: between") for b in between]
+        if between[0] == between[1]:
+            raise TableError(f"{where}: between names {between[0]} twice; give two bodies")
         missing = [b for b in between if b not in loop.bodies]
         if missing:
             raise TableError(f"{where}: there is no body {missing[0]}")
@@ -265,6 +277,8 @@ class Legs:
         self.loop = loop
         self.turning = ""
         """The body that is the hand, if it may turn."""
+        self.used: set[str] = set()
+        """The joints that legs consist of."""
         self.end = "the hand"
         """What a rod joins a leg to."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
@@ -312,6 +326,17 @@ class Legs:
             raise loop.error("no joint is driven; set driven = true")
         return [self.leg(j) for j in driven]
 
+    def check_all_used(self) -> None:
+        """Refuse joints that are part of no leg, and bodies without a joint."""
+        if left := [name for name in self.loop.joints if name not in self.used]:
+            raise self.loop.error(
+                f"no leg contains {listed(left)}; a leg leads from the ground to {self.end} and "
+                f"has a driven joint, and only a rod may lead there without one"
+            )
+        held = {body for joint in self.loop.joints.values() for body in joint.between}
+        if loose := [name for name in self.loop.bodies if name not in {*held, GROUND}]:
+            raise self.loop.error(f"no joint holds {listed(loose)}")
+
     def struts(self) -> list[LoopLeg]:
         """The rods from the ground to the hand, which no joint drives."""
         loop = self.loop
@@ -325,6 +350,7 @@ class Legs:
                     f"the rod {rod} leads from the ground to the hand; only one may, and only in "
                     "space, with two driven joints"
                 )
+            self.used.add(joint.name)
             length, place = self.bar(rod, loop.rods[rod]), self.place_on_hand(rod, joint)
             base = self.point(GROUND, joint)
             found.append(
@@ -342,12 +368,10 @@ class Legs:
         if GROUND not in joint.between:
             return self.stretch(joint)
         body = joint.other(GROUND)
-        rods = [
-            (j, j.other(body))
-            for j in loop.of(body)
-            if j is not joint and j.other(body) in loop.rods
-        ]
-        slides = [j for j in loop.of(body) if j.kind == "prismatic" and j is not joint]
+        self.used.add(joint.name)
+        onward = [j for j in loop.of(body) if j is not joint]
+        rods = [(j, j.other(body)) for j in onward if j.other(body) in loop.rods]
+        slides = [j for j in onward if j.kind == "prismatic"]
         if joint.kind == "prismatic" and len(slides) == 1 and not rods:
             return self.rail(joint, body, slides[0])
         if joint.kind == "revolute" and slides and not rods:
@@ -355,10 +379,11 @@ class Legs:
                 f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
                 f"known on a driven slider, not on a driven crank"
             )
-        if len(rods) != 1:
+        if len(rods) != 1 or len(onward) != 1:
+            carried = listed([j.other(body) for j in onward]) or "nothing else"
             raise loop.error(
-                f"{joint.name} moves {body}, which must carry one rod, a body with a length, or "
-                f"one passive slide; it carries {len(rods)} rods"
+                f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
+                f"length, or to one body by a passive slide; it is joined to {carried}"
             )
         if joint.kind == "prismatic":
             return self.slider(joint, *rods[0])
@@ -387,6 +412,11 @@ class Legs:
         end = self.point(body, near)
         length, tail = self.bar(rod, loop.rods[rod]), self.tail(place)
         start = self.point(GROUND, joint)
+        if any(sp.simplify(e) != 0 for e in loop.bodies[body].get(joint.at, start) - start):
+            raise loop.error(
+                f"{joint.at}, where {name} is, has different coordinates on the ground and on "
+                f"{body}; the points of {body} are where they are when {name} is zero"
+            )
         arm = end - start
         if loop.dimensions == 3:
             if joint.axis is None:
@@ -426,6 +456,7 @@ class Legs:
         assert slide.axis is not None
         if joint.axis[0] * slide.axis[1] == joint.axis[1] * slide.axis[0]:
             raise loop.error(f"{joint.name} and {slide.name} slide in the same direction")
+        self.used.add(slide.name)
         points, place = loop.bodies[far], sp.zeros(2, 1)
         if loop.hand in points:
             place = points.get(slide.at, points[loop.hand]) - points[loop.hand]
@@ -438,6 +469,7 @@ class Legs:
             ]
             if not pins:
                 raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
+            self.used |= {pin.name for pin in pins}
             place = self.place_of(pins[0], far)
         return LoopLeg(
             joint,
@@ -471,6 +503,7 @@ class Legs:
             ends[GROUND in others[0].between] = others[0]
         if len(ends) != 2:
             raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
+        self.used |= {joint.name, *(end.name for end in ends.values())}
         base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])
         return LoopLeg(
@@ -484,7 +517,11 @@ class Legs:
         """Where a rod ends, seen from the point that is the hand."""
         far = [j for j in self.loop.of(rod) if j is not near]
         if not far or (len(far) > 1 and any(j.at != self.loop.hand for j in far)):
-            raise self.loop.error(f"the rod {rod} must have two ends")
+            raise self.loop.error(
+                f"the rod {rod} must have two ends, one of them on {self.end}; it is joined to "
+                f"{listed([near.other(rod), *(j.other(rod) for j in far)])}"
+            )
+        self.used |= {near.name, *(j.name for j in far)}
         return self.place_of(far[0], rod)
 
     def place_of(self, far: Joint, rod: str = "") -> sp.Matrix:
@@ -492,15 +529,27 @@ class Legs:
         if far.at == loop.hand:
             return sp.zeros(loop.dimensions, 1)
         body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
-        if not body or far.at not in loop.bodies[body]:
-            raise loop.error(f"{far.name} does not lead to the hand {loop.hand}")
+        if not body:
+            other = far.other(rod) if rod in far.between else " and ".join(far.between)
+            raise loop.error(
+                f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
+                f"{self.end}; a leg has one rod"
+            )
+        if far.at not in loop.bodies[body]:
+            raise loop.error(f"{body} has no point {far.at}, where {far.name} is")
         if rod not in loop.parallelograms:
             self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
+
+
+def listed(names: Sequence[str]) -> str:
+    """``a, b and c``."""
+    *first, last = names or [""]
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
-__all__ = ["AXES", "GROUND", "TURNING", "Joint", "Legs", "Loop", "LoopLeg", "read_loop"]
+__all__ = ["AXES", "GROUND", "TURNING", "Joint", "Legs", "Loop", "LoopLeg", "listed", "read_loop"]

@@ -36,6 +36,7 @@ from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWrist
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
+from closedform.lemmas.on_rod import on_rod as on_rod
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.platform import platform as platform

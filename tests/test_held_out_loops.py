@@ -70,9 +70,24 @@ def spherical_four_bar(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [float(C @ B) - np.cos(v.beta)]
 
 
+def minitaur(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    ends = v.l1 * np.array([(np.cos(a), np.sin(a)) for a in q])
+    knee = p + (ends[0] - p) * v.t / (v.l2 + v.t)
+    return [norm(*(p - ends[0])) - v.l2 - v.t, norm(*(knee - ends[1])) - v.l2]
+
+
+def loader(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    pin = v.l * np.array([np.cos(q[0]), np.sin(q[0])])
+    ahead = (p - pin) / v.r
+    pushed = pin - v.a * ahead + v.h * np.array([-ahead[1], ahead[0]])
+    return [norm(*(p - pin)) - v.r, norm(pushed[0], pushed[1] + v.b) - q[1]]
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "diamond": (diamond, 4),
+    "loader": (loader, 2),
+    "minitaur": (minitaur, 4),
     "oblique_rails": (oblique_rails, 4),
     "prrrp": (prrrp, 4),
     "rssr": (rssr, 2),
@@ -80,6 +95,8 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
 }
+TRAVEL = {"loader": 2.0}
+"""How far slides are tried, if it is not half a metre."""
 
 
 @pytest.fixture(scope="module", params=MISSES)
@@ -101,7 +118,9 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
     turns = [loop.SKELETON.joints[name].kind == "revolute" for name in loop.JOINTS]
     assert len(loop.BRANCHES) == modes
     found = {"fk": 0, "ik": 0}
-    for q in rng.uniform(0, 0.5, (20, len(turns))) * np.where(turns, 12, 1):
+    for q in rng.uniform(0, 1, (20, len(turns))) * np.where(
+        turns, 6, TRAVEL.get(name_of(loop), 0.5)
+    ):
         forward = loop.fk(q)
         for start in rng.uniform(-1, 1, (STARTS, forward.p.shape[-1])):
             p = newton(lambda p: np.array(misses(v, q, p)), start)  # noqa: B023
@@ -119,7 +138,7 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
 def test_all_postures_close_the_loop(loop: ModuleType) -> None:
     misses, _ = MISSES[name_of(loop)]
     v, rng = loop.Parameters(), np.random.default_rng(4)
-    q = rng.uniform(0, 0.5, (200, len(loop.JOINTS)))
+    q = rng.uniform(0, TRAVEL.get(name_of(loop), 0.5), (200, len(loop.JOINTS)))
     p, status = loop.fk(q)
     assert (status == OK).any()
     for target in p[status == OK]:

@@ -319,7 +319,8 @@ def test_legs_that_do_not_fit_say_why() -> None:
     ("old", "other", "message"),
     [
         ('theta3 = {between = ["ground", "crank3"], at = "A3", driven = true}',
-         'theta3 = {between = ["ground", "crank3"], at = "A3"}', "no leg contains theta3, b3 and c3;"),
+         'theta3 = {between = ["ground", "crank3"], at = "A3"}',
+         "no leg contains theta3, b3 and c3;"),
         ('rod1 = {length = "r"}', 'rod1 = {length = "r", parallelogram = [0, "r"]}',
          "the parallelogram rod1 keeps it from turning"),
         ("theta1 =", "yaw =", "yaw is a coordinate of the hand; give the joint another name"),

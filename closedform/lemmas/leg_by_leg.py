@@ -97,13 +97,14 @@ class LegByLeg:
     def export(
         self,
         target: Mapping[str, Any],
-        contained: Mapping[str, Any],
+        contained: Mapping[str, Any] | None,
         unreachable: str,
         notes: Sequence[str],
     ) -> None:
         """Export ``ik`` and, if the reach is limited, ``workspace_contains``.
 
         These are their inputs, the note on what is UNREACHABLE, and the further notes of ``ik``.
+        Without inputs, ``workspace_contains`` is left out, because the reach depends on the mode.
         """
         d, inside = self.d, bounds_of(self.program)
         working = branches(*self.choices) if self.choices else SINGLE
@@ -123,7 +124,7 @@ class LegByLeg:
                 *notes,
             ),
         )
-        if inside.body:
+        if inside.body and contained is not None:
             d.function(
                 "workspace_contains",
                 "Whether the hand can reach the target.",

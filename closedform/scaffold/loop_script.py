@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from closedform.algebra.formulas import number
 from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
+from closedform.scaffold.on_rod import on_rod
 from closedform.scaffold.source import file_name, literal
 from closedform.scaffold.tables import Table, add_joint
 from closedform.scaffold.uprights import HINGED, uprights
@@ -22,10 +24,13 @@ FUNCTIONS = {"Rational", "Abs"}
 def loop_script(name: str, loop: Loop, origin: str) -> str:
     """The derivation of a loop, as Python."""
     origin = file_name(origin)
-    found = Legs(loop)
+    found, at = Legs(loop), ""
     follower = loop.joints.get(loop.hand)
     if follower and not follower.driven:
         legs, task = _coupled(found, follower), [loop.hand]
+    elif carried := on_rod(found):
+        (legs, at), task = carried, list(AXES[:2])
+        found.check_all_used()
     else:
         points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
         if follower:
@@ -54,7 +59,8 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
         if leg.joint.driven:
             kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
             add_joint(table, leg.joint.name, kind, loop.file)
-    return "\n".join([*_head(name, loop, legs, task, origin), *_body(table, legs, task)]) + "\n"
+    way = _Way(legs, task, at)
+    return "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
 
 
 def _held(loop: Loop) -> list[str]:
@@ -119,11 +125,30 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     return [first, second]
 
 
-def _way(legs: Sequence[LoopLeg], task: Sequence[str]) -> str:
-    """The call that derives the loop; a hand that turns sets its task itself."""
-    if legs[0].call.startswith("Upright"):
-        return "tripod"
-    return {0: "platform", 1: "coupled"}.get(len(task), "parallel")
+@dataclass(frozen=True)
+class _Way:
+    """What derives the loop: its legs, its task, and where the second rod ends on the first."""
+
+    legs: Sequence[LoopLeg]
+    task: Sequence[str]
+    at: str = ""
+
+    @property
+    def name(self) -> str:
+        """The function that is called; a hand that turns sets its task itself."""
+        if self.legs[0].call.startswith("Upright"):
+            return "tripod"
+        if self.at:
+            return "on_rod"
+        return {0: "platform", 1: "coupled"}.get(len(self.task), "parallel")
+
+    @property
+    def arguments(self) -> list[str]:
+        """Those after the derivation and the task."""
+        legs = [leg.call for leg in self.legs]
+        if self.name in ("coupled", "on_rod"):
+            return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
+        return ["    [", *(f"        {leg}," for leg in legs), "    ],"]
 
 
 def _sentence(leg: LoopLeg) -> str:
@@ -133,15 +158,14 @@ def _sentence(leg: LoopLeg) -> str:
     return f"{leg.words[0].upper()}{leg.words[1:]}"
 
 
-def _head(
-    name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
-) -> list[str]:
+def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
+    legs, task = way.legs, way.task
     title = name.replace("_", " ").capitalize()
     words = "  ".join(f"{_sentence(leg)}." for leg in legs)
     calls = sorted({c for leg in legs for c in re.findall(r"([A-Z]\w+)\(", leg.call)} - FUNCTIONS)
-    names = sorted([*calls, "Derivation", "Paper", _way(legs, task), *["real"] * bool(task)])
+    names = sorted([*calls, "Derivation", "Paper", way.name, *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
-    used = " ".join(leg.call for leg in legs) + "Rational(" * any(
+    used = " ".join([*(leg.call for leg in legs), way.at]) + "Rational(" * any(
         f.denominator != 1 for f in fractions
     )
     functions = [f for f in ("Abs", "Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
@@ -179,21 +203,21 @@ def wrapped_literal(text: str) -> list[str]:
     return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
 
 
-def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[str]:
+def _body(table: Table, way: _Way) -> list[str]:
     lines = []
     for joint, kind in table.joints.items():
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
-    for leg in legs:
+    for leg in way.legs:
         if leg.passive:
             lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
-    if len(task) == 1:
-        (x,) = task
-        lines += [f'{x} = real("{x}")', f"{_way(legs, task)}(", "    d,"]
-        return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
-    hand = [f"    ({', '.join(f'real({literal(x)})' for x in task)}),"] if task else []
-    lines += [f"{_way(legs, task)}(", "    d,", *hand, "    ["]
-    return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
+    if way.name == "coupled":
+        (x,) = way.task
+        lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
+    else:
+        coordinates = ", ".join(f"real({literal(x)})" for x in way.task)
+        lines += [f"{way.name}(", "    d,", *[f"    ({coordinates}),"] * bool(way.task)]
+    return [*lines, *way.arguments, ")"]
 
 
 __all__ = ["loop_script"]

@@ -53,8 +53,18 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "Derivation", "Paper"}
-USED |= {"Crank", "Parallelogram", "Rail", "Slide", "Stretch", "Strut", "Upright"}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod"}
+USED |= {
+    "Derivation",
+    "Paper",
+    "Crank",
+    "Parallelogram",
+    "Rail",
+    "Slide",
+    "Stretch",
+    "Strut",
+    "Upright",
+}
 USED |= {"Abs", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
@@ -279,6 +289,8 @@ class Legs:
         """The body that is the hand, if it may turn."""
         self.used: set[str] = set()
         """The joints that legs consist of."""
+        self.arm = ""
+        """The rod that has the point of the hand, if the hand is not where rods end."""
         self.end = "the hand"
         """What a rod joins a leg to."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
@@ -300,7 +312,8 @@ class Legs:
 
     def tail(self, place: sp.Matrix) -> str:
         """The last argument of a leg, left out if its rod ends in the point of the hand."""
-        return "" if self.upright or not any(place) else f", on_hand={_tuple(place)}"
+        plain = self.upright or self.arm or not any(place)
+        return "" if plain else f", on_hand={_tuple(place)}"
 
     def bar(self, body: str, length: sp.Expr) -> str:
         """The length of a rod or a crank, or the parallelogram that it is."""
@@ -509,13 +522,16 @@ class Legs:
         return LoopLeg(
             joint,
             f"Stretch({joint.name}, {self.at(base)}{self.tail(place)})",
-            f"{joint.name} is the length of a leg from the ground to the hand",
+            f"{joint.name} is the length of a leg from the ground to {self.end}",
             place,
         )
 
     def place_on_hand(self, rod: str, near: Joint) -> sp.Matrix:
         """Where a rod ends, seen from the point that is the hand."""
         far = [j for j in self.loop.of(rod) if j is not near]
+        if rod == self.arm:
+            self.used.add(near.name)
+            return sp.zeros(2, 1)
         if not far or (len(far) > 1 and any(j.at != self.loop.hand for j in far)):
             raise self.loop.error(
                 f"the rod {rod} must have two ends, one of them on {self.end}; it is joined to "

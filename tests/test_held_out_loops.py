@@ -54,6 +54,10 @@ def scott_russell(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [norm(q[0], p[0]) - 2 * v.l]
 
 
+def cylinder(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    return [norm(-v.l * np.sin(p[0]) - v.f, v.l * np.cos(p[0])) - q[0]]
+
+
 def diamond(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     """The first crank points to the left at zero, and turns as the other one does."""
     ends = [-v.w - v.l * np.cos(q[0]), v.w + v.l * np.cos(q[1])], v.l * np.sin(q) * [-1, 1]
@@ -85,6 +89,7 @@ def loader(v, q: np.ndarray, p: np.ndarray) -> list[float]:
 
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
+    "cylinder": (cylinder, 1),
     "diamond": (diamond, 4),
     "loader": (loader, 2),
     "minitaur": (minitaur, 4),
@@ -95,7 +100,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
 }
-TRAVEL = {"loader": 2.0}
+TRAVEL = {"cylinder": 0.8, "loader": 2.0}
 """How far slides are tried, if it is not half a metre."""
 
 

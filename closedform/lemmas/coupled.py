@@ -1,23 +1,25 @@
 """A single loop: a rod joins the driven leg to another one, whose joint is the task.
 
-The four-bar linkage (two cranks) and the slider-crank (a crank and a slide) are of this kind.
+The four-bar linkage (two cranks) and the slider-crank (a crank and a slide) are of this kind.  If
+the driven leg stretches, it takes the place of the rod: a cylinder that turns a lever.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import sympy as sp
 
-from closedform.lemmas.hand import check_plain, in_space, square
+from closedform.lemmas.hand import check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
-from closedform.lemmas.legs import Crank, Naming, Slide
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
 from closedform.lemmas.loop import NO_MODE, Exported, export
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
-from closedform.model.functions import Branches, Program, branches, real
+from closedform.model.functions import SINGLE, Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 
 POSITION = {+1: "positive", -1: "negative"}
@@ -26,7 +28,7 @@ POSITION = {+1: "positive", -1: "negative"}
 
 def coupled(
     d: Derivation,
-    driver: Crank | Slide,
+    driver: Crank | Slide | Stretch,
     follower: Crank | Slide,
     modes: Choice = POSITION,
 ) -> None:
@@ -38,7 +40,8 @@ def coupled(
         the derivation, with its parameters and one joint; the task has one coordinate
     driver, follower
         the legs, see :mod:`closedform.lemmas.legs`, with the same rod; the joint of the first is
-        that of the derivation, and the joint of the second is the symbol of the task
+        that of the derivation, and the joint of the second is the symbol of the task.  If the
+        driver is a ``Stretch``, its joint is the rod of the follower
     modes
         the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
     """
@@ -47,10 +50,11 @@ def coupled(
         raise ValueError(f"{d.name}: the driver and the follower must have the same rod")
     d.singularities, d.poles = ("driver", "follower"), ("follower",)
     loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod, strict=True) ** 2
+    keeps = "is the driver" if isinstance(driver, Stretch) else "keeps its length"
     stated = d.step(
         "The loop",
         "The driver determines the point B1 at one end of the rod, and the follower the point B2 "
-        "at the other end.  The rod keeps its length.",
+        f"at the other end.  The rod {keeps}.",
         {
             r"\mathbf B_1": driver.end(),
             r"\mathbf B_2": follower.end(),
@@ -71,10 +75,19 @@ class _Loop:
     """The loop of a derivation: its legs, its equation, and the step that states it."""
 
     d: Derivation
-    driver: Crank | Slide
+    driver: Crank | Slide | Stretch
     follower: Crank | Slide
     equation: sp.Expr
     stated: Step
+
+    @property
+    def rod(self) -> sp.Expr:
+        return sp.sympify(self.driver.rod, strict=True)
+
+    @property
+    def driven(self) -> Leg:
+        """The driver, as a leg of any kind."""
+        return cast("Leg", self.driver)
 
 
 @dataclass(frozen=True)
@@ -86,8 +99,8 @@ class _Rod:
     vector: sp.Matrix
 
 
-def _slid(*legs: Crank | Slide) -> list[sp.Symbol]:
-    return [leg.joint for leg in legs if isinstance(leg, Slide)]
+def _slid(leg: Crank | Slide | Stretch) -> list[sp.Symbol]:
+    return [] if isinstance(leg, Crank) else [leg.joint]
 
 
 def _forward(loop: _Loop, choice: Choice) -> _Rod:
@@ -129,7 +142,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
 def _points(loop: _Loop) -> dict[str, sp.Matrix]:
     legs = {"1": loop.driver, "2": loop.follower}
     return {f"A{k}": leg.base for k, leg in legs.items()} | {
-        f"B{k}": leg.end() for k, leg in legs.items()
+        f"B{k}": leg.end() for k, leg in legs.items() if not isinstance(leg, Stretch)
     }
 
 
@@ -137,11 +150,17 @@ def _draw(loop: _Loop, rod: _Rod) -> None:
     d, driver, follower = loop.d, loop.driver, loop.follower
     posture = {name: in_space(at) for name, at in _points(loop).items()}
     end = driver.end() + rod.vector
-    lengths = {("B1", "B2"): sp.sympify(driver.rod, strict=True)}
-    links = {"ground": ("A1", "A2"), "rod": ("B1", "B2")}
+    closing = ("A1" if isinstance(driver, Stretch) else "B1", "B2")
+    lengths = {closing: loop.rod}
+    links: dict[str, tuple[str, ...]] = {"ground": ("A1", "A2")}
+    if not isinstance(driver, Stretch):
+        links["rod"] = closing
     joints: dict[sp.Symbol, tuple[str, ...]] = {}
     for k, leg in enumerate((driver, follower), 1):
         base, near = f"A{k}", f"B{k}"
+        if isinstance(leg, Stretch):
+            joints[leg.joint] = closing
+            continue
         crank = isinstance(leg, Crank)
         lengths[base, near] = (
             sp.sympify(leg.length, strict=True) if isinstance(leg, Crank) else leg.joint
@@ -163,7 +182,7 @@ def _draw(loop: _Loop, rod: _Rod) -> None:
         branches=rod.modes,
         notes=(NO_MODE,),
         at_posture=[posture],
-        closing={("B1", "B2"): loop.equation},
+        closing={closing: loop.equation},
     )
 
 
@@ -172,13 +191,18 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
     q, x = driver.joint, follower.joint
     A, B = velocity_matrices([loop.equation], (x,), (q,))
     along = follower.end() - driver.end()
-    a, b = along.dot(follower.rate), along.dot(driver.rate)
+    a, b = along.dot(follower.rate), rate_of(loop.driven, along)
+    serial = (
+        "B is the length of the driver."
+        if isinstance(driver, Stretch)
+        else "B vanishes if the driver moves B1 at right angles to the rod (serial: the driver "
+        "moves and the follower stands still)."
+    )
     d.step(
         "Velocity and singular sets",
-        "The derivative of the loop equation, halved, gives A*dx = B*dq.  B vanishes if the driver "
-        "moves B1 at right angles to the rod (serial: the driver moves and the follower stands "
-        "still).  A vanishes if the follower moves B2 at right angles to the rod (parallel: the "
-        "driver stands still and cannot hold the follower).",
+        f"The derivative of the loop equation, halved, gives A*dx = B*dq.  {serial}  A vanishes "
+        "if the follower moves B2 at right angles to the rod (parallel: the driver stands still "
+        "and cannot hold the follower).",
         {"A": a, "B": b},
         proves="A and B are half of the derivatives.",
         equal=[(A[0] / 2, a), (B[0] / 2, b)],
@@ -186,7 +210,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
     )
     v = Program(list(rod.program.body), rod.program.taken)
     placed = follower.rate_at(driver.end() + rod.vector)
-    A_at, B_at = v.let("A", rod.vector.dot(placed)), v.let("B", rod.vector.dot(driver.rate))
+    A_at, B_at = v.let("A", rod.vector.dot(placed)), v.let("B", rate_of(loop.driven, rod.vector))
     pole = "Not finite at a parallel singularity."
     functions: list[Exported] = [
         ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
@@ -194,7 +218,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
             "jacobian_serial",
             "B of A*dx = B*dq.",
             {"B": [B_at]},
-            ("Its sign distinguishes the working modes.",),
+            ("Its sign distinguishes the working modes.",) * (loop.driven.signs == 2),
         ),
         ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, (pole,)),
         ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
@@ -207,20 +231,26 @@ def _inverse(loop: _Loop) -> None:
     d, driver, follower = loop.d, loop.driver, loop.follower
     g, sigma, x = d.program(), real("sigma_driver"), follower.joint
     size = g.let("size", size_of(d, (driver, follower), _slid(follower)))
-    found = driver.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
+    found = loop.driven.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
     inside = bounds_of(g)
     A = g.let("A", found.rod.dot(follower.rate))
-    scale, least = driver.rod, "the length of the rod"
+    stretches = isinstance(driver, Stretch)
+    scale, least = found.value if stretches else loop.rod, "the length of the rod"
     if isinstance(follower, Crank):
-        scale, least = driver.rod * size, f"{least} times the sum of all lengths"
+        scale, least = scale * size, f"{least} times the sum of all lengths"
     across = "the rod is at right angles to the follower"
     g.determined(sp.Abs(A), scale, across, name="|A|")
-    working = branches((sigma, SIGN))
+    working = SINGLE if stretches else branches((sigma, SIGN))
     d.branches = working.labels
+    reached = (
+        "The driver is the distance of B2 from B1."
+        if stretches
+        else "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  "
+        "Its two solutions are told apart by the sign of B."
+    )
     d.step(
         "Inverse: the driver",
-        "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  "
-        "Its two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
+        f"{reached}  Near a parallel singularity rounded "
         "joints do not determine the follower, however they are computed.  A rounding error of "
         "the lengths moves it by this error times the length of the rod over A.  The status is "
         f"SINGULAR if A is less than 2^-10 of {least}.",
@@ -229,28 +259,29 @@ def _inverse(loop: _Loop) -> None:
     )
     d.function(
         "ik",
-        "The driven joint in both working modes.",
+        f"The driven joint in {'the only working mode' if stretches else 'both working modes'}.",
         {"x": (x,)},
         {"q": [found.value]},
         program=g,
         branches=working,
         result="Solutions",
         notes=(
-            "UNREACHABLE: the rod does not reach.",
+            *["UNREACHABLE: the rod does not reach."] * bool(inside.body),
             *where_free([found]),
             "SINGULAR also near the parallel singularity, where the rod is at right angles to the "
             "path of the follower: the loop closes, but one ulp of the driver moves the follower "
             "by more than 1e-12.",
         ),
     )
-    d.function(
-        "workspace_contains",
-        "Whether the follower can reach the target.",
-        {"p": (x,)},
-        {"inside": sp.true},
-        program=inside,
-        boolean=True,
-    )
+    if inside.body:
+        d.function(
+            "workspace_contains",
+            "Whether the follower can reach the target.",
+            {"p": (x,)},
+            {"inside": sp.true},
+            program=inside,
+            boolean=True,
+        )
     record_lemma(d, "ik", found.link)
     d.inverses.append(
         Inverse(

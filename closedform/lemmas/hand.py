@@ -216,7 +216,7 @@ def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
         )
 
 
-def check_plain(d: Derivation, legs: Sequence[Leg | Crank | Slide]) -> None:
+def check_plain(d: Derivation, legs: Sequence[Leg | Crank | Slide | Stretch]) -> None:
     """Refuse parallelograms in a mechanism whose hand can turn."""
     parts = [part for leg in legs for part in (leg.rod, getattr(leg, "length", None))]
     if any(isinstance(part, Parallelogram) for part in parts):

@@ -176,7 +176,9 @@ def _either(names: Sequence[str]) -> str:
 
 
 def size_of(
-    d: Derivation, legs: Sequence[Leg | Crank | Slide | Rail], moved: Sequence[sp.Expr] = ()
+    d: Derivation,
+    legs: Sequence[Leg | Crank | Slide | Stretch | Rail],
+    moved: Sequence[sp.Expr] = (),
 ) -> sp.Expr:
     """The sum of the lengths of a mechanism and of the travel of its slides."""
     lengths = [p for p in d.parameters if p.unit != "rad"]
@@ -184,7 +186,7 @@ def size_of(
     return sp.Add(*sized, *map(sp.Abs, moved), *map(_in_numbers, legs))
 
 
-def _in_numbers(leg: Leg | Crank | Slide | Rail) -> sp.Expr:
+def _in_numbers(leg: Leg | Crank | Slide | Stretch | Rail) -> sp.Expr:
     """The lengths of a leg that are numbers, not parameters."""
     lengths = [0 if isinstance(leg, Rail) else leg.rod, getattr(leg, "length", 0)]
     places = [[length] for length in lengths] + [leg.base, leg.on_hand]

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import sympy as sp
+
 from closedform.algebra.formulas import number
 from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
 from closedform.scaffold.on_rod import on_rod
@@ -102,27 +104,36 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
 
 def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     """The driver and the follower of a single loop."""
-    loop = found.loop
+    loop, hand = found.loop, found.loop.hand
     drivers = found.driven()
     if len(drivers) != 1 or GROUND not in follower.between:
         raise loop.error("a loop with one driven joint needs a follower that is on the ground")
-    driver, ends = drivers[0], []
-    for joint in (driver, follower):
-        body = joint.other(GROUND)
-        near = next((j for j in loop.of(body) if j is not joint), None)
-        if near is None:
-            raise loop.error(f"{body} is joined to the ground alone")
-        ends.append((joint, near))
-    hand, found.end = loop.hand, "the other leg"
-    loop.hand = ends[1][1].at
+    (driver,), found.end = drivers, "the other leg"
+    far = _beyond(loop, follower)
+    loop.hand = far.at
     first = found.leg(driver)
-    loop.hand = ends[0][1].at
-    second = found.leg(follower)
+    if GROUND in driver.between:
+        loop.hand = _beyond(loop, driver).at
+    else:  # the leg that stretches is the rod
+        half = far.other(follower.other(GROUND))
+        if half not in driver.between:
+            raise loop.error(f"{half} must be a rod, or half of the leg that {driver.name} moves")
+        loop.rods[half], loop.hand = sp.Symbol(driver.name, real=True), driver.at
+    legs = [first, found.leg(follower)]
     loop.hand = hand
     found.check_all_used()
-    if first.passive or second.passive:
+    if any(leg.passive for leg in legs):
         raise loop.error("a single loop with a rail is not known; a rod has to close it")
-    return [first, second]
+    return legs
+
+
+def _beyond(loop: Loop, joint: Joint) -> Joint:
+    """The joint at the other end of a body on the ground."""
+    body = joint.other(GROUND)
+    near = next((j for j in loop.of(body) if j is not joint), None)
+    if near is None:
+        raise loop.error(f"{body} is joined to the ground alone")
+    return near
 
 
 @dataclass(frozen=True)

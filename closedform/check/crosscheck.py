@@ -43,6 +43,9 @@ NESTED = 64.0
 steps the natural scale grows with every step, and would soon allow any error.
 """
 
+NEAR_POLE = 2.0**-8
+"""What vanishes where assembly modes meet is small below this share of its scale."""
+
 MENTIONED = 5
 """The number of failures of a function that are reported."""
 
@@ -241,7 +244,10 @@ class _Errors:
             moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
             scale += moved / self.backend.eps
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
-        if error > WELL_CONDITIONED and self.values.near_pole:
+        if error > WELL_CONDITIONED and self.values.in_modes:
+            scale += self._of_lengths(row, k)
+            error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED and (self.values.beside_pose or self._near_pole(row)):
             grown = float(self._amplified_scales(row)[k])
             if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
                 return None
@@ -256,6 +262,16 @@ class _Errors:
         most = NESTED * max(self._largest[row], self.powers[row, k])
         scale = self.scales[row, k]
         return float(min(scale, most)) if math.isfinite(scale) else math.inf
+
+    def _near_pole(self, row: int) -> bool:
+        """Whether assembly modes are so close that divisors nearly cancel."""
+        here = self.rows[row : row + 1]
+        return self.values.in_modes and bool(self.values.flagged(here, NEAR_POLE)[0])
+
+    def _of_lengths(self, row: int, k: int) -> float:
+        """The natural scale with the lengths that cancel, at most the largest length."""
+        named = self.values.named(self.rows[row : row + 1], self.backend.dtype)[0, k]
+        return float(min(named, max(self.lengths, default=named)))
 
     def _amplified_scales(self, row: int) -> NDArray[Any]:
         if row not in self._amplified:

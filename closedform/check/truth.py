@@ -70,13 +70,13 @@ class Values:
         symbols = symbols_of(derivation, function)
         self.exact = RowEvaluator(symbols, self.exprs)
         self._symbols, self._function = symbols, function
-        self.scales = self._magnitudes(amplified=False)
+        self.scales = Magnitudes(symbols, self.exprs)
         target = {str(s) for s in function.symbols} == set(derivation.task)
         self.beside_pose = len(function.inputs) > 1 or target
         """Whether it takes a target: alone, where the legs may not hold it, or beside joints, of
         which samples do not close the loop, so that what belongs together cancels less well."""
-        self.near_pole = self.beside_pose or function.branches is not None
-        """Whether divisors may nearly cancel: also where assembly modes meet."""
+        self.in_modes = function.branches is not None
+        """Whether it has a value in each assembly mode; divisors nearly cancel where modes meet."""
         self.lengths = numbers_of_tool(derivation)
         degrees = Degrees(self.exprs if self.beside_pose else ())
         self._degrees = np.array(degrees.degrees or [0.0] * len(self.exprs))
@@ -88,17 +88,22 @@ class Values:
     @cached_property
     def amplified(self) -> Callable[[Array, type], Array]:
         """The natural scales, enlarged where divisors nearly cancel."""
-        return self._magnitudes(amplified=True)
+        if self.in_modes:
+            return self._of_names(amplified=True)
+        return Magnitudes(self._symbols, self.exprs, amplified=True)
 
-    def _magnitudes(self, *, amplified: bool) -> Callable[[Array, type], Array]:
-        """The natural scales; of a loop, those of its lengths before they cancel."""
-        if self._function.branches is None:
-            return Magnitudes(self._symbols, self.exprs, amplified=amplified)
-        flags = dict.fromkeys(_flags_of(self._function), sp.false)
-        outputs = [substitute(e, flags) for a in self._function.outputs for e in a.entries]
+    @cached_property
+    def named(self) -> Callable[[Array, type], Array]:
+        """The natural scales with all lengths, also those that cancel in the explicit form."""
+        return self._of_names(amplified=False)
+
+    def _of_names(self, *, amplified: bool) -> Callable[[Array, type], Array]:
+        function = self._function
+        flags = dict.fromkeys(_flags_of(function), sp.false)
+        outputs = [substitute(e, flags) for a in function.outputs for e in a.entries]
         cases = [
-            Magnitudes(self._symbols, outputs, amplified=amplified, names=_names(self._function, s))
-            for _, s in self._function.cases()
+            Magnitudes(self._symbols, outputs, amplified=amplified, names=_names(function, signs))
+            for _, signs in function.cases()
         ]
         return lambda rows, dtype: np.concatenate([case(rows, dtype) for case in cases], axis=1)
 

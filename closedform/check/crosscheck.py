@@ -43,8 +43,8 @@ NESTED = 64.0
 steps the natural scale grows with every step, and would soon allow any error.
 """
 
-NEAR_POLE = 2.0**-8
-"""What vanishes where assembly modes meet is small below this share of its scale."""
+NEAR_POLE = 2.0**-6
+"""What vanishes or ends where assembly modes meet is small below this share of its scale."""
 
 MENTIONED = 5
 """The number of failures of a function that are reported."""
@@ -264,9 +264,12 @@ class _Errors:
         return float(min(scale, most)) if math.isfinite(scale) else math.inf
 
     def _near_pole(self, row: int) -> bool:
-        """Whether assembly modes are so close that divisors nearly cancel."""
+        """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""
+        if not self.values.in_modes:
+            return False
         here = self.rows[row : row + 1]
-        return self.values.in_modes and bool(self.values.flagged(here, NEAR_POLE)[0])
+        flagged = self.values.flagged(here, NEAR_POLE)[0]
+        return bool(flagged or (self.values.existence(here, NEAR_POLE) == 0).any())
 
     def _of_lengths(self, row: int, k: int) -> float:
         """The natural scale with the lengths that cancel, at most the largest length."""

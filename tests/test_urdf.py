@@ -423,18 +423,18 @@ def test_a_joint_that_mimics_another_may_have_an_offset(tmp_path: Path) -> None:
 LIMITED = '<limit lower="0" upper="0.2"/>'
 
 
-def slide(name: str, parent: str, child: str, place: str, axis: str, more: str) -> str:
+def slide(name: str, parent: str, child: str, place: str, axis: str, *, more: str) -> str:
     return joint(name, parent, child, place, axis, more=more).replace("revolute", "prismatic")
 
 
 LIFT = "<robot>" + "".join(
     [
-        slide("outer", "base", "mast", "0 0 0.3", "0 0 1", LIMITED),
+        slide("outer", "base", "mast", "0 0 0.3", "0 0 1", more=LIMITED),
         joint("turn1", "mast", "column", "0 0 0.1", "0 0 1"),
-        slide("inner", "column", "head", "0.02 0 0", "0 0 -1", MIMIC.format(-0.5)),
+        slide("inner", "column", "head", "0.02 0 0", "0 0 -1", more=MIMIC.format(-0.5)),
         joint("swing", "head", "arm", "0.1 0 0", "0 0 1"),
-        slide("reach", "arm", "beam", "0.4 0 0", "1 0 0", LIMITED),
-        slide("tip", "beam", "hand", "0.1 0 0.05", "1 0 0", "{}"),
+        slide("reach", "arm", "beam", "0.4 0 0", "1 0 0", more=LIMITED),
+        slide("tip", "beam", "hand", "0.1 0 0.05", "1 0 0", more="{}"),
         joint("grip", "hand", "finger", "0 0 0", "0 1 0"),
         joint("grip2", "hand", "thumb", "0 0 0", "0 1 0", more='<mimic joint="grip"/>'),
         "</robot>",

@@ -223,6 +223,25 @@ def test_figures_are_drawn_with_their_captions(tmp_path: Path) -> None:
     assert {f.name for f in figures_of("rpr_planar")} == {c.partition("-")[2] for c in captions}
 
 
+def test_each_figure_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Any] = []
+    monkeypatch.setattr(figures, "write", lambda figure, *targets: made.append([*targets]))
+    assert main(["figures", "planar_2r", "-o", str(tmp_path), "--docs", str(tmp_path)]) == 0
+    stems = [{t.stem for t in targets} for targets in made]
+    assert all(len(s) == 1 for s in stems)
+    assert len(set().union(*stems)) == len(made)
+    assert {t.name for targets in made for t in targets if t.suffix == ".svg"} == {
+        f"{name}.svg" for name in ("planar_2r", *(f"planar_2r-fig{k}" for k in range(1, 5)))
+    }
+
+
+def test_one_drawing_is_saved_in_each_format(tmp_path: Path) -> None:
+    for targets in (("a.svg", "a.pdf"), ("b.svg",), ("b.pdf",)):
+        plot.save(plot.mechanism(puma560), *(tmp_path / t for t in targets))
+    for suffix in (".svg", ".pdf"):
+        assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+
 def test_a_figure_of_a_paper_is_the_same_on_every_run(tmp_path: Path) -> None:
     for name in ("a.svg", "b.svg"):
         assert main(["plot", "hybrid_five_bar", "fig5", "-o", str(tmp_path / name)]) == 0

@@ -336,11 +336,10 @@ def plot_command(options: argparse.Namespace) -> None:
 def figures_command(options: argparse.Namespace) -> None:
     """Draw every figure of every generated mechanism."""
     try:
-        for line in figures.draw_all(options.output, options.names):
+        for line in figures.draw_all(options.output, options.names, docs=options.docs):
             console.write(line)
         if options.docs is not None:
-            for line in figures.draw_documentation(options.docs, options.names):
-                console.write(line)
+            (options.docs / figures.PAGE).write_text(figures.page(), "utf-8")
     except (ModuleNotFoundError, ValueError) as error:
         raise CommandError(str(error)) from error
 

@@ -21,9 +21,16 @@ def names() -> list[str]:
     return [source.name for source in scripts.sources()]
 
 
-def draw_all(folder: Path, chosen: list[str], suffix: str = ".pdf") -> Iterator[str]:
-    """Draw all figures of mechanisms, with their captions; a line for each mechanism."""
+def draw_all(
+    folder: Path, chosen: list[str], suffix: str = ".pdf", docs: Path | None = None
+) -> Iterator[str]:
+    """Draw all figures of mechanisms, with their captions; a line for each mechanism.
+
+    What the pages in ``docs`` show is written there too, with a thumbnail of each mechanism.
+    """
     folder.mkdir(parents=True, exist_ok=True)
+    if docs is not None:
+        (docs / "figures").mkdir(parents=True, exist_ok=True)
     target = folder / CAPTIONS
     captions: dict[str, str] = json.loads(target.read_text("utf-8")) if target.exists() else {}
     for name in chosen or names():
@@ -31,35 +38,26 @@ def draw_all(folder: Path, chosen: list[str], suffix: str = ".pdf") -> Iterator[
         captions = {k: c for k, c in captions.items() if not k.startswith(f"{name}-")}
         drawn = catalogue(name)
         for figure in drawn:
-            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}{suffix}")
+            targets = [folder / f"{name}-{figure.name}{suffix}"]
+            if docs is not None and (name, figure.name) in shown():
+                targets.append(docs / "figures" / f"{name}-{figure.name}.svg")
+            write(partial(figure.draw, robot), *targets)
             captions[f"{name}-{figure.name}"] = figure.caption
         text = json.dumps(captions, indent=2, ensure_ascii=False)
         target.write_text(text + "\n", "utf-8")
+        if docs is not None:
+            write(partial(thumbnail, name, robot), docs / "figures" / f"{name}.svg")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"
-
-
-def draw_documentation(docs: Path, chosen: list[str]) -> Iterator[str]:
-    """Draw what the pages show as svg, and write the page about the figures of the papers."""
-    folder = docs / "figures"
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in chosen or names():
-        robot = module(name)
-        write(partial(thumbnail, name, robot), folder / f"{name}.svg")
-        wanted = [f for f in catalogue(name) if (name, f.name) in shown()]
-        for figure in wanted:
-            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}.svg")
-        yield f"{name}: {', '.join(['thumbnail', *(f.name for f in wanted)])}\n"
-    (docs / PAGE).write_text(page(), "utf-8")
 
 
 def thumbnail(name: str, robot: Any) -> Any:
     """A small drawing without labels."""
     from closedform import plot
     from closedform.plot.catalogue import pictured
+    from closedform.plot.robot import Robot
 
     view = drawings().view(name)
-    spatial = plot.mechanism(robot).name == "3d"
-    small = plot.new_axes(spatial, (1.6, 1.4))
+    small = plot.new_axes(not Robot.of(robot).flat, (1.6, 1.4))
     return pictured(robot, view, view.general, labels=False, axes=False, ax=small)
 
 

@@ -85,8 +85,8 @@ def module(name: str) -> ModuleType:
         return import_module(f"closedform.generated.numpy.{name}")
 
 
-def write(figure: Callable[[], Any], target: Path) -> None:
-    """Draw without a display, and save."""
+def write(figure: Callable[[], Any], *targets: Path) -> None:
+    """Draw once without a display, and save in each format."""
     import matplotlib as mpl
     from matplotlib import pyplot as plt
 
@@ -94,7 +94,7 @@ def write(figure: Callable[[], Any], target: Path) -> None:
 
     mpl.use("Agg")
     try:
-        save(figure(), target)
+        save(figure(), *targets)
     finally:
         plt.close("all")
 

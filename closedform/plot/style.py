@@ -89,22 +89,27 @@ def new_panels(
         return panels
 
 
-def save(ax: Any, target: str | Path) -> None:
-    """Write the figure of some axes as svg, pdf or png, byte for byte the same on every run."""
-    path = Path(target)
-    if path.suffix not in UNDATED:
-        raise ValueError(f"{path}: the suffix must be one of {', '.join(UNDATED)}")
+def save(ax: Any, *targets: str | Path) -> None:
+    """Write the figure of some axes as svg, pdf or png, byte for byte the same on every run.
+
+    It is laid out once for all ``targets``.
+    """
+    paths = [Path(target) for target in targets]
+    for path in paths:
+        if path.suffix not in UNDATED:
+            raise ValueError(f"{path}: the suffix must be one of {', '.join(UNDATED)}")
     figure = ax.figure
     with mpl.rc_context(RC):
         figure.draw_without_rendering()
         engine = figure.get_layout_engine()
         figure.set_layout_engine("none")  # it has placed everything
-        figure.savefig(
-            path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches=drawn_box(figure, MARGIN)
-        )
+        box = drawn_box(figure, MARGIN)
+        for path in paths:
+            figure.savefig(path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches=box)
         figure.set_layout_engine(engine)
-    if path.suffix == ".svg":
-        path.write_text(_shortened(path.read_text("utf-8")), "utf-8")
+    for path in paths:
+        if path.suffix == ".svg":
+            path.write_text(_shortened(path.read_text("utf-8")), "utf-8")
 
 
 def _shortened(svg: str) -> str:

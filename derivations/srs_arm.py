@@ -200,6 +200,25 @@ left = ik.matrix("R1", M * rotation("x", -pi / 2))
 ik.solve(zyz, left, (theta1, theta2, theta3), {+1: "front", -1: "back"}, name="shoulder")
 right = ik.matrix("R2", rotation("x", pi / 2) * (turned(elbow).T * (M.T * ik.R)))
 ik.solve(zyz, right, (theta5, theta6, theta7), {+1: "noflip", -1: "flip"})
+R03 = rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)
+R34 = rotation("z", theta4) * rotation("x", -pi / 2)
+R47 = rotation("z", theta5) * rotation("y", theta6) * rotation("z", theta7)
+d.step(
+    "Inverse: the wrist",
+    "M turns the upper arm, with the axis of the elbow along z.  It and theta4 are known, so the "
+    "rotation of the wrist is known, and its ZYZ angles are theta5, theta6 and theta7.  In the "
+    "noflip branches sin(theta6) >= 0.",
+    {"M": R03 * rotation("x", pi / 2), "R_{34}": R34, "R_{47}": R47},
+    proves="The rotation of the pose is M R_34 R_47.",
+    equal=[(arm.pose[:3, :3], R03 * rotation("x", pi / 2) * R34 * R47)],
+)
+d.explain(
+    {
+        "M": "rotation of the upper arm, with z along the axis of the elbow",
+        "R_{34}": "rotation by the elbow",
+        "R_{47}": "rotation by the last three joints",
+    }
+)
 ik.finish(
     "All eight postures of a pose at an arm angle.",
     notes=(

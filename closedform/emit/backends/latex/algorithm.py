@@ -20,6 +20,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, unless
 from closedform.emit.backends.latex.names import is_word, program_name
+from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
 from closedform.model.functions import (
@@ -72,6 +73,8 @@ class Algorithm:
     """Names that are written as the lemma that made them writes them."""
     replaced: Mapping[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What stands in the function for other names of its program."""
+    product: str = ""
+    """A product of rotations that stands for the names that are its entries."""
     known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What is printed in place of a name."""
     names: dict[sp.Symbol, str] = field(default_factory=dict)
@@ -91,6 +94,7 @@ class Algorithm:
         self.values = {s.symbol: self._generic(s.value) for s in body if isinstance(s, Let | Bound)}
         links = self.inverse.links if self.inverse else ()
         self.unknowns = {u for link in links for u in link.unknowns}
+        self.unknowns |= {u for lemma in self.subject.lemmas for u in lemma.solution}
         self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
         self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
         self.needed = self._needed()
@@ -153,11 +157,17 @@ class Algorithm:
 
     def _name(self, symbol: sp.Symbol) -> None:
         """Decide what is printed for a name: its meaning, its value, or a letter."""
+        if symbol in self.unknowns:
+            return
         meaning = self.means.get(symbol)
         value = self.value(symbol)
         if isinstance(meaning, sp.sin | sp.cos):
             self.known[symbol] = meaning
             self.pairs[self.values[symbol]] = meaning
+            return
+        if isinstance(meaning, sp.Symbol):  # an entry of the matrix that the lemma finds
+            self.names[symbol] = self.page.math(meaning)
+            self.page.printer.rename(self.names)
             return
         bare = value.as_coeff_Mul()[1]
         name = str(symbol.name)
@@ -210,6 +220,7 @@ class Algorithm:
         base, _, index = str(symbol.name).partition("_")
         others = [str(s) for s in self.values if s != symbol and s in self.needed]
         others += [str(s) for s in self.page.symbols if s not in self.values]
+        others = [n for n in others if not is_word(n)]
         if index and len(base) == 1 and not any(n[:1] == base for n in others):
             return base
         return None
@@ -330,6 +341,9 @@ class Algorithm:
         """The kind of each line, its text and a remark."""
         if isinstance(statement, Let | Bound):
             symbol = statement.symbol
+            if is_turned(symbol):
+                yield from self._entry(symbol)
+                return
             fresh = symbol in self.needed and symbol not in self.printed
             replaced = symbol in self.known and not self.is_pair(symbol)
             if fresh and not replaced:
@@ -347,6 +361,12 @@ class Algorithm:
                 yield "unless", equality(self.page, value), meaning
         elif isinstance(statement, Require):
             yield "invalid", self._requirement(statement), ""
+
+    def _entry(self, symbol: sp.Symbol) -> Iterable[Part]:
+        """An entry of the product of rotations, which is stated once."""
+        if not any(map(is_turned, self.printed)):
+            yield "let", rf"$\displaystyle {self.product}$", ""
+        self.printed.add(symbol)
 
     def _requirement(self, statement: Require) -> str:
         if len(statement.values) > STATED:

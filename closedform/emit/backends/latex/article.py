@@ -18,6 +18,7 @@ from sympy.logic.boolalg import Boolean
 
 from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
+from closedform.emit.backends.latex.angles import in_angles
 from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
@@ -31,6 +32,7 @@ from closedform.emit.backends.latex.equations import (
 from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
+from closedform.emit.backends.latex.names import is_word
 from closedform.emit.backends.latex.plain import plain
 from closedform.emit.backends.latex.prose import (
     escape,
@@ -44,6 +46,8 @@ from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint, Step
 from closedform.model.functions import Function
+from closedform.model.inverse import Inverse, Rank
+from closedform.model.lemma import Lemma
 from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document"]
@@ -61,6 +65,8 @@ SENTENCE = 60
 """The letters of a cell that is broken into lines."""
 PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
 """What keeps its capital in the index: names, and letters of the figure."""
+LENGTH = re.compile(r"[a-z]_\d")
+"""A letter of a lemma for a length, such as ``l_1``."""
 PARTS = 12
 """The smallest part of half a turn that a default is recognised as."""
 
@@ -87,16 +93,40 @@ class Page(Sheet):
             lemmas = subject.lemmas
             means |= {n: m for lemma in lemmas for n, m in lemma.means.items()}
             letters = {s: letter for lemma in lemmas for s, letter in lemma.letters.items()}
+            letters |= {
+                s: f"{letter[0]}_{{{letter[2]}}}"
+                for lemma in lemmas
+                for letter, s in lemma.roles
+                if isinstance(s, sp.Symbol) and LENGTH.fullmatch(letter) and is_word(str(s.name))
+            }
             earlier = self.algorithm(model) if model else None
             results = inverse.unknowns if inverse else ()
+            turned = None
+            if inverse and isinstance(inverse.glue, Rank):
+                turned = in_angles(subject.function, lemmas, results, self.free_angles)
+                turned = turned.multiplied(self.rotations() | matrices(inverse, lemmas))
+                subject = replace(subject, function=turned.function)
+                letters |= turned.letters
             read = plain(subject.function, lemmas, self.free_angles, results)
+            replaced = {**(turned.names if turned else {}), **read.names}
             subject = replace(subject, function=read.function)
             self.algorithms[function.name] = Algorithm(
-                self, subject, means=means, model=earlier, letters=letters, replaced=read.names
+                self,
+                subject,
+                means=means,
+                model=earlier,
+                letters=letters,
+                replaced=replaced,
+                product=turned.product if turned else "",
             )
         algorithm = self.algorithms[function.name]
         self.printer.rename(algorithm.names)
         return algorithm
+
+    def rotations(self) -> dict[str, sp.MatrixBase]:
+        """The rotations that steps define, by their names."""
+        shown = [pair for step in self.derivation.steps for pair in step.shown]
+        return {n: v for n, v in shown if isinstance(v, sp.MatrixBase) and v.shape == (3, 3)}
 
     def legend(self) -> list[tuple[str, str]]:
         """The abbreviated sines and cosines that have been printed so far."""
@@ -264,6 +294,16 @@ class Page(Sheet):
             entries = [self.quantities.of_a_function(e, own) for e in array.entries]
             rows += self.array(array, entries, names)
         return rows
+
+
+def matrices(inverse: Inverse, lemmas: Sequence[Lemma]) -> dict[str, sp.MatrixBase]:
+    """The rotations that lemmas find entry by entry, in the names of the program."""
+    meaning = {e: name for name, e in inverse.rank.meaning.items()}
+    return {
+        lemma.matrix: sp.Matrix(3, 3, [meaning[u] for u in lemma.solution])
+        for lemma in lemmas
+        if lemma.matrix and len(lemma.solution) == 9
+    }
 
 
 def column(cells: Sequence[Any]) -> str:

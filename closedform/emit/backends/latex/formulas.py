@@ -82,10 +82,21 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
         """The terms in SymPy's order, but if that starts with a minus, the positive ones first."""
-        terms = list(_ordered_terms(expr, order or self.order))
+        renamed = {s: self._by_letter(s) for s in expr.free_symbols & self.names.keys()}
+        if renamed:
+            former = {new: old for old, new in renamed.items()}
+            in_order = _ordered_terms(expr.xreplace(renamed), order or self.order)
+            terms = [t.xreplace(former) for t in in_order]
+        else:
+            terms = list(_ordered_terms(expr, order or self.order))
         if _negative(terms[0]):
             terms.sort(key=_negative)
         return terms
+
+    def _by_letter(self, symbol: sp.Symbol) -> sp.Symbol:
+        """A symbol that SymPy sorts by what is printed for this one."""
+        letter = re.sub(r"\\(?:math[a-z]+|prime)|[\\{}^ ]", "", self.names[symbol])
+        return sp.Symbol(letter, **symbol.assumptions0)
 
     # Products
 

@@ -62,8 +62,17 @@ def nonnegative(page: Sheet, value: sp.Expr) -> str:
 
 
 def equality(page: Sheet, value: sp.Expr) -> str:
-    """The condition that a value is zero: ``a = b`` for ``a - b``."""
-    terms = sp.Add.make_args(value)
+    """The condition that a value is zero: ``a = b`` for ``a - b``, and 0 for each of squares."""
+    if isinstance(value, sp.Min):
+        return " or ".join(equality(page, e) for e in sorted(value.args, key=page.math))
+    if isinstance(value, sp.Abs) or (value.is_Pow and value.exp.is_positive):
+        return equality(page, value.args[0])
+    terms = page.printer._as_ordered_terms(value) if value.is_Add else [value]
+    if len(terms) > 1 and all(t.is_Pow and t.exp.is_even for t in terms):
+        bases = [t.base for t in terms]
+        if any(b.is_Add for b in bases):
+            return " and ".join(equality(page, b) for b in bases)
+        return f"${' = '.join(map(page.math, bases))} = 0$"
     less = [-t for t in terms if t.as_coeff_Mul()[0].is_negative]
     more = [t for t in terms if not t.as_coeff_Mul()[0].is_negative]
     if less and more:

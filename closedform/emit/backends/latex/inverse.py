@@ -77,12 +77,11 @@ class Told:
                     r"rotation $R = (R_{ij})$ and the position $p = (p_x, p_y, p_z)$"
                 )
             elif array.shape == ():
-                text = f"${page.math(array.entries[0])}$"
                 if array.name in joints:
-                    text = f"the value {text} of ${page.math(joints[array.name])}$"
-                else:
-                    text = f"the {escape(array.name.replace('_', ' '))} {text}"
-                texts.append(text)
+                    texts.append(f"the joint ${page.math(joints[array.name])}$")
+                    continue
+                text = f"${page.math(array.entries[0])}$"
+                texts.append(f"the {escape(array.name.replace('_', ' '))} {text}")
             else:
                 texts += whole(page.assigned(array, {}))
         return ", and ".join(texts)

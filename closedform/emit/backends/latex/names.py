@@ -139,6 +139,7 @@ def conventional_names(derivation: Derivation) -> dict[sp.Symbol, str]:
             free = is_word(coordinate) and not {"psi", "yaw"} & used
             names[target] = r"\psi" if free else symbol_name(coordinate)
     angles = [a for i in derivation.inverses for a in i.rank.defined if is_word(str(a.name))]
+    angles = [a for a in angles if a.name not in derivation.written]
     for k, angle in enumerate(dict.fromkeys(angles), 1):
         names[angle] = r"\varphi" if len(angles) == 1 else rf"\varphi_{{{k}}}"
     return names

@@ -163,6 +163,10 @@ def _without_pairs(function: Function) -> Function:
     )
     short: dict[sp.Expr, sp.Expr] = {}
     for y, x in arguments:
+        if common := _positive_factors(y) & _positive_factors(x):
+            sides = [e / sp.Mul(*common) for e in (y, x)]
+            short[sp.atan2(y, x)] = sp.atan2(*sides, evaluate=False)
+            continue
         if not {y, x} <= values.keys() or any(uses[s] != inside[s] for s in (y, x)):
             continue
         if common := _positive_factors(values[y]) & _positive_factors(values[x]):

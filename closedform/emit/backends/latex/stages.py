@@ -19,6 +19,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import mixed
+from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, blocks
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
@@ -75,6 +76,8 @@ class Stages:
         self.solvings = solvings(self.inverse, subject.solved) if self.inverse else []
         self.steps = list[list[Solving]]()
         for solving in self.solvings:
+            if all(self.named(e) == 0 for e in solving.equations):
+                continue  # a joint that is given
             if self.steps and self.is_like(solving, self.steps[-1]):
                 self.steps[-1].append(solving)
             else:
@@ -173,7 +176,8 @@ class Stages:
 
     def without_detours(self, value: sp.Expr) -> sp.Expr:
         """The same without a name, such as that of a difference, where it is shorter."""
-        for name in sorted(value.free_symbols & self.algorithm.values.keys(), key=str):
+        names = self.algorithm.values.keys() - self.algorithm.unknowns
+        for name in sorted(value.free_symbols & names, key=str):
             other = value.xreplace({name: self.algorithm.value(name)})
             if self.page.lines.width(other) < self.page.lines.width(value):
                 value = other
@@ -194,7 +198,7 @@ class Stages:
         rows = [
             row
             for s, meaning in meanings
-            if not isinstance(meaning, sp.sin | sp.cos)
+            if not isinstance(meaning, sp.sin | sp.cos) and not meaning.is_Symbol
             for row in self.page.equations(s, self.page.lines.tidy(meaning))
         ]
         angles = sorted(self.inverse.rank.defined.keys() & set(solving.unknowns), key=str)
@@ -203,10 +207,16 @@ class Stages:
         ]
 
     def matrix(self, equations: Sequence[sp.Expr]) -> str:
-        """The matrix of the program whose entries the equations hold."""
-        held = {str(s) for e in equations for s in e.free_symbols}
+        """What is said of the matrix whose entries the equations hold."""
+        if any(is_turned(s) for e in equations for s in self.named(e).free_symbols):
+            return f"Here ${self.algorithm.product}$."
+        held = {str(s) for e in equations for s in self.named(e).free_symbols}
         found = sorted({m[1] + m[2] for n in held if (m := MATRIX_ENTRY.fullmatch(n))})
-        return enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
+        if not found:
+            return ""
+        names = enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
+        told = f"The entries of {names} follow from $R$ and the joints before"
+        return f"{told}, as in the algorithm below."
 
     def joints_in(self, equations: Sequence[sp.Expr], solving: Solving) -> set[sp.Symbol]:
         """The joints and auxiliary unknowns in equations that their lemma does not find."""
@@ -227,7 +237,8 @@ class Stages:
         later = self.found_later(sorted(joints, key=str), solving)
         order = [u for s in self.solvings for u in s.unknowns] + list(self.inverse.unknowns)
         known = sorted((s for s in joints if s not in later), key=order.index)
-        before = [f"${page.math(j)}$" for j in known]
+        letters = {u: s.lemma.matrix for s in self.solvings if s.lemma.matrix for u in s.unknowns}
+        before = list(dict.fromkeys(f"${letters.get(j) or page.math(j)}$" for j in known))
         where = self.parts(parts)
         source = f"From {where} of the forward map" if where else "From the forward map"
         if page.derivation.assembly_modes:
@@ -261,8 +272,10 @@ class Stages:
         """An expression in the target and the joints."""
         assert self.inverse
         meaning = self.inverse.rank.meaning
+        value = substitute(value, self.algorithm.usual)
         for _ in range(len(self.algorithm.values) + 1):
             names = free_symbols([value]) & {*self.algorithm.values, *meaning}
+            names -= self.algorithm.unknowns
             if not names:
                 break
             value = substitute(
@@ -306,8 +319,12 @@ class Stages:
     def own_symbols(self, solving: Solving) -> set[sp.Basic]:
         """The symbols of a solution and of the names that the lemma made for it."""
         made_by = solving.link.body if solving.link else solving.lemma.body
+        usual = {s.symbol: sp.false for s in self.function.body if isinstance(s, Vanishes)}
+        usual |= {s.symbol: sp.false for s in made_by if isinstance(s, Vanishes)}
         body = {
-            s.symbol: s.value for s in made_by or self.function.body if isinstance(s, Let | Bound)
+            s.symbol: substitute(s.value, usual)
+            for s in made_by or self.function.body
+            if isinstance(s, Let | Bound)
         }
         used = {s for e in solving.lemma.solution.values() for s in e.free_symbols}
         used |= {s for e in solving.lemma.means for s in e.free_symbols}
@@ -374,7 +391,27 @@ class Stages:
             left, value = self.found_before(unknown, self.named(value), solving)
             rows += page.equations(left, value)
             values.append(value)
+        for result in self.sums_with(solving):
+            value = self.algorithm.value(result)
+            rows += page.equations(result, value)
+            values.append(value)
         return self.made_before(values) + rows
+
+    def sums_with(self, solving: Solving) -> list[sp.Symbol]:
+        """The joints that are sums of angles which are all known with those of a lemma."""
+        assert self.inverse
+        values = self.algorithm.values
+        done = self.solvings[: self.solvings.index(solving) + 1]
+        known = {u for s in done for u in s.unknowns}
+        sought = {u for s in self.solvings for u in s.unknowns}
+        found = [
+            r
+            for r in self.inverse.unknowns
+            if r in values and r not in sought | self.told
+            if (held := values[r].free_symbols & sought) and held <= known
+        ]
+        self.told |= {*found}
+        return found
 
     def found_before(
         self, unknown: sp.Symbol, value: sp.Expr, solving: Solving
@@ -402,7 +439,7 @@ class Stages:
         return [
             row
             for s in algorithm.values
-            if s in found and not MATRIX_ENTRY.fullmatch(str(s.name))
+            if s in found and not is_turned(s) and not MATRIX_ENTRY.fullmatch(str(s.name))
             if algorithm.known.get(s) != algorithm.value(s)
             for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
             if row[0] != row[1]

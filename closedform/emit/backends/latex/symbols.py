@@ -199,8 +199,9 @@ def _inputs(derivation: Derivation, math: Printed) -> Iterator[tuple[str, str]]:
             yield canonical(coordinate_name(derivation, name)), "task coordinate"
     for function in derivation.functions:
         joints = {j.symbol for j in derivation.joints}
+        names = {j.name for j in derivation.joints}
         for array in function.inputs:
-            if joints & set(array.entries):
+            if joints & set(array.entries) or array.name in names:
                 continue
             whole = _form(derivation, array.name)
             if len(array.shape) > 1:

@@ -121,6 +121,8 @@ class Lines:
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
         yield value
         size = sp.count_ops(value)
+        if value.is_Add and sp.pi in (t.as_coeff_Mul()[1] for t in value.args):
+            return  # an angle and a part of a turn
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)

@@ -14,7 +14,7 @@ import sympy as sp
 from closedform.lemmas.hand import check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
-from closedform.lemmas.loop import NO_MODE, Exported, export
+from closedform.lemmas.loop import EQUATIONS, NO_MODE, Exported, export
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
@@ -203,7 +203,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
         f"The derivative of the loop equation, halved, gives A*dx = B*dq.  {serial}  A vanishes "
         "if the follower moves B2 at right angles to the rod (parallel: the driver stands still "
         "and cannot hold the follower).",
-        {"A": a, "B": b},
+        {"A": a, "B": b, "J": r"\frac{B}{A}"},
         proves="A and B are half of the derivatives.",
         equal=[(A[0] / 2, a), (B[0] / 2, b)],
         uses=[loop.stated],
@@ -224,7 +224,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
         ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
         ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
     ]
-    export(d, v, rod.modes, functions)
+    export(d, v, rod.modes, functions, EQUATIONS | {"det": "J", "factors": "A"})
 
 
 def _inverse(loop: _Loop) -> None:

@@ -8,7 +8,7 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -48,6 +48,13 @@ from closedform.model.inverse import Inverse, Link
 AXES = "xyz"
 NO_MODE = "NaN for an assembly mode that does not exist."
 Exported = tuple[str, str, dict[str, Any], tuple[str, ...]]
+EQUATIONS: Mapping[str, str] = {
+    **{name: name for name in "ABJ"},
+    "det": r"\det J",
+    "factors": r"\Delta",
+    "kappa": r"\kappa",
+}
+"""What stands on the left of the equation that has a result, by the name of the output."""
 
 
 def parallel(
@@ -417,7 +424,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
         f"the joint moves and the hand stands still).  A is singular if {m.meet} (parallel: the "
         f"hand can move while the joints stand still).{strut}",
-        _shown_velocity(m, rods, rates),
+        {**_shown_velocity(m, rods, rates), **_shown_jacobian(m)},
         proves=f"A and B are {half}, and the adjugate of A gives J with A*J = B.",
         equal=[
             (A, sp.diag(*halves) * sp.Matrix.vstack(*(r.T for r in rods))),
@@ -505,8 +512,40 @@ def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]
     }
 
 
-def export(d: Derivation, program: Program, modes: Branches, functions: Sequence[Exported]) -> None:
-    """Export functions of the joints in each assembly mode: name, summary, outputs and notes."""
+def _shown_jacobian(m: Hand) -> dict[str, Any]:
+    """What follows from A and B: the Jacobian, its determinant and the condition number of A."""
+    numbers = [k for k, _ in m.driven]
+    entries = [sp.Symbol(f"B_{k}{k}") for k in numbers]
+    struts = len(m.legs) - len(entries)
+    shown: dict[str, Any] = {
+        "B": sp.zeros(struts, len(entries)).col_join(sp.diag(*entries)),
+        "J": "A^{-1} B",
+        r"\Delta": r"\left|\det A\right|",
+    }
+    meanings = {"B": "factor of the joint rates", "J": "derivative of p with respect to q"}
+    meanings |= {r"\Delta": "the determinant of A without its sign"}
+    if not struts:
+        shown[r"\det J"] = r"\frac{\det B}{\det A}"
+    if not struts and not m.rails:
+        norm = "F" if len(numbers) == 3 else "2"
+        part = r"\tfrac{1}{3}\," if len(numbers) == 3 else ""
+        shown[r"\kappa"] = rf"{part}\lVert A\rVert_{norm}\,\lVert A^{{-1}}\rVert_{norm}"
+        meanings[r"\kappa"] = "condition number of A"
+    m.d.explain(meanings)
+    return shown
+
+
+def export(
+    d: Derivation,
+    program: Program,
+    modes: Branches,
+    functions: Sequence[Exported],
+    equations: Mapping[str, str] = EQUATIONS,
+) -> None:
+    """Export functions of the joints in each assembly mode: name, summary, outputs and notes.
+
+    ``equations`` says which equation of a step has a result, by the name of the output.
+    """
     for name, summary, outputs, notes in functions:
         d.function(
             name,
@@ -516,6 +555,7 @@ def export(d: Derivation, program: Program, modes: Branches, functions: Sequence
             program=program,
             branches=modes,
             notes=(NO_MODE, *notes),
+            equation=equations.get(next(iter(outputs)), ""),
         )
 
 
@@ -574,4 +614,4 @@ def _inverse(m: Hand, loop: Step) -> None:
     solved.certify(turning, images="fk")
 
 
-__all__ = ["NO_MODE", "Exported", "export", "parallel"]
+__all__ = ["EQUATIONS", "NO_MODE", "Exported", "export", "parallel"]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -123,6 +123,12 @@ class Page(Sheet):
         self.printer.rename(algorithm.names)
         return algorithm
 
+    def model(self, function: Function) -> Function | None:
+        """The same; where an equation tells what a function computes, it has no lines."""
+        functions = self.derivation.functions
+        printed = [f for f in functions if not self.numbers.of(f.equation) or f is function]
+        return self.earlier(function, printed)
+
     def rotations(self) -> dict[str, sp.MatrixBase]:
         """The rotations that steps define, by their names."""
         shown = [pair for step in self.derivation.steps for pair in step.shown]
@@ -214,7 +220,8 @@ class Page(Sheet):
         where = [self.numbers.right.get(right, "") for _, right in outputs]
         if shown or (outputs and all(where) and not function.body):
             labels = [shown] if shown else list(dict.fromkeys(where))
-            return {**BARE, "evaluates": reference(labels)}
+            modes = " in each assembly mode" if function.branches else ""
+            return {**BARE, "evaluates": reference(labels) + modes}
         if not function.body:
             return {**BARE, "blocks": blocks(self.numbers.number(runs(outputs))), "evaluates": ""}
         return {**self.listing(function), "evaluates": ""}
@@ -259,7 +266,10 @@ class Page(Sheet):
         if found is None:
             return {}
         names = derivation.singularities or ("factor",)
-        entries = list(enumerate(e for a in found.outputs for e in a.entries))
+        signs = {s: sp.S.One for _, chosen in found.cases() for s in chosen}
+        factors = [e for a in found.outputs for e in a.entries]
+        # without the sign of a mode it vanishes where it did
+        entries = list(enumerate(e.xreplace(signs) if e.is_Mul else e for e in factors))
         told = not found.body or self.numbers.of(found.equation)
         algorithm = None if told else self.algorithm(found)
         rows = {
@@ -348,6 +358,12 @@ def formulas(texts: Sequence[str]) -> str:
     return ", ".join(rf"$\displaystyle {t}$" for t in texts)
 
 
+def source_of_all(derivation: Derivation, text: Callable[[str], str]) -> str:
+    """Where all defaults come from, if that is one source."""
+    sources = {text(p.source) for p in derivation.parameters}
+    return sources.pop() if len(sources) == 1 and len(derivation.parameters) > 1 else ""
+
+
 def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     """The context of ``latex/robot.tex.jinja``."""
     page = Page(derivation, proof)
@@ -363,6 +379,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
             (page.math(p.symbol), escape(p.name), escape(p.unit), default(p.value),
              text(p.meaning), text(p.source)) for p in derivation.parameters
         ],
+        "source_of_all": source_of_all(derivation, text),
         "joints": [page.joint(j) for j in derivation.joints],
         "steps": [{**page.step(s), "number": k} for k, s in enumerate(derivation.steps, 1)],
         "modes": derivation.assembly_modes,

@@ -60,7 +60,10 @@ class Sheet:
 
     def model(self, function: Function) -> Function | None:
         """The earlier printed function whose statements this one starts with, if there is one."""
-        functions = self.derivation.functions
+        return self.earlier(function, self.derivation.functions)
+
+    def earlier(self, function: Function, functions: Sequence[Function]) -> Function | None:
+        """The last of some functions whose statements this one starts with."""
         earlier = [f for f in functions[: functions.index(function)] if f.name != UNPRINTED]
         shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
         return max(shared, key=lambda f: len(f.body), default=None)

@@ -358,7 +358,7 @@ class Stages:
                 turns = " in turn"
             text = r",\ ".join(texts) if len({*texts}) > 1 else texts[0]
             if measure(letter + text) <= FITS / 3 and r"\frac" not in text:
-                inline.append(f"${letter} = {text}$")
+                inline.append(f"${letter}$ is ${text}$")
             else:
                 rows.append((letter, text))
         return {

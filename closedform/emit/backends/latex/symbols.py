@@ -219,7 +219,14 @@ def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
         for array in function.outputs:
             name = canonical(function.equation) or _form(derivation, array.name)
             sentence = re.split(r"\. |;(?![^(]*\))", function.summary)[0]
-            yield name, sentence.rstrip(".")
+            yield name, _uncapital(sentence.rstrip("."))
+
+
+def _uncapital(sentence: str) -> str:
+    """The sentence as a part of another: a word that is not a name starts with a small letter."""
+    word = re.match(r"[A-Z][a-z]+\b", sentence)
+    is_word = word is not None and word[0] != "Jacobian"
+    return sentence[0].lower() + sentence[1:] if is_word else sentence
 
 
 def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
@@ -230,7 +237,7 @@ def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
 
 
-WIDEST = 16
+WIDEST = 24
 """The letters of the symbols in one row; more are too wide for their column."""
 
 

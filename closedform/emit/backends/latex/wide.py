@@ -10,7 +10,7 @@ the same on every machine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import count
+from itertools import combinations, count, permutations
 from typing import Any
 
 import sympy as sp
@@ -115,7 +115,7 @@ class Lines:
 
             best = min(self._forms(value), key=cost)
             narrower = cost(best) < cost(value) - GAIN
-            self._tidied[value] = best if narrower else value
+            self._tidied[value] = without_minus(best if narrower else value)
         return self._tidied[value]
 
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
@@ -126,6 +126,9 @@ class Lines:
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)
+        if (together := with_sums_of_angles(value)) != value:
+            yield together
+            yield sp.factor_terms(together)
         if value.is_Add and len(value.args) == 4 and all(map(_is_product, value.args)):
             names = sorted(value.free_symbols, key=str)
             yield sp.collect(value, names)
@@ -294,6 +297,42 @@ def _common(matrix: sp.MatrixBase) -> sp.Expr:
     if not any(f.is_Pow and f.exp.is_negative for f in shared):
         return sp.S.One
     return sp.Mul(*sorted(shared, key=str))
+
+
+def without_minus(value: sp.Expr) -> sp.Expr:
+    """``r*(b - a)`` for ``-r*(a - b)``."""
+    number, rest = value.as_coeff_Mul()
+    if not number.is_negative:
+        return value
+    for factor in sp.Mul.make_args(rest):
+        negative = [t.as_coeff_Mul()[0].is_negative for t in factor.args] if factor.is_Add else []
+        if any(negative):
+            return sp.Mul(-number, rest / factor, -factor)
+    return value
+
+
+def with_sums_of_angles(value: sp.Expr) -> sp.Expr:
+    """A sum with the sines and cosines of sums of angles where two terms are one of them."""
+    if not value.is_Add:
+        return value.func(*map(with_sums_of_angles, value.args)) if value.is_Mul else value
+    terms = list(value.args)
+    for first, second in combinations(terms, 2):
+        for angle, other in permutations(_angles_in(first), 2):
+            for f, g, u, v in ((sp.sin, sp.cos, sp.cos, sp.sin), (sp.cos, sp.cos, sp.sin, sp.sin)):
+                part = f(angle) * g(other)
+                rest = first / part
+                if rest.has(angle, other) or abs(second / (rest * u(angle) * v(other))) != 1:
+                    continue
+                same = second == rest * u(angle) * v(other)
+                total = angle + (1 if same == (f == sp.sin) else -1) * other
+                left = [t for t in terms if t not in (first, second)]
+                return with_sums_of_angles(sp.Add(*left, rest * f(total)))
+    return value
+
+
+def _angles_in(term: sp.Expr) -> list[sp.Symbol]:
+    factors = [f for f in sp.Mul.make_args(term) if isinstance(f, sp.sin | sp.cos)]
+    return sorted({f.args[0] for f in factors if f.args[0].is_Symbol}, key=str)
 
 
 __all__ = ["Equation", "Lines"]

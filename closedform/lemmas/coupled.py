@@ -224,7 +224,7 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
         ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
         ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
     ]
-    export(d, v, rod.modes, functions, EQUATIONS | {"det": "J", "factors": "A"})
+    export(d, v, rod.modes, functions, {**EQUATIONS, "det": "J", "factors": "A"})
 
 
 def _inverse(loop: _Loop) -> None:

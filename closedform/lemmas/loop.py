@@ -194,7 +194,19 @@ def _on_rods(
     shape = "circles" if n == 2 else "spheres"
     return _Meeting(
         found=found,
-        link=replace(found.link, lemma=replace(found.lemma, roles=_roles(m))),
+        link=replace(
+            found.link,
+            lemma=replace(
+                found.lemma,
+                roles=_roles(m),
+                written={
+                    **found.lemma.written,
+                    **{f"c{k}": rf"\mathbf b_{k}" for k, _ in m.numbered},
+                    "first": rf"\mathbf b_{first}",
+                    "result": r"\mathbf p",
+                },
+            ),
+        ),
         title=f"{m.count} {shape}",
         reason=f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
         f"lengths of the rods.  They meet twice, on both sides of the "

@@ -159,9 +159,11 @@ def three_spheres(
         2,
         signs=(sigma,),
         vectors=(
-            r"The algorithm uses the entries of $\mathbf m = \mathbf a \times \mathbf c_3$, of "
-            r"$\mathbf n = \mathbf m \times \mathbf a / \mu$ and of $\mathbf w$."
+            r"The algorithm finds $\mathbf n$ as $\mathbf m \times \mathbf a / \mu$ with "
+            r"$\mathbf m = \mathbf a \times \mathbf c_3$."
         ),
+        letters={uu: r"\mu"},
+        written={"u": r"\mathbf a", "v": r"\mathbf c_3"},
     )
     D, j = sp.sqrt(mu), sp.sqrt(nu)
     rise = sigma * h * D * j

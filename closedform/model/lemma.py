@@ -40,8 +40,9 @@ class Lemma(Shown):
     The rest is for the text.  ``roles`` says what each letter of the ``statement`` stands for here,
     in the order in which a reader needs them: an expression, a vector or LaTeX.  ``letters`` writes
     names of the program as the statement does.  A lemma in vectors is told as such, and its
-    coordinates are left to the algorithm; ``vectors`` says how that computes them.  ``matrix`` is
-    the letter of the matrix that holds all unknowns, if there is one.
+    coordinates are left to the algorithm; ``vectors`` says how that computes them, and ``written``
+    how the vectors of the program are written, by their names there.  ``matrix`` is the letter of
+    the matrix that holds all unknowns, if there is one.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Lemma(Shown):
     roles: tuple[tuple[str, Any], ...] = ()
     letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
     vectors: str = ""
+    written: Mapping[str, str] = field(default_factory=dict)
     matrix: str = ""
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:

@@ -23,6 +23,7 @@ from closedform.emit.backends.latex.names import is_word, program_name
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
+from closedform.emit.backends.latex.vectors import InVectors, is_vector
 from closedform.model.functions import (
     Bound,
     Let,
@@ -75,6 +76,8 @@ class Algorithm:
     """What stands in the function for other names of its program."""
     product: str = ""
     """A product of rotations that stands for the names that are its entries."""
+    vectors: InVectors | None = None
+    """The vectors that stand for coordinates."""
     known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What is printed in place of a name."""
     names: dict[sp.Symbol, str] = field(default_factory=dict)
@@ -98,6 +101,8 @@ class Algorithm:
         self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
         self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
         self.needed = self._needed()
+        if self.vectors:
+            self.names |= self.vectors.letters
         self.uses = self._uses()
         if self.model:
             self.known |= self.model.known
@@ -121,6 +126,7 @@ class Algorithm:
     def _needed(self) -> set[sp.Symbol]:
         """The names that the answers and the conditions of existence depend on."""
         needed: set[Any] = {s for e in self.outputs for s in e.free_symbols}
+        needed |= self.vectors.values.keys() if self.vectors else set()
         for statement in reversed(self.function.body):
             if isinstance(statement, Match):
                 needed |= self._generic(statement.value).free_symbols
@@ -157,7 +163,7 @@ class Algorithm:
 
     def _name(self, symbol: sp.Symbol) -> None:
         """Decide what is printed for a name: its meaning, its value, or a letter."""
-        if symbol in self.unknowns:
+        if symbol in self.unknowns or is_vector(symbol):
             return
         meaning = self.means.get(symbol)
         value = self.value(symbol)
@@ -182,7 +188,11 @@ class Algorithm:
         uses = self.uses.get(symbol, 0)
         often = is_root and uses > OFTEN
         inline = word and not often and (width <= INLINE or once) and not value.has(sp.Piecewise)
-        if bare.is_Atom or inline or (is_root and bare.base.is_Symbol and uses <= TWICE):
+        if (
+            (bare.is_Atom and not is_vector(bare))
+            or inline
+            or (is_root and bare.base.is_Symbol and uses <= TWICE)
+        ):
             self.known[symbol] = value
             return
         if value.is_Add or value.is_Pow:
@@ -341,8 +351,8 @@ class Algorithm:
         """The kind of each line, its text and a remark."""
         if isinstance(statement, Let | Bound):
             symbol = statement.symbol
-            if is_turned(symbol):
-                yield from self._entry(symbol)
+            if is_turned(symbol) or is_vector(symbol):
+                yield from self._whole(symbol)
                 return
             fresh = symbol in self.needed and symbol not in self.printed
             replaced = symbol in self.known and not self.is_pair(symbol)
@@ -362,9 +372,24 @@ class Algorithm:
         elif isinstance(statement, Require):
             yield "invalid", self._requirement(statement), ""
 
-    def _entry(self, symbol: sp.Symbol) -> Iterable[Part]:
-        """An entry of the product of rotations, which is stated once."""
-        if not any(map(is_turned, self.printed)):
+    def _vector(self, symbol: sp.Symbol, value: Any) -> str:
+        """A vector in others, or in its coordinates."""
+        self.printed.add(symbol)
+        if isinstance(value, tuple):
+            text = r",\ ".join(self.page.math(self.shown(e)) for e in value)
+            text = f"({text})"
+        else:
+            terms = sorted(sp.Add.make_args(self.shown(value)), key=_simplest_first)
+            texts = [self.page.math(t) for t in terms]
+            signed = [t if t.startswith("-") else f"+ {t}" for t in texts[1:]]
+            text = " ".join([texts[0], *signed])
+        return rf"$\displaystyle {self.page.math(symbol)} = {text}$"
+
+    def _whole(self, symbol: sp.Symbol) -> Iterable[Part]:
+        """A vector, or the product of rotations, which is stated at its first entry."""
+        if self.vectors and is_vector(symbol):
+            yield "let", self._vector(symbol, self.vectors.values[symbol]), ""
+        elif not any(map(is_turned, self.printed)):
             yield "let", rf"$\displaystyle {self.product}$", ""
         self.printed.add(symbol)
 
@@ -432,6 +457,8 @@ class Algorithm:
     def _answers(self) -> list[str]:
         entries = iter(self.outputs)
         rows = []
+        if self.vectors:
+            return [self._vector(self.vectors.named, self.vectors.result)]
         for array in self.function.outputs:
             shown = [self.shown(next(entries)) for _ in range(array.size)]
             if shown == [sp.true]:
@@ -475,6 +502,12 @@ class Algorithm:
         if self.function.has_status:
             return rf"\textsc{{{status}}}"
         return r"\textbf{return} false" if sp.true in self.outputs else "NaN"
+
+
+def _simplest_first(term: sp.Expr) -> tuple[Any, ...]:
+    """The order of the terms of a vector: without a factor, with a number, with a name."""
+    number = term.as_coeff_Mul()[0]
+    return bool(number.is_negative), len(term.free_symbols), abs(number) != 1, str(term)
 
 
 def whole(equations: Sequence[tuple[str, str]]) -> list[str]:

@@ -43,9 +43,10 @@ from closedform.emit.backends.latex.prose import (
 )
 from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
+from closedform.emit.backends.latex.vectors import in_vectors
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint, Step
-from closedform.model.functions import Function
+from closedform.model.functions import Function, real
 from closedform.model.inverse import Inverse, Rank
 from closedform.model.lemma import Lemma
 from closedform.proof.prove import Proof
@@ -107,7 +108,12 @@ class Page(Sheet):
                 turned = turned.multiplied(self.rotations() | matrices(inverse, lemmas))
                 subject = replace(subject, function=turned.function)
                 letters |= turned.letters
-            read = plain(subject.function, lemmas, self.free_angles, results)
+            returned = results or self.coordinates_of(subject.function)
+            read = plain(subject.function, lemmas, self.free_angles, returned)
+            written = {n: w for lemma in lemmas for n, w in lemma.written.items()}
+            vectors = in_vectors(read.function, written) if written else None
+            if vectors:
+                read = replace(read, function=vectors.function)
             replaced = {**(turned.names if turned else {}), **read.names}
             subject = replace(subject, function=read.function)
             self.algorithms[function.name] = Algorithm(
@@ -118,6 +124,7 @@ class Page(Sheet):
                 letters=letters,
                 replaced=replaced,
                 product=turned.product if turned else "",
+                vectors=vectors,
             )
         algorithm = self.algorithms[function.name]
         self.printer.rename(algorithm.names)
@@ -128,6 +135,12 @@ class Page(Sheet):
         functions = self.derivation.functions
         printed = [f for f in functions if not self.numbers.of(f.equation) or f is function]
         return self.earlier(function, printed)
+
+    def coordinates_of(self, function: Function) -> list[sp.Symbol]:
+        """The coordinates of the task, if they are what a function returns."""
+        task = [real(t) for t in self.derivation.task]
+        alone = len(function.outputs) == 1 and function.outputs[0].shape == (len(task),)
+        return task if alone and function.outputs[0].name == "x" else []
 
     def rotations(self) -> dict[str, sp.MatrixBase]:
         """The rotations that steps define, by their names."""

@@ -17,6 +17,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
+from closedform.emit.backends.latex.vectors import is_vector
 
 FITS = 76.0
 """The widest formula that is set on one line, in average letters of 10 pt."""
@@ -182,6 +183,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         base, power = factor.as_base_exp()
         if factor.is_number:
             return (0, 0, "", str(factor))
+        if is_vector(base):
+            return (6, 0, natural(str(base)), str(power))
         if base.is_Symbol:
             text = self._print_Symbol(base)
             kind = 1 if SIGN.match(base.name) else 2

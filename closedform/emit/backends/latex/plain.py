@@ -73,9 +73,46 @@ def plain(
         for a in function.outputs
     )
     told = replace(function, body=tuple(done), outputs=outputs)
+    told, turned = _with_angles_of_results(told, results)
+    names = {n: substitute(e, turned) for n, e in names.items()} | turned
     own = _own_names(told, results)
     told = _renamed(_with_half_sums(_without_pairs(told), letters), own)
     return Plain(told, {**{n: substitute(e, own) for n, e in names.items()}, **own})
+
+
+def _with_angles_of_results(
+    function: Function, results: Sequence[sp.Symbol]
+) -> tuple[Function, dict[sp.Basic, sp.Basic]]:
+    """The function with an angle that it returns in place of its sine and cosine."""
+    usual = _usual(function.body)
+    values = {s.symbol: substitute(s.value, usual) for s in function.body if isinstance(s, Let)}
+    outputs = [e for a in function.outputs for e in a.entries]
+    taken = {*values, *function.symbols}
+    found: dict[sp.Basic, tuple[sp.Symbol, sp.Expr]] = {}
+    names: dict[sp.Basic, sp.Basic] = {}
+    for result, value in zip(results, outputs, strict=True) if len(results) == len(outputs) else ():
+        if not isinstance(value, sp.atan2) or not {*value.args} <= values.keys():
+            continue
+        sides = [values[n] for n in value.args]
+        common = _positive_factors(sides[0]) & _positive_factors(sides[1])
+        if common and result not in taken:
+            sides = [e / sp.Mul(*common) for e in sides]
+            last = max(value.args, key=list(values).index)
+            found[last] = result, sp.atan2(*sides, evaluate=False)
+            names |= {value: result}
+            names |= dict(zip(value.args, (sp.sin(result), sp.cos(result)), strict=True))
+    body: list[Statement] = []
+    for statement in function.body:
+        symbol = getattr(statement, "symbol", None)
+        if symbol in found:
+            body.append(_with_names(Let(*found[symbol]), names))
+        if symbol not in names:
+            body.append(_with_names(statement, names))
+    arrays = tuple(
+        replace(a, entries=tuple(names.get(e, substitute(e, names)) for e in a.entries))
+        for a in function.outputs
+    )
+    return replace(function, body=tuple(body), outputs=arrays), names
 
 
 def _own_names(function: Function, results: Sequence[sp.Symbol]) -> dict[sp.Basic, sp.Symbol]:
@@ -163,6 +200,9 @@ def _without_pairs(function: Function) -> Function:
     )
     short: dict[sp.Expr, sp.Expr] = {}
     for y, x in arguments:
+        if isinstance(y, sp.sin) and isinstance(x, sp.cos) and y.args == x.args:
+            short[sp.atan2(y, x)] = y.args[0]
+            continue
         if common := _positive_factors(y) & _positive_factors(x):
             sides = [e / sp.Mul(*common) for e in (y, x)]
             short[sp.atan2(y, x)] = sp.atan2(*sides, evaluate=False)

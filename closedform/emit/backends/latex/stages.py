@@ -14,7 +14,7 @@ import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.cases import Cases
-from closedform.emit.backends.latex.equations import canonical
+from closedform.emit.backends.latex.equations import canonical, skeleton
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
@@ -120,6 +120,8 @@ class Stages:
             rows += [r for e in system for r in self.equation(e, solving)]
             rows += self.definitions(held, solving)
         origin, roles = self.origin(shown, step), self.roles(step)
+        if self.algorithm.vectors:  # the lemma has the equations, in vectors
+            rows, origin = [], origin.removesuffix(":") + "."
         solution = [] if lemma.vectors else [r for s in step for r in self.solution(s)]
         return {
             "number": number,
@@ -352,7 +354,7 @@ class Stages:
         for roles in zip(*(s.lemma.roles for s in step), strict=True):
             letter = roles[0][0]
             texts = [written(value) for _, value in roles]
-            if all(canonical(text) == canonical(letter) for text in texts):
+            if all(skeleton(canonical(text)) == skeleton(canonical(letter)) for text in texts):
                 continue
             if len({*texts}) > 1:
                 turns = " in turn"

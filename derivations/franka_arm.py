@@ -76,6 +76,7 @@ R03 = rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)
 R37 = sp.prod(arm.moves[3:])[:3, :3]
 d.explain(
     {
+        "s": "the shoulder, seen from joint 7 in the axes of the tool",
         "v": "the shoulder, seen from the wrist in the frame of the forearm",
         "u": "the shoulder, seen from the wrist in the frame after theta6",
         "w": "the shoulder, seen from the wrist in the frame before theta6",
@@ -106,7 +107,10 @@ d.step(
     "Inverse: the shoulder",
     "theta7 is given, so the vector u from the wrist to the shoulder is known in the frame of "
     "theta6.",
-    {"u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0]))},
+    {
+        "s": ik.R.T * (sp.Matrix([0, 0, d1]) - ik.p) + sp.Matrix([0, 0, d7]),
+        "u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0])),
+    },
 )
 upper = ik.program.let("upper", sqrt(a4**2 + d3**2), nonnegative=True)
 fore = ik.program.let("fore", sqrt(a5**2 + d5**2), nonnegative=True)

@@ -172,9 +172,11 @@ class Serial:
         self.require_regular(d.name)
         pose = linkwise.pose(d.program(), links)
         long = by_axes(d, self.pose, self.geometric, self.moves)
+        turns = self.pose.atoms(sp.sin, sp.cos)
         d.step(
             "Pose",
-            "The product of the motions from link to link, the angles of parallel axes added.",
+            "T is the product of the motions from link to link."
+            + "  Angles about parallel axes are added." * any(f.args[0].is_Add for f in turns),
             {f"A_{i}": A for i, A in enumerate(self.moves, 1)}
             | {"T": long.pose if long else self.pose},
             proves=(

@@ -62,6 +62,8 @@ BARE: Mapping[str, Any] = {
     "after": "",
 }
 """A function without a listing."""
+ROOM = 26
+"""A table that needs no more lines than that is kept on one page."""
 SENTENCE = 60
 """The letters of a cell that is broken into lines."""
 PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
@@ -184,6 +186,7 @@ class Page(Sheet):
             "blocks": blocks(new),
             "columns": "".join(map(column, zip(*step.rows, strict=True))),
             "rows": [[self.cell(cell) for cell in row] for row in step.rows],
+            "room": min(2 * len(step.rows) + 3, ROOM),
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
             "counted": counted,
             "proves": self.prose(step.proves) if counted else "",

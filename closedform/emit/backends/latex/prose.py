@@ -234,6 +234,10 @@ class Prose:
         self.code = {f.name for f in functions if f.has_status} - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
         self.points = {m[1] + m[2] for left in shown if (m := POINT.fullmatch(left))}
+        if self.points:  # then all points of the drawing are written so
+            cells = [c for step in derivation.steps for row in step.rows for c in row]
+            told = " ".join(c for c in cells if isinstance(c, str))
+            self.points |= {*re.findall(r"\b[A-Z]\d\b", told)}
 
     def __call__(self, text: str) -> str:
         words = "|".join(map(re.escape, self.angles))

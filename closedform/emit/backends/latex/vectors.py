@@ -212,7 +212,14 @@ class _Coordinates:
         named = Vector("vector_result", real=True)
         self.letters[named] = self.written.get("result", r"\mathbf x")
         function = replace(self.function, body=tuple(body))
-        return InVectors(function, values, result, self.letters, named, self.factors)
+        return InVectors(
+            function=function,
+            values=values,
+            result=result,
+            letters=self.letters,
+            named=named,
+            factors=self.factors,
+        )
 
     def _kept(self, value: sp.Expr, usual: sp.Expr) -> sp.Expr:
         """A value in vectors that keeps what it is where a flag holds, if that is a number."""

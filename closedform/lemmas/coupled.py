@@ -14,8 +14,8 @@ import sympy as sp
 from closedform.lemmas.hand import check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
-from closedform.lemmas.loop import EQUATIONS, NO_MODE, Exported, export
 from closedform.lemmas.missed import MOVED, SHARE
+from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step

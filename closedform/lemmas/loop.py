@@ -8,7 +8,7 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -29,6 +29,7 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
 from closedform.lemmas.missed import MOVED, SHARE, loosened
+from closedform.lemmas.modes import NO_MODE, Exported, export
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
@@ -46,15 +47,6 @@ from closedform.model.functions import (
 from closedform.model.inverse import Inverse, Link
 
 AXES = "xyz"
-NO_MODE = "NaN for an assembly mode that does not exist."
-Exported = tuple[str, str, dict[str, Any], tuple[str, ...]]
-EQUATIONS: Mapping[str, str] = {
-    **{name: name for name in "ABJ"},
-    "det": r"\det J",
-    "factors": r"\Delta",
-    "kappa": r"\kappa",
-}
-"""What stands on the left of the equation that has a result, by the name of the output."""
 
 
 def parallel(
@@ -547,30 +539,6 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
     return shown
 
 
-def export(
-    d: Derivation,
-    program: Program,
-    modes: Branches,
-    functions: Sequence[Exported],
-    equations: Mapping[str, str] = EQUATIONS,
-) -> None:
-    """Export functions of the joints in each assembly mode: name, summary, outputs and notes.
-
-    ``equations`` says which equation of a step has a result, by the name of the output.
-    """
-    for name, summary, outputs, notes in functions:
-        d.function(
-            name,
-            summary,
-            {"q": d.actuated},
-            outputs,
-            program=program,
-            branches=modes,
-            notes=(NO_MODE, *notes),
-            equation=equations.get(next(iter(outputs)), ""),
-        )
-
-
 def _inverse(m: Hand, loop: Step) -> None:
     d, g = m.d, m.d.program()
     slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
@@ -626,4 +594,4 @@ def _inverse(m: Hand, loop: Step) -> None:
     solved.certify(turning, images="fk")
 
 
-__all__ = ["EQUATIONS", "NO_MODE", "Exported", "export", "parallel"]
+__all__ = ["parallel"]

@@ -14,7 +14,7 @@ from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.hand import check_order, in_space, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
 from closedform.lemmas.legs import Leg, cross_in_plane, vector
-from closedform.lemmas.loop import NO_MODE, export
+from closedform.lemmas.modes import NO_MODE, export
 from closedform.lemmas.rails import Rail, named_number
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton

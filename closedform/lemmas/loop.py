@@ -530,7 +530,16 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
     meanings |= {r"\Delta": "the determinant of A without its sign"}
     if not struts:
         shown[r"\det J"] = r"\frac{\det B}{\det A}"
-    if not struts and not m.rails:
+    if struts:
+        still = next(k for k, leg in m.numbered if isinstance(leg, Strut))
+        rod = rf"\mathbf p - \mathbf b_{still}"
+        shown[r"\mathbf s"] = rf"\frac{{{rod}}}{{\left|{rod}\right|}}"
+        shown["P"] = r"A \left(I - \mathbf s\,\mathbf s^T\right)"
+        shown[r"\kappa"] = r"\frac{\varsigma_1}{\varsigma_2}"
+        meanings[r"\mathbf s"] = "unit vector along the strut"
+        meanings["P"] = "rows of A without their part along the strut"
+        meanings[r"\kappa"] = "ratio of the two singular values of P that are not zero"
+    elif not m.rails:
         norm = "F" if len(numbers) == 3 else "2"
         part = r"\tfrac{1}{3}\," if len(numbers) == 3 else ""
         shown[r"\kappa"] = rf"{part}\lVert A\rVert_{norm}\,\lVert A^{{-1}}\rVert_{norm}"

@@ -224,7 +224,7 @@ def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
 
 def _uncapital(sentence: str) -> str:
     """The sentence as a part of another: a word that is not a name starts with a small letter."""
-    word = re.match(r"[A-Z][a-z]+\b", sentence)
+    word = re.match(r"[A-Z][a-z]+\b(?!['’])", sentence)
     is_word = word is not None and word[0] != "Jacobian"
     return sentence[0].lower() + sentence[1:] if is_word else sentence
 

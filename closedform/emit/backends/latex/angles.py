@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import chain, combinations, count
 from typing import Any
 
 import sympy as sp
@@ -68,7 +68,8 @@ def in_angles(
 
     ``results`` are the symbols of its outputs, and ``letters`` are for angles without a symbol.
     """
-    found = _InAngles(function, lemmas, results, iter(letters))
+    more = (f"omega_{k}" for k in count(2))
+    found = _InAngles(function, lemmas, results, chain(letters, more))
     told = found.told()
     angles = {s: e for e, s in found.totals.items() if e.is_Add and len(e.free_symbols) == 1}
     return Turned(told, found.names, angles)

@@ -208,7 +208,7 @@ class _Coordinates:
             elif symbol in scalars and isinstance(statement, Let | Bound):
                 body.append(replace(statement, value=self._kept(statement.value, scalars[symbol])))
             elif symbol not in self.coordinates:
-                body.append(statement)
+                body.append(self._aside(statement))
         named = Vector("vector_result", real=True)
         self.letters[named] = self.written.get("result", r"\mathbf x")
         function = replace(self.function, body=tuple(body))
@@ -220,6 +220,14 @@ class _Coordinates:
             named=named,
             factors=self.factors,
         )
+
+    def _aside(self, statement: Statement) -> Statement:
+        """A statement that only special cases need, in vectors if it can be."""
+        if isinstance(statement, Let) and statement.symbol in self.values:
+            value = self.products(self.values[statement.symbol])
+            if not value.free_symbols & self.coordinates:
+                return replace(statement, value=self._kept(statement.value, value))
+        return statement
 
     def _kept(self, value: sp.Expr, usual: sp.Expr) -> sp.Expr:
         """A value in vectors that keeps what it is where a flag holds, if that is a number."""

@@ -315,7 +315,7 @@ class _InAngles:
         y, x = sp.factor_terms(y * common / below), sp.factor_terms(x * common / under)
         number = sp.gcd(abs(y.as_coeff_Mul()[0]), abs(x.as_coeff_Mul()[0]))
         shared = set(sp.Mul.make_args(y)) & set(sp.Mul.make_args(x))
-        shared = {f for f in shared if not f.is_number and self._is_positive(f)}
+        shared = {f for f in shared if not f.is_Rational and self._is_positive(f)}
         factor = sp.Mul(number or 1, *shared)
         return self._squared(sp.expand_mul(y / factor, deep=False)), self._squared(
             sp.expand_mul(x / factor, deep=False)

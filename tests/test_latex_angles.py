@@ -8,7 +8,7 @@ import sympy as sp
 from closedform.emit.backends.latex.angles import added, in_angles, turned
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Function, Let, Vanishes, real, substitute
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 ARMS = ("franka_arm", "irb2400", "opw_arm", "puma560", "srs_arm", "stanford_arm", "ur_arm")
 LETTERS = ("alpha", "gamma", "delta", "zeta", "mu", "nu", "xi")
@@ -16,7 +16,7 @@ a, b, x, y = (real(name) for name in "abxy")
 
 
 def inverse(name: str) -> tuple[Derivation, Function, list, tuple[sp.Symbol, ...]]:
-    derivation = pipeline.load(next(s for s in pipeline.sources() if s.name == name))
+    derivation = scripts.load(next(s for s in scripts.sources() if s.name == name))
     f = next(f for f in derivation.functions if f.has_status)
     found = next(i for i in derivation.inverses if i.function == f.name)
     return derivation, f, [k.lemma for k in found.links if k.lemma], found.unknowns

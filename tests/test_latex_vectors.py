@@ -14,14 +14,14 @@ from closedform.model.functions import (
     real,
     substitute,
 )
-from closedform.pipeline import run as pipeline
+from closedform.pipeline import scripts
 
 LOOPS = ("delta", "linear_delta", "orthoglide", "spherical_five_bar")
 
 
 def forward(name: str) -> tuple[Function, dict[sp.Basic, sp.Expr]]:
     """The forward map, and joints and parameters in general position."""
-    derivation = pipeline.load(next(s for s in pipeline.sources() if s.name == name))
+    derivation = scripts.load(next(s for s in scripts.sources() if s.name == name))
     point = {p.symbol: p.value for p in derivation.parameters}
     shares = (sp.Rational(3, 10), sp.Rational(2, 5), sp.Rational(1, 4))
     point |= dict(zip(derivation.actuated, shares, strict=False))

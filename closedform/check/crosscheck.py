@@ -43,7 +43,7 @@ NESTED = 64.0
 steps the natural scale grows with every step, and would soon allow any error.
 """
 
-NEAR_POLE = 2.0**-6
+NEAR_POLE = 2.0**-4
 """What vanishes or ends where assembly modes meet is small below this share of its scale."""
 
 MENTIONED = 5

@@ -28,7 +28,8 @@ from closedform.lemmas.leg_by_leg import (
     size_of,
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.lemmas.loop import NEAR, NO_MODE, export
+from closedform.lemmas.loop import NEAR
+from closedform.lemmas.modes import NO_MODE, export
 from closedform.lemmas.missed import MOVED, SHARE, loosened
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton

@@ -106,6 +106,11 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
         sp.Abs(bars_at_p((y * (y - L0) + r2, tau * r * L0), *legs)),
         4 * L2**2 * square_c * square_d,
         "C, D and P are in line, or C and D coincide",
+        missed=sum(
+            sp.Max(0, sqrt(square) - L1 - L2, sp.Abs(L1 - L2) - sqrt(square))
+            for square in (square_c, square_d)
+        ),
+        size=size,
     )
     driven_angles = [choose(at_a, 0, bearing_c[theta2]), choose(at_b, 0, bearing_d[theta3])]
     _explain(d, loop, turn)
@@ -128,8 +133,9 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
             "the others unless L1 = 0.",
             "SINGULAR also near a parallel singularity, if the sine of the angle between CP and "
             "DP is less than 2^-10: the loop closes, but one ulp of the joints moves P by more "
-            "than 1e-12 of the lengths.  If L0 = 0, C coincides with D for equal signs of the "
-            "last two entries.",
+            "than 1e-12 of the lengths.  The length by which the answer misses a target just "
+            "outside of the workspace counts as a rounding error too.  If L0 = 0, C coincides "
+            "with D for equal signs of the last two entries.",
             "Ill-conditioned near the boundary of the workspace: the angles lose half their "
             "digits, but the loop still closes.",
         ),

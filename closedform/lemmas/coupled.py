@@ -12,7 +12,15 @@ from typing import cast
 import sympy as sp
 
 from closedform.lemmas.hand import check_plain, in_space, rate_of, square
-from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
+from closedform.lemmas.leg_by_leg import (
+    MISSED,
+    SIGN,
+    Choice,
+    bounds_of,
+    record_lemma,
+    size_of,
+    where_free,
+)
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
@@ -239,7 +247,7 @@ def _inverse(loop: _Loop) -> None:
     if isinstance(follower, Crank):
         scale, least = scale * size, f"{least} times the sum of all lengths"
     across = "the rod is at right angles to the follower"
-    g.determined(sp.Abs(A), scale, across, name="|A|")
+    g.determined(sp.Abs(A), scale, across, name="|A|", missed=found.missed, size=size)
     working = SINGLE if stretches else branches((sigma, SIGN))
     d.branches = working.labels
     reached = (
@@ -253,7 +261,7 @@ def _inverse(loop: _Loop) -> None:
         f"{reached}  Near a parallel singularity rounded "
         "joints do not determine the follower, however they are computed.  A rounding error of "
         "the lengths moves it by this error times the length of the rod over A.  The status is "
-        f"SINGULAR if A is less than 2^-10 of {least}.",
+        f"SINGULAR if A is less than 2^-10 of {least}.  {MISSED}",
         {},
         uses=[loop.stated],
     )

@@ -26,6 +26,10 @@ from closedform.model.inverse import Inverse, Link
 
 Choice = Mapping[int, str]
 SIGN = {+1: "plus", -1: "minus"}
+MISSED = (
+    "If the target is just outside of the workspace, the length by which the answer misses it "
+    "counts as a rounding error too."
+)
 
 
 @dataclass
@@ -59,6 +63,11 @@ class LegByLeg:
                 for leg in legs
             )
         )
+
+    @property
+    def missed(self) -> sp.Expr:
+        """The length by which all rods together miss a target just outside of the workspace."""
+        return sp.Add(*(s.missed for s in self.found))
 
     def rows(self, straight: Sequence[sp.Matrix], *, subtract: bool) -> list[sp.Matrix]:
         """Rows with the determinant of A: the ``straight`` ones and the rods of the solved legs.
@@ -218,6 +227,7 @@ def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
 
 
 __all__ = [
+    "MISSED",
     "SIGN",
     "Choice",
     "LegByLeg",

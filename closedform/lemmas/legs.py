@@ -72,11 +72,15 @@ theorem(
 
 @dataclass(frozen=True)
 class Solution:
-    """A joint solved for, and the ``rod`` from its near end to its far end, as a vector."""
+    """A joint solved for, and the ``rod`` from its near end to its far end, as a vector.
+
+    ``missed`` is the length by which the rod misses a target just outside of the reach of the leg.
+    """
 
     link: Link
     value: sp.Expr
     rod: sp.Matrix
+    missed: sp.Expr = sp.S.Zero
 
 
 class Leg(Protocol):
@@ -200,10 +204,13 @@ class Crank:
         start = len(p.body)
         s: sp.Expr = r
         scale = chain.size * chain.share
+        missed, lost = sp.S.Zero, sp.S.One
         if aside != 0:
             s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
+            missed = sp.Max(0, sp.Abs(aside) - r)
             # where the rod is nearly at right angles to the plane, s has lost digits that r has
-            scale = chain.let("slack", scale + scale * r / (s + chain.size / 2**22))
+            lost = chain.let("lost", sp.Max(1, r / (s + chain.size / 2**22)), positive=True)
+            scale = scale * lost
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
         triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)
         met = chain.vanishes("met", R, "the rod ends on the axis of the crank", q)
@@ -239,7 +246,8 @@ class Crank:
             ),
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
-        return Solution(link, lemma[q], w - away)
+        missed -= sp.Min(0, l + s - R, R + l - s, R - l + s) / lost
+        return Solution(link, lemma[q], w - away, chain.let("missed", missed))
 
 
 @dataclass(frozen=True)
@@ -293,7 +301,7 @@ class Slide:
             roles=(("m", m), ("r", r), ("p", aside)),
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]))
-        return Solution(link, value, w - value * s)
+        return Solution(link, value, w - value * s, sp.Max(0, sp.Abs(aside) - r))
 
 
 @dataclass(frozen=True)

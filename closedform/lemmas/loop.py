@@ -19,6 +19,7 @@ from closedform.lemmas.conditioning import conditioning
 from closedform.lemmas.hand import Hand, in_space, square
 from closedform.lemmas.held import LEFT_OUT, Bars, bars_of, check_held, constraint, state_held
 from closedform.lemmas.leg_by_leg import (
+    MISSED,
     SIGN,
     Choice,
     LegByLeg,
@@ -575,14 +576,21 @@ def _inverse(m: Hand, loop: Step) -> None:
     links = [sp.sympify(e, strict=True) for e in given]
     beyond = sp.Add(*(e for e in links if not e.is_Atom)) / solved.size
     scale = solved.lengths(m.legs) * (1 + beyond)
-    g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
+    g.determined(
+        sp.Abs(volume),
+        scale,
+        m.meet,
+        name=r"|\det A|",
+        missed=solved.missed,
+        size=solved.size,
+    )
     d.step(
         "Inverse: leg by leg",
         f"Each leg is solved alone.  {solved.on_modes}Rounded joints miss the lengths of the rods "
         "by a few units in the last place.  The error of the hand can be this error times the "
         "product of the lengths of the rods over the determinant of A.  So near a parallel "
         "singularity the joints do not determine the hand, however they are computed.  The "
-        "status is SINGULAR if the determinant is less than 2^-10 of the product.",
+        f"status is SINGULAR if the determinant is less than 2^-10 of the product.  {MISSED}",
         {},
         uses=[loop],
     )
@@ -593,7 +601,8 @@ def _inverse(m: Hand, loop: Step) -> None:
         f"UNREACHABLE: a rod does not reach{off_sphere}.",
         [
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
-            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
+            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.  "
+            f"{MISSED}",
             *left_out(m),
         ],
     )

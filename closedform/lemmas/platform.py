@@ -19,7 +19,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.hand import check_order, check_plain, in_space, rate_of, square
-from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
+from closedform.lemmas.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, cross_in_plane, vector
 from closedform.lemmas.on_rails import on_rails
 from closedform.lemmas.rails import Rail
@@ -476,6 +476,8 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
         scale_name=r"\lambda \prod_i |\mathbf r_i|"
         if power == 1
         else r"2^{-10} \lambda^3 \prod_i |\mathbf r_i|",
+        missed=solved.missed,
+        size=solved.size,
     )
     d.step(
         "Inverse: leg by leg",
@@ -483,7 +485,7 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
         f"less than {share} of the product of the lengths of the rods and"
         f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "
-        "of the ends of the rods on the hand from their centre.",
+        f"of the ends of the rods on the hand from their centre.  {MISSED}",
         {},
         uses=[loop],
     )

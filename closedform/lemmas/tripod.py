@@ -18,7 +18,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.lemmas.hand import rate_of, square
-from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
+from closedform.lemmas.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Slide, Stretch, vector
 from closedform.lemmas.tripod_legs import Placed, Tripod, Upright
 from closedform.mechanics.skeleton import skeleton
@@ -397,6 +397,8 @@ def _inverse(m: Tripod, loop: Step) -> None:
         meet,
         name=r"\min(|\det A|\,e,\ \delta\,\Lambda)",
         scale_name=r"e\,\Lambda",
+        missed=solved.missed,
+        size=solved.size,
     )
     d.step(
         "Inverse: leg by leg",
@@ -404,7 +406,8 @@ def _inverse(m: Tripod, loop: Step) -> None:
         "parallel or a constraint singularity rounded joints do not determine the hand.  The "
         "status is SINGULAR if the determinant of A is less than 2^-10 of Lambda, the product of "
         "the lengths of the rods and the mean square distance of the corners from the centre of "
-        "the hand, or if delta is less than 2^-10 of e, the sum of the coordinates of the corners.",
+        "the hand, or if delta is less than 2^-10 of e, the sum of the coordinates of the "
+        f"corners.  {MISSED}",
         {},
         uses=[loop],
     )

@@ -119,8 +119,7 @@ class Branch:
                 if statement.free:
                     self.singular.append(flag)
             case Determined():
-                least = self._tolerance("determined", statement.scale, statement.squares)
-                self.singular.append(self.graph.node("le", self.build(statement.value), least))
+                self._determined(statement)
             case Require():
                 sizes = [self.graph.even("abs", self.build(v)) for v in statement.values]
                 allowed = self._tolerance("rotation", statement.scale)
@@ -137,6 +136,19 @@ class Branch:
             squared = [self._tolerance("vanishing", 16 * scale), self._tolerance("vanishing", 1)]
             least = graph.product(squared)
         self._name(statement.symbol, graph.node("max", value, least))
+
+    def _determined(self, statement: Determined) -> None:
+        """What is missed adds to the rounding error, so its sum with it takes the place of it."""
+        graph = self.graph
+        value = self.build(statement.value)
+        least = self._tolerance("determined", statement.scale, statement.squares)
+        if statement.missed != 0:
+            rounded = self._tolerance("vanishing", statement.size)
+            error = graph.sum([rounded, self.build(statement.missed)])
+            power = 2 if statement.squares else 1
+            value = graph.product([value, *[rounded] * power])
+            least = graph.product([least, *[error] * power])
+        self.singular.append(graph.node("le", value, least))
 
     def _tolerance(self, name: str, scale: sp.Expr, squares: bool = False) -> Node:
         """A tolerance, or its square, times its scale."""

@@ -129,6 +129,9 @@ class Determined:
     with ``squares`` they are squares of such quantities.  If this amplification is too large for
     the round trip, the status is SINGULAR; the answer does not change.  The article prints the
     value as ``name`` and the scale as ``scale_name``, which are LaTeX, if it has them.
+
+    It also amplifies ``missed``, the length by which the rods miss a target just outside of the
+    workspace, relative to ``size``, the sum of all lengths.
     """
 
     value: sp.Expr
@@ -137,6 +140,8 @@ class Determined:
     squares: bool = False
     name: str = ""
     scale_name: str = ""
+    missed: sp.Expr = sp.S.Zero
+    size: sp.Expr = sp.S.One
 
 
 @dataclass(frozen=True)
@@ -492,6 +497,8 @@ class Program:
         squares: bool = False,
         name: str = "",
         scale_name: str = "",
+        missed: sp.Expr = sp.S.Zero,
+        size: sp.Expr = sp.S.One,
     ) -> None:
         """Report SINGULAR where rounded joints do not determine the posture.
 
@@ -505,9 +512,11 @@ class Program:
             whether value and scale are squares of such quantities
         name, scale_name
             how the article prints them, in LaTeX
+        missed, size
+            the length by which the rods miss a target, and the sum of all lengths
         """
-        exact = sp.sympify(scale, strict=True)
-        self.body.append(Determined(value, exact, meaning, squares, name, scale_name))
+        exact, more = sp.sympify(scale, strict=True), (squares, name, scale_name, missed, size)
+        self.body.append(Determined(value, exact, meaning, *more))
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))

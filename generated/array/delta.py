@@ -11,8 +11,8 @@
 #   singularities: 69 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
 #   condition_number: 66 compare and select, 121 add, 14 divide, 173 multiply, 6 sincos, 3 sqrt
 #   constraint: 63 compare and select, 93 add, 12 divide, 159 multiply, 6 sincos, 1 sqrt
-#   ik: 169 compare and select, 151 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 18 sqrt
-#   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
+#   ik: 187 compare and select, 157 add, 6 atan2, 14 divide, 174 multiply, 3 sincos, 18 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -1950,250 +1950,260 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(x, y, z))
     size = f + e + L + l
-    t3 = size * 0.5
-    t4 = -(ops.feasibility * t3)
-    t5 = f * s_alpha1 - (y + e * s_alpha1)
-    t6 = f * c_alpha1 - (x + e * c_alpha1)
-    t7 = c_alpha1 * t5 - s_alpha1 * t6
-    t8 = l + t7
-    t9 = l - t7
-    t10 = l * size
-    t11 = size * 2.384185791015625e-07
-    t12 = ops.max(t8, 0.0) * ops.max(t9, 0.0)
-    fore_1 = ops.sqrt(t12)
-    t13 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_1)))
-    t14 = z * z
-    t15 = s_alpha1 * t5 + c_alpha1 * t6
-    t16 = t14 + t15 * t15
-    R_1 = ops.sqrt(t16)
-    t17 = L - R_1
-    t18 = t17 + fore_1
-    t19 = L + R_1
-    t20 = t19 - fore_1
-    t21 = (t4 <= t8) & (t4 <= t9) & (-t13 <= t18) & (-t13 <= t20)
-    t22 = fore_1 - t17
-    t23 = f * s_alpha2 - (y + e * s_alpha2)
-    t24 = f * c_alpha2 - (x + e * c_alpha2)
-    t25 = c_alpha2 * t23 - s_alpha2 * t24
-    t26 = l + t25
-    t27 = l - t25
-    t28 = t21 & (-t13 <= t22) & (t4 <= t26) & (t4 <= t27)
-    t29 = ops.max(t26, 0.0) * ops.max(t27, 0.0)
-    fore_2 = ops.sqrt(t29)
-    t30 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_2)))
-    t31 = s_alpha2 * t23 + c_alpha2 * t24
-    t32 = t14 + t31 * t31
-    R_2 = ops.sqrt(t32)
-    t33 = L - R_2
-    t34 = fore_2 + t33
-    t35 = L + R_2
-    t36 = t35 - fore_2
-    t37 = fore_2 - t33
-    t38 = t28 & (-t30 <= t34) & (-t30 <= t36) & (-t30 <= t37)
-    t39 = f * s_alpha3 - (y + e * s_alpha3)
-    t40 = f * c_alpha3 - (x + e * c_alpha3)
-    t41 = c_alpha3 * t39 - s_alpha3 * t40
-    t42 = l + t41
-    t43 = l - t41
-    t44 = ops.max(t42, 0.0) * ops.max(t43, 0.0)
-    fore_3 = ops.sqrt(t44)
-    t45 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_3)))
-    t46 = s_alpha3 * t39 + c_alpha3 * t40
-    t47 = t14 + t46 * t46
-    R_3 = ops.sqrt(t47)
-    t48 = L - R_3
-    t49 = fore_3 + t48
-    t50 = t38 & (t4 <= t42) & (t4 <= t43) & (-t45 <= t49)
-    t51 = L + R_3
-    t52 = t51 - fore_3
-    t53 = fore_3 - t48
-    unreachable = ops.opposite(t50 & (-t45 <= t52) & (-t45 <= t53))
+    t3 = -(ops.feasibility * (size * 0.5))
+    t4 = f * s_alpha1 - (y + e * s_alpha1)
+    t5 = f * c_alpha1 - (x + e * c_alpha1)
+    t6 = c_alpha1 * t4 - s_alpha1 * t5
+    t7 = l + t6
+    t8 = l - t6
+    t9 = size * 2.384185791015625e-07
+    t10 = ops.max(t7, 0.0) * ops.max(t8, 0.0)
+    fore_1 = ops.sqrt(t10)
+    lost_1 = ops.max(1.0, l / (t9 + fore_1))
+    t11 = -(ops.feasibility * (size * lost_1 * 0.5))
+    t12 = z * z
+    t13 = s_alpha1 * t4 + c_alpha1 * t5
+    t14 = t12 + t13 * t13
+    R_1 = ops.sqrt(t14)
+    t15 = L - R_1
+    t16 = t15 + fore_1
+    t17 = L + R_1
+    t18 = t17 - fore_1
+    t19 = (t3 <= t7) & (t3 <= t8) & (t11 <= t16) & (t11 <= t18)
+    t20 = fore_1 - t15
+    t21 = f * s_alpha2 - (y + e * s_alpha2)
+    t22 = f * c_alpha2 - (x + e * c_alpha2)
+    t23 = c_alpha2 * t21 - s_alpha2 * t22
+    t24 = l + t23
+    t25 = l - t23
+    t26 = t19 & (t11 <= t20) & (t3 <= t24) & (t3 <= t25)
+    t27 = ops.max(t24, 0.0) * ops.max(t25, 0.0)
+    fore_2 = ops.sqrt(t27)
+    lost_2 = ops.max(1.0, l / (t9 + fore_2))
+    t28 = -(ops.feasibility * (size * lost_2 * 0.5))
+    t29 = s_alpha2 * t21 + c_alpha2 * t22
+    t30 = t12 + t29 * t29
+    R_2 = ops.sqrt(t30)
+    t31 = L - R_2
+    t32 = fore_2 + t31
+    t33 = L + R_2
+    t34 = t33 - fore_2
+    t35 = fore_2 - t31
+    t36 = t26 & (t28 <= t32) & (t28 <= t34) & (t28 <= t35)
+    t37 = f * s_alpha3 - (y + e * s_alpha3)
+    t38 = f * c_alpha3 - (x + e * c_alpha3)
+    t39 = c_alpha3 * t37 - s_alpha3 * t38
+    t40 = l + t39
+    t41 = l - t39
+    t42 = ops.max(t40, 0.0) * ops.max(t41, 0.0)
+    fore_3 = ops.sqrt(t42)
+    lost_3 = ops.max(1.0, l / (t9 + fore_3))
+    t43 = -(ops.feasibility * (size * lost_3 * 0.5))
+    t44 = s_alpha3 * t37 + c_alpha3 * t38
+    t45 = t12 + t44 * t44
+    R_3 = ops.sqrt(t45)
+    t46 = L - R_3
+    t47 = fore_3 + t46
+    t48 = t36 & (t3 <= t40) & (t3 <= t41) & (t43 <= t47)
+    t49 = L + R_3
+    t50 = t49 - fore_3
+    t51 = fore_3 - t46
+    unreachable = ops.opposite(t48 & (t43 <= t50) & (t43 <= t51))
     failed = invalid | unreachable
-    t54 = size * ops.vanishing
-    no_crank_1 = L <= t54
-    t55 = (R_1 <= t54) | no_crank_1
-    t56 = ops.opposite(failed)
-    t57 = t56 & ops.opposite(t55)
-    R_1_2 = ops.sqrt(ops.select(t57, t16, 1.0))
-    t58 = L - R_1_2
-    fore_1_2 = ops.sqrt(ops.select(t57, t12, 1.0))
-    t59 = ops.max(t58 + fore_1_2, 0.0) * ops.max(fore_1_2 - t58, 0.0)
-    t60 = L + R_1_2
-    t61 = (fore_1_2 + t60) * ops.max(t60 - fore_1_2, 0.0)
-    t62 = t59 - t61
-    t63 = z * t62
-    beyond_1 = 2.0 * ops.sqrt(ops.select(t57, t59 * t61, 1.0))
-    t64 = t15 * beyond_1
-    t65 = t15 * t62
-    t66 = z * beyond_1
-    t67 = ops.select(t56, ops.select(t55, 1.0, t65 - t66), 1.0)
-    t68 = ops.atan2(ops.select(t55, 0.0, t63 + t64), t67)
-    t69 = ops.select(failed, ops.nan, ops.wrap_cut(t68))
-    met_2 = R_2 <= t54
-    t70 = met_2 | no_crank_1
-    t71 = t56 & ops.opposite(t70)
-    fore_2_2 = ops.sqrt(ops.select(t71, t29, 1.0))
-    R_2_2 = ops.sqrt(ops.select(t71, t32, 1.0))
-    t72 = L - R_2_2
-    t73 = ops.max(fore_2_2 + t72, 0.0) * ops.max(fore_2_2 - t72, 0.0)
-    t74 = L + R_2_2
-    t75 = (fore_2_2 + t74) * ops.max(t74 - fore_2_2, 0.0)
-    t76 = t73 - t75
-    t77 = z * t76
-    beyond_2 = 2.0 * ops.sqrt(ops.select(t71, t73 * t75, 1.0))
-    t78 = t31 * beyond_2
-    t79 = t31 * t76
-    t80 = z * beyond_2
-    t81 = ops.select(t56, ops.select(t70, 1.0, t79 - t80), 1.0)
-    t82 = ops.atan2(ops.select(t70, 0.0, t77 + t78), t81)
-    t83 = ops.select(failed, ops.nan, ops.wrap_cut(t82))
-    met_3 = R_3 <= t54
-    t84 = met_3 | no_crank_1
-    t85 = t56 & ops.opposite(t84)
-    fore_3_2 = ops.sqrt(ops.select(t85, t44, 1.0))
-    R_3_2 = ops.sqrt(ops.select(t85, t47, 1.0))
-    t86 = L - R_3_2
-    t87 = ops.max(fore_3_2 + t86, 0.0) * ops.max(fore_3_2 - t86, 0.0)
-    t88 = L + R_3_2
-    t89 = (fore_3_2 + t88) * ops.max(t88 - fore_3_2, 0.0)
-    t90 = t87 - t89
-    t91 = z * t90
-    beyond_3 = 2.0 * ops.sqrt(ops.select(t85, t87 * t89, 1.0))
-    t92 = t46 * beyond_3
-    t93 = t46 * t90
-    t94 = z * beyond_3
-    t95 = ops.select(t56, ops.select(t84, 1.0, t93 - t94), 1.0)
-    t96 = ops.atan2(ops.select(t84, 0.0, t91 + t92), t95)
-    t97 = ops.select(failed, ops.nan, ops.wrap_cut(t96))
-    t98 = ops.select(t56, ops.select(t84, 1.0, t93 + t94), 1.0)
-    t99 = ops.atan2(ops.select(t84, 0.0, t91 - t92), t98)
-    t100 = ops.select(failed, ops.nan, ops.wrap_cut(t99))
-    t101 = ops.select(t56, ops.select(t70, 1.0, t79 + t80), 1.0)
-    t102 = ops.atan2(ops.select(t70, 0.0, t77 - t78), t101)
-    t103 = ops.select(failed, ops.nan, ops.wrap_cut(t102))
-    t104 = ops.select(t56, ops.select(t55, 1.0, t65 + t66), 1.0)
-    t105 = ops.atan2(ops.select(t55, 0.0, t63 - t64), t104)
-    t106 = ops.select(failed, ops.nan, ops.wrap_cut(t105))
-    t107 = t55 | met_2 | met_3
-    t108 = ops.max(t18, 0.0) * ops.max(t22, 0.0)
-    t109 = (fore_1 + t19) * ops.max(t20, 0.0)
-    t110 = t108 - t109
-    t111 = t15 * t110
-    beyond_1_2 = 2.0 * ops.sqrt(t108 * t109)
-    t112 = z * beyond_1_2
-    cosine_1 = ops.select(t55, 1.0, t111 - t112)
-    share_1 = L / ops.select(t55, 1.0, R_1 * (t108 + t109))
-    t113 = c_alpha1 * share_1
-    t114 = t6 + cosine_1 * t113
-    t115 = ops.max(t34, 0.0) * ops.max(t37, 0.0)
-    t116 = (fore_2 + t35) * ops.max(t36, 0.0)
-    t117 = t115 - t116
-    t118 = t31 * t117
-    beyond_2_2 = 2.0 * ops.sqrt(t115 * t116)
-    t119 = z * beyond_2_2
-    cosine_2 = ops.select(t70, 1.0, t118 - t119)
-    share_2 = L / ops.select(t70, 1.0, R_2 * (t115 + t116))
-    t120 = s_alpha2 * share_2
-    t121 = t23 + cosine_2 * t120
-    t122 = ops.max(t49, 0.0) * ops.max(t53, 0.0)
-    t123 = (fore_3 + t51) * ops.max(t52, 0.0)
-    t124 = t122 - t123
-    t125 = z * t124
-    beyond_3_2 = 2.0 * ops.sqrt(t122 * t123)
-    t126 = t46 * beyond_3_2
-    share_3 = L / ops.select(t84, 1.0, R_3 * (t122 + t123))
-    A_33 = z + ops.select(t84, 0.0, t125 + t126) * share_3
-    t127 = z * t117
-    t128 = t31 * beyond_2_2
-    A_23 = z + ops.select(t70, 0.0, t127 + t128) * share_2
-    t129 = t46 * t124
-    t130 = z * beyond_3_2
-    cosine_3 = ops.select(t84, 1.0, t129 - t130)
-    t131 = s_alpha3 * share_3
-    t132 = t39 + cosine_3 * t131
-    t133 = t121 * A_33 - A_23 * t132
-    t134 = s_alpha1 * share_1
-    t135 = t5 + cosine_1 * t134
-    t136 = c_alpha2 * share_2
-    t137 = t24 + cosine_2 * t136
-    t138 = c_alpha3 * share_3
-    t139 = t40 + cosine_3 * t138
-    t140 = A_33 * t137 - A_23 * t139
-    t141 = z * t110
-    t142 = t15 * beyond_1_2
-    A_13 = z + ops.select(t55, 0.0, t141 + t142) * share_1
-    t143 = t132 * t137 - t121 * t139
-    t144 = ops.abs(t114 * t133 - t135 * t140 + A_13 * t143)
-    t145 = ops.determined * (l * l * l)
-    t146 = ops.status(invalid, unreachable, t107 | (t144 <= t145))
-    A_33_plus_plus_minus = z + ops.select(t84, 0.0, t125 - t126) * share_3
-    cosine_3_plus_plus_minus = ops.select(t84, 1.0, t129 + t130)
-    t147 = t39 + cosine_3_plus_plus_minus * t131
-    t148 = t121 * A_33_plus_plus_minus - A_23 * t147
-    t149 = t40 + cosine_3_plus_plus_minus * t138
-    t150 = t137 * A_33_plus_plus_minus - A_23 * t149
-    t151 = t137 * t147 - t121 * t149
-    t152 = ops.abs(t114 * t148 - t135 * t150 + A_13 * t151)
-    t153 = ops.status(invalid, unreachable, t107 | (t152 <= t145))
-    cosine_2_plus_minus_plus = ops.select(t70, 1.0, t118 + t119)
-    t154 = t23 + cosine_2_plus_minus_plus * t120
-    A_23_plus_minus_plus = z + ops.select(t70, 0.0, t127 - t128) * share_2
-    t155 = A_33 * t154 - t132 * A_23_plus_minus_plus
-    t156 = t24 + cosine_2_plus_minus_plus * t136
-    t157 = A_33 * t156 - t139 * A_23_plus_minus_plus
-    t158 = t132 * t156 - t139 * t154
-    t159 = ops.abs(t114 * t155 - t135 * t157 + A_13 * t158)
-    t160 = ops.status(invalid, unreachable, t107 | (t159 <= t145))
-    t161 = A_33_plus_plus_minus * t154 - t147 * A_23_plus_minus_plus
-    t162 = A_33_plus_plus_minus * t156 - t149 * A_23_plus_minus_plus
-    t163 = t147 * t156 - t149 * t154
-    t164 = ops.abs(t114 * t161 - t135 * t162 + A_13 * t163)
-    t165 = ops.status(invalid, unreachable, t107 | (t164 <= t145))
-    cosine_1_minus_plus_plus = ops.select(t55, 1.0, t111 + t112)
-    t166 = t6 + cosine_1_minus_plus_plus * t113
-    t167 = t5 + cosine_1_minus_plus_plus * t134
-    A_13_minus_plus_plus = z + ops.select(t55, 0.0, t141 - t142) * share_1
-    Delta_minus_plus_plus = t133 * t166 - t140 * t167 + t143 * A_13_minus_plus_plus
-    t168 = t107 | (ops.abs(Delta_minus_plus_plus) <= t145)
-    Delta_minus_plus_minus = t148 * t166 - t150 * t167 + t151 * A_13_minus_plus_plus
-    t169 = t107 | (ops.abs(Delta_minus_plus_minus) <= t145)
-    Delta_minus_minus_plus = t155 * t166 - t157 * t167 + t158 * A_13_minus_plus_plus
-    t170 = t107 | (ops.abs(Delta_minus_minus_plus) <= t145)
-    Delta_minus_minus_minus = t161 * t166 - t162 * t167 + t163 * A_13_minus_plus_plus
-    t171 = t107 | (ops.abs(Delta_minus_minus_minus) <= t145)
+    t52 = size * ops.vanishing
+    no_crank_1 = L <= t52
+    t53 = (R_1 <= t52) | no_crank_1
+    t54 = ops.opposite(failed)
+    t55 = t54 & ops.opposite(t53)
+    R_1_2 = ops.sqrt(ops.select(t55, t14, 1.0))
+    t56 = L - R_1_2
+    fore_1_2 = ops.sqrt(ops.select(t55, t10, 1.0))
+    t57 = ops.max(t56 + fore_1_2, 0.0) * ops.max(fore_1_2 - t56, 0.0)
+    t58 = L + R_1_2
+    t59 = (fore_1_2 + t58) * ops.max(t58 - fore_1_2, 0.0)
+    t60 = t57 - t59
+    t61 = z * t60
+    beyond_1 = 2.0 * ops.sqrt(ops.select(t55, t57 * t59, 1.0))
+    t62 = t13 * beyond_1
+    t63 = t13 * t60
+    t64 = z * beyond_1
+    t65 = ops.select(t54, ops.select(t53, 1.0, t63 - t64), 1.0)
+    t66 = ops.atan2(ops.select(t53, 0.0, t61 + t62), t65)
+    t67 = ops.select(failed, ops.nan, ops.wrap_cut(t66))
+    met_2 = R_2 <= t52
+    t68 = met_2 | no_crank_1
+    t69 = t54 & ops.opposite(t68)
+    fore_2_2 = ops.sqrt(ops.select(t69, t27, 1.0))
+    R_2_2 = ops.sqrt(ops.select(t69, t30, 1.0))
+    t70 = L - R_2_2
+    t71 = ops.max(fore_2_2 + t70, 0.0) * ops.max(fore_2_2 - t70, 0.0)
+    t72 = L + R_2_2
+    t73 = (fore_2_2 + t72) * ops.max(t72 - fore_2_2, 0.0)
+    t74 = t71 - t73
+    t75 = z * t74
+    beyond_2 = 2.0 * ops.sqrt(ops.select(t69, t71 * t73, 1.0))
+    t76 = t29 * beyond_2
+    t77 = t29 * t74
+    t78 = z * beyond_2
+    t79 = ops.select(t54, ops.select(t68, 1.0, t77 - t78), 1.0)
+    t80 = ops.atan2(ops.select(t68, 0.0, t75 + t76), t79)
+    t81 = ops.select(failed, ops.nan, ops.wrap_cut(t80))
+    met_3 = R_3 <= t52
+    t82 = met_3 | no_crank_1
+    t83 = t54 & ops.opposite(t82)
+    fore_3_2 = ops.sqrt(ops.select(t83, t42, 1.0))
+    R_3_2 = ops.sqrt(ops.select(t83, t45, 1.0))
+    t84 = L - R_3_2
+    t85 = ops.max(fore_3_2 + t84, 0.0) * ops.max(fore_3_2 - t84, 0.0)
+    t86 = L + R_3_2
+    t87 = (fore_3_2 + t86) * ops.max(t86 - fore_3_2, 0.0)
+    t88 = t85 - t87
+    t89 = z * t88
+    beyond_3 = 2.0 * ops.sqrt(ops.select(t83, t85 * t87, 1.0))
+    t90 = t44 * beyond_3
+    t91 = t44 * t88
+    t92 = z * beyond_3
+    t93 = ops.select(t54, ops.select(t82, 1.0, t91 - t92), 1.0)
+    t94 = ops.atan2(ops.select(t82, 0.0, t89 + t90), t93)
+    t95 = ops.select(failed, ops.nan, ops.wrap_cut(t94))
+    t96 = ops.select(t54, ops.select(t82, 1.0, t91 + t92), 1.0)
+    t97 = ops.atan2(ops.select(t82, 0.0, t89 - t90), t96)
+    t98 = ops.select(failed, ops.nan, ops.wrap_cut(t97))
+    t99 = ops.select(t54, ops.select(t68, 1.0, t77 + t78), 1.0)
+    t100 = ops.atan2(ops.select(t68, 0.0, t75 - t76), t99)
+    t101 = ops.select(failed, ops.nan, ops.wrap_cut(t100))
+    t102 = ops.select(t54, ops.select(t53, 1.0, t63 + t64), 1.0)
+    t103 = ops.atan2(ops.select(t53, 0.0, t61 - t62), t102)
+    t104 = ops.select(failed, ops.nan, ops.wrap_cut(t103))
+    t105 = t53 | met_2 | met_3
+    t106 = ops.max(t16, 0.0) * ops.max(t20, 0.0)
+    t107 = (fore_1 + t17) * ops.max(t18, 0.0)
+    t108 = t106 - t107
+    t109 = t13 * t108
+    beyond_1_2 = 2.0 * ops.sqrt(t106 * t107)
+    t110 = z * beyond_1_2
+    cosine_1 = ops.select(t53, 1.0, t109 - t110)
+    share_1 = L / ops.select(t53, 1.0, R_1 * (t106 + t107))
+    t111 = c_alpha1 * share_1
+    t112 = t5 + cosine_1 * t111
+    t113 = ops.max(t32, 0.0) * ops.max(t35, 0.0)
+    t114 = (fore_2 + t33) * ops.max(t34, 0.0)
+    t115 = t113 - t114
+    t116 = t29 * t115
+    beyond_2_2 = 2.0 * ops.sqrt(t113 * t114)
+    t117 = z * beyond_2_2
+    cosine_2 = ops.select(t68, 1.0, t116 - t117)
+    share_2 = L / ops.select(t68, 1.0, R_2 * (t113 + t114))
+    t118 = s_alpha2 * share_2
+    t119 = t21 + cosine_2 * t118
+    t120 = ops.max(t47, 0.0) * ops.max(t51, 0.0)
+    t121 = (fore_3 + t49) * ops.max(t50, 0.0)
+    t122 = t120 - t121
+    t123 = z * t122
+    beyond_3_2 = 2.0 * ops.sqrt(t120 * t121)
+    t124 = t44 * beyond_3_2
+    share_3 = L / ops.select(t82, 1.0, R_3 * (t120 + t121))
+    A_33 = z + ops.select(t82, 0.0, t123 + t124) * share_3
+    t125 = z * t115
+    t126 = t29 * beyond_2_2
+    A_23 = z + ops.select(t68, 0.0, t125 + t126) * share_2
+    t127 = t44 * t122
+    t128 = z * beyond_3_2
+    cosine_3 = ops.select(t82, 1.0, t127 - t128)
+    t129 = s_alpha3 * share_3
+    t130 = t37 + cosine_3 * t129
+    t131 = t119 * A_33 - A_23 * t130
+    t132 = s_alpha1 * share_1
+    t133 = t4 + cosine_1 * t132
+    t134 = c_alpha2 * share_2
+    t135 = t22 + cosine_2 * t134
+    t136 = c_alpha3 * share_3
+    t137 = t38 + cosine_3 * t136
+    t138 = A_33 * t135 - A_23 * t137
+    t139 = z * t108
+    t140 = t13 * beyond_1_2
+    A_13 = z + ops.select(t53, 0.0, t139 + t140) * share_1
+    t141 = t130 * t135 - t119 * t137
+    t142 = ops.abs(t112 * t131 - t133 * t138 + A_13 * t141)
+    t143 = ops.min(ops.min(ops.min(0.0, t20), t16), t18)
+    missed_1 = ops.max(0.0, ops.abs(-t6) - l) - t143 / lost_1
+    t144 = ops.min(ops.min(ops.min(0.0, t35), t32), t34)
+    missed_2 = ops.max(0.0, ops.abs(-t23) - l) - t144 / lost_2
+    t145 = ops.min(ops.min(ops.min(0.0, t51), t47), t50)
+    missed_3 = ops.max(0.0, ops.abs(-t39) - l) - t145 / lost_3
+    t146 = ops.determined * (l * l * l) * (t52 + (missed_1 + missed_2 + missed_3))
+    t147 = ops.status(invalid, unreachable, t105 | (t52 * t142 <= t146))
+    A_33_plus_plus_minus = z + ops.select(t82, 0.0, t123 - t124) * share_3
+    cosine_3_plus_plus_minus = ops.select(t82, 1.0, t127 + t128)
+    t148 = t37 + cosine_3_plus_plus_minus * t129
+    t149 = t119 * A_33_plus_plus_minus - A_23 * t148
+    t150 = t38 + cosine_3_plus_plus_minus * t136
+    t151 = t135 * A_33_plus_plus_minus - A_23 * t150
+    t152 = t135 * t148 - t119 * t150
+    t153 = ops.abs(t112 * t149 - t133 * t151 + A_13 * t152)
+    t154 = ops.status(invalid, unreachable, t105 | (t52 * t153 <= t146))
+    cosine_2_plus_minus_plus = ops.select(t68, 1.0, t116 + t117)
+    t155 = t21 + cosine_2_plus_minus_plus * t118
+    A_23_plus_minus_plus = z + ops.select(t68, 0.0, t125 - t126) * share_2
+    t156 = A_33 * t155 - t130 * A_23_plus_minus_plus
+    t157 = t22 + cosine_2_plus_minus_plus * t134
+    t158 = A_33 * t157 - t137 * A_23_plus_minus_plus
+    t159 = t130 * t157 - t137 * t155
+    t160 = ops.abs(t112 * t156 - t133 * t158 + A_13 * t159)
+    t161 = ops.status(invalid, unreachable, t105 | (t52 * t160 <= t146))
+    t162 = A_33_plus_plus_minus * t155 - t148 * A_23_plus_minus_plus
+    t163 = A_33_plus_plus_minus * t157 - t150 * A_23_plus_minus_plus
+    t164 = t148 * t157 - t150 * t155
+    t165 = ops.abs(t112 * t162 - t133 * t163 + A_13 * t164)
+    t166 = ops.status(invalid, unreachable, t105 | (t52 * t165 <= t146))
+    cosine_1_minus_plus_plus = ops.select(t53, 1.0, t109 + t110)
+    t167 = t5 + cosine_1_minus_plus_plus * t111
+    t168 = t4 + cosine_1_minus_plus_plus * t132
+    A_13_minus_plus_plus = z + ops.select(t53, 0.0, t139 - t140) * share_1
+    Delta_minus_plus_plus = t131 * t167 - t138 * t168 + t141 * A_13_minus_plus_plus
+    t169 = t105 | (t52 * ops.abs(Delta_minus_plus_plus) <= t146)
+    Delta_minus_plus_minus = t149 * t167 - t151 * t168 + t152 * A_13_minus_plus_plus
+    t170 = t52 * ops.abs(Delta_minus_plus_minus) <= t146
+    t171 = ops.status(invalid, unreachable, t105 | t170)
+    Delta_minus_minus_plus = t156 * t167 - t158 * t168 + t159 * A_13_minus_plus_plus
+    t172 = t52 * ops.abs(Delta_minus_minus_plus) <= t146
+    t173 = ops.status(invalid, unreachable, t105 | t172)
+    Delta_minus_minus_minus = t162 * t167 - t163 * t168 + t164 * A_13_minus_plus_plus
+    t174 = t52 * ops.abs(Delta_minus_minus_minus) <= t146
+    t175 = ops.status(invalid, unreachable, t105 | t174)
     return (
-        t69,
-        t83,
-        t97,
-        t69,
-        t83,
-        t100,
-        t69,
-        t103,
-        t97,
-        t69,
-        t103,
-        t100,
-        t106,
-        t83,
-        t97,
-        t106,
-        t83,
-        t100,
-        t106,
-        t103,
-        t97,
-        t106,
-        t103,
-        t100,
-        t146,
-        t153,
-        t160,
-        t165,
-        ops.status(invalid, unreachable, t168),
+        t67,
+        t81,
+        t95,
+        t67,
+        t81,
+        t98,
+        t67,
+        t101,
+        t95,
+        t67,
+        t101,
+        t98,
+        t104,
+        t81,
+        t95,
+        t104,
+        t81,
+        t98,
+        t104,
+        t101,
+        t95,
+        t104,
+        t101,
+        t98,
+        t147,
+        t154,
+        t161,
+        t166,
         ops.status(invalid, unreachable, t169),
-        ops.status(invalid, unreachable, t170),
-        ops.status(invalid, unreachable, t171),
+        t171,
+        t173,
+        t175,
     )
 
 
@@ -2245,7 +2255,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       returned.
     - SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """
@@ -2263,48 +2275,46 @@ def _workspace_contains(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     size = f + e + L + l
-    t3 = size * 0.5
-    t4 = -(ops.feasibility * t3)
-    t5 = y + e * s_alpha1 - f * s_alpha1
-    t6 = x + e * c_alpha1 - f * c_alpha1
-    aside_1 = c_alpha1 * t5 - s_alpha1 * t6
-    t7 = l - aside_1
-    t8 = l + aside_1
-    t9 = l * size
-    t10 = size * 2.384185791015625e-07
-    fore_1 = ops.sqrt(ops.max(t7, 0.0) * ops.max(t8, 0.0))
-    t11 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_1)))
-    wu_1 = s_alpha1 * t5 + c_alpha1 * t6
-    t12 = z * z
-    R_1 = ops.sqrt(wu_1 * wu_1 + t12)
-    t13 = L - R_1
-    t14 = (t4 <= t7) & (t4 <= t8) & (-t11 <= fore_1 + t13)
-    t15 = t14 & (-t11 <= L + R_1 - fore_1) & (-t11 <= fore_1 - t13)
-    t16 = y + e * s_alpha2 - f * s_alpha2
-    t17 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t16 - s_alpha2 * t17
-    t18 = l - aside_2
-    t19 = l + aside_2
-    fore_2 = ops.sqrt(ops.max(t18, 0.0) * ops.max(t19, 0.0))
-    t20 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_2)))
-    wu_2 = s_alpha2 * t16 + c_alpha2 * t17
-    R_2 = ops.sqrt(t12 + wu_2 * wu_2)
-    t21 = L - R_2
-    t22 = t15 & (t4 <= t18) & (t4 <= t19) & (-t20 <= fore_2 + t21)
-    t23 = t22 & (-t20 <= L + R_2 - fore_2) & (-t20 <= fore_2 - t21)
-    t24 = y + e * s_alpha3 - f * s_alpha3
-    t25 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = c_alpha3 * t24 - s_alpha3 * t25
-    t26 = l - aside_3
-    t27 = l + aside_3
-    fore_3 = ops.sqrt(ops.max(t26, 0.0) * ops.max(t27, 0.0))
-    t28 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_3)))
-    wu_3 = s_alpha3 * t24 + c_alpha3 * t25
-    R_3 = ops.sqrt(t12 + wu_3 * wu_3)
-    t29 = L - R_3
-    t30 = t23 & (t4 <= t26) & (t4 <= t27) & (-t28 <= fore_3 + t29)
-    t31 = t30 & (-t28 <= L + R_3 - fore_3) & (-t28 <= fore_3 - t29)
-    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t31)
+    t3 = -(ops.feasibility * (size * 0.5))
+    t4 = y + e * s_alpha1 - f * s_alpha1
+    t5 = x + e * c_alpha1 - f * c_alpha1
+    aside_1 = c_alpha1 * t4 - s_alpha1 * t5
+    t6 = l - aside_1
+    t7 = l + aside_1
+    t8 = size * 2.384185791015625e-07
+    fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
+    t9 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_1)) * 0.5)
+    wu_1 = s_alpha1 * t4 + c_alpha1 * t5
+    t10 = z * z
+    R_1 = ops.sqrt(wu_1 * wu_1 + t10)
+    t11 = L - R_1
+    t12 = (t3 <= t6) & (t3 <= t7) & (-t9 <= fore_1 + t11)
+    t13 = t12 & (-t9 <= L + R_1 - fore_1) & (-t9 <= fore_1 - t11)
+    t14 = y + e * s_alpha2 - f * s_alpha2
+    t15 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t14 - s_alpha2 * t15
+    t16 = l - aside_2
+    t17 = l + aside_2
+    fore_2 = ops.sqrt(ops.max(t16, 0.0) * ops.max(t17, 0.0))
+    t18 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_2)) * 0.5)
+    wu_2 = s_alpha2 * t14 + c_alpha2 * t15
+    R_2 = ops.sqrt(t10 + wu_2 * wu_2)
+    t19 = L - R_2
+    t20 = t13 & (t3 <= t16) & (t3 <= t17) & (-t18 <= fore_2 + t19)
+    t21 = t20 & (-t18 <= L + R_2 - fore_2) & (-t18 <= fore_2 - t19)
+    t22 = y + e * s_alpha3 - f * s_alpha3
+    t23 = x + e * c_alpha3 - f * c_alpha3
+    aside_3 = c_alpha3 * t22 - s_alpha3 * t23
+    t24 = l - aside_3
+    t25 = l + aside_3
+    fore_3 = ops.sqrt(ops.max(t24, 0.0) * ops.max(t25, 0.0))
+    t26 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_3)) * 0.5)
+    wu_3 = s_alpha3 * t22 + c_alpha3 * t23
+    R_3 = ops.sqrt(t10 + wu_3 * wu_3)
+    t27 = L - R_3
+    t28 = t21 & (t3 <= t24) & (t3 <= t25) & (-t26 <= fore_3 + t27)
+    t29 = t28 & (-t26 <= L + R_3 - fore_3) & (-t26 <= fore_3 - t27)
+    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t29)
     return (
         ops.opposite(failed),
     )

@@ -12,7 +12,7 @@
 #   determinant: 32 add, 47 compare and select, 7 divide, 30 multiply, 2 sincos, 3 sqrt
 #   singularities: 32 add, 50 compare and select, 5 divide, 28 multiply, 2 sincos, 3 sqrt
 #   condition_number: 42 add, 49 compare and select, 7 divide, 39 multiply, 2 sincos, 5 sqrt
-#   ik: 102 compare and select, 59 add, 4 atan2, 3 divide, 57 multiply, 8 sqrt
+#   ik: 108 compare and select, 61 add, 4 atan2, 3 divide, 62 multiply, 8 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
 
@@ -1189,18 +1189,20 @@ def _ik(ops, x, y, L0, L1, L2, L3, L4):
     t63 = y * beyond_2_2
     t64 = wu_2 * t58
     A_21 = wu_2 - ops.select(t32, 1.0, t63 - t64) * share_2
-    t65 = ops.determined * (L3 * L4)
-    t66 = t50 | (ops.abs(A_11 * A_22 - A_12 * A_21) <= t65)
+    t65 = ops.min(ops.min(ops.min(0.0, t17), t16), t13)
+    t66 = ops.min(ops.min(ops.min(0.0, t11), t10), t8) + t65
+    t67 = ops.determined * (L3 * L4) * (t18 - t66)
+    t68 = t18 * ops.abs(A_11 * A_22 - A_12 * A_21) <= t67
     A_22_plus_minus = y + ops.select(t32, 0.0, t59 - t60) * share_2
     A_21_plus_minus = wu_2 - ops.select(t32, 1.0, -(t64 + t63)) * share_2
     Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus
-    t67 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_plus_minus) <= t65))
+    t69 = t50 | (t18 * ops.abs(Delta_plus_minus) <= t67)
     A_11_minus_plus = x - ops.select(t19, 1.0, -(t55 + t53)) * share_1
     A_12_minus_plus = y + ops.select(t19, 0.0, t61 - t62) * share_1
     Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus
-    t68 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_plus) <= t65))
+    t70 = t50 | (t18 * ops.abs(Delta_minus_plus) <= t67)
     Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus * A_12_minus_plus
-    t69 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_minus) <= t65))
+    t71 = t50 | (t18 * ops.abs(Delta_minus_minus) <= t67)
     return (
         t31,
         t43,
@@ -1210,10 +1212,10 @@ def _ik(ops, x, y, L0, L1, L2, L3, L4):
         t43,
         t49,
         t46,
-        ops.status(invalid, unreachable, t66),
-        t67,
-        t68,
-        t69,
+        ops.status(invalid, unreachable, t50 | t68),
+        ops.status(invalid, unreachable, t69),
+        ops.status(invalid, unreachable, t70),
+        ops.status(invalid, unreachable, t71),
     )
 
 
@@ -1262,7 +1264,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
     - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
-      but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target
+      is just outside of the workspace, the length by which the answer misses it counts as a
+      rounding error too.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

@@ -9,7 +9,7 @@
 #   jacobian: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
 #   determinant: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
 #   singularities: 31 add, 40 compare and select, 1 divide, 28 multiply, 1 sincos, 3 sqrt
-#   ik: 56 compare and select, 31 add, 2 atan2, 2 divide, 33 multiply, 1 sincos, 4 sqrt
+#   ik: 59 compare and select, 32 add, 2 atan2, 2 divide, 36 multiply, 1 sincos, 4 sqrt
 #   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 """Planar four-bar linkage.
 
@@ -790,16 +790,17 @@ def _ik(ops, psi, L1, L2, L3, L4):
     t34 = wv_1 * beyond_1_2
     t35 = wu_1 * t30
     t36 = wu_1 - ops.select(t12, 1.0, t34 - t35) * share_1
-    t37 = ops.determined * (L3 * size)
-    t38 = t12 | (ops.abs(t5 * t33 - wv_1 * t36) <= t37)
-    t39 = wv_1 + ops.select(t12, 0.0, t31 - t32) * share_1
-    t40 = wu_1 - ops.select(t12, 1.0, -(t35 + t34)) * share_1
-    t41 = t12 | (ops.abs(t5 * t39 - wv_1 * t40) <= t37)
+    t37 = t11 - ops.min(ops.min(ops.min(0.0, t10), t9), t7)
+    t38 = ops.determined * (L3 * size) * t37
+    t39 = t12 | (t11 * ops.abs(t5 * t33 - wv_1 * t36) <= t38)
+    t40 = wv_1 + ops.select(t12, 0.0, t31 - t32) * share_1
+    t41 = wu_1 - ops.select(t12, 1.0, -(t35 + t34)) * share_1
+    t42 = t12 | (t11 * ops.abs(t5 * t40 - wv_1 * t41) <= t38)
     return (
         t24,
         t27,
-        ops.status(invalid, unreachable, t38),
-        ops.status(invalid, unreachable, t41),
+        ops.status(invalid, unreachable, t39),
+        ops.status(invalid, unreachable, t42),
     )
 
 

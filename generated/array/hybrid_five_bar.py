@@ -13,7 +13,7 @@
 #   determinant: 19 add, 33 compare and select, 8 divide, 27 multiply, 2 sincos, 3 sqrt
 #   singularities: 19 add, 38 compare and select, 6 divide, 23 multiply, 2 sincos, 3 sqrt
 #   condition_number: 9 add, 32 compare and select, 4 divide, 10 multiply, 2 sincos, 3 sqrt
-#   ik: 100 compare and select, 37 add, 6 atan2, 2 divide, 49 multiply, 6 sqrt
+#   ik: 104 compare and select, 43 add, 6 atan2, 2 divide, 54 multiply, 8 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 14 add, 41 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
@@ -1081,122 +1081,127 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t6 = t5 - square_c
     t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t8 = L1 - L2
-    t9 = ops.feasibility * (t2 * (t7 + 2.0 * ops.abs(t8)))
-    t10 = t8 * t8
-    t11 = square_c - t10
-    t12 = y - L0
-    square_d = r2 + t12 * t12
-    t13 = t5 - square_d
-    t14 = square_d - t10
-    t15 = (t4 <= t6) & (-t9 <= t11) & (t4 <= t13) & (-t9 <= t14)
-    unreachable = ops.opposite(t15)
+    t9 = ops.abs(t8)
+    t10 = -(ops.feasibility * (t2 * (t7 + 2.0 * t9)))
+    t11 = t8 * t8
+    t12 = square_c - t11
+    t13 = y - L0
+    square_d = r2 + t13 * t13
+    t14 = t5 - square_d
+    t15 = square_d - t11
+    t16 = (t4 <= t6) & (t10 <= t12) & (t4 <= t14) & (t10 <= t15)
+    unreachable = ops.opposite(t16)
     failed = invalid | unreachable
     r = ops.sqrt(r2)
-    t16 = ops.vanishing * (L0 + t2)
-    on_axis = r <= t16
-    t17 = ops.opposite(failed)
-    t18 = t17 & ops.opposite(on_axis)
-    t19 = ops.select(on_axis, 0.0, ops.atan2(z, ops.select(t18, -x, 1.0)))
-    t20 = ops.select(failed, ops.nan, ops.wrap_cut(t19))
-    at_A = r + ops.abs(y) <= t16
+    t17 = ops.vanishing * (L0 + t2)
+    on_axis = r <= t17
+    t18 = ops.opposite(failed)
+    t19 = t18 & ops.opposite(on_axis)
+    t20 = ops.select(on_axis, 0.0, ops.atan2(z, ops.select(t19, -x, 1.0)))
+    t21 = ops.select(failed, ops.nan, ops.wrap_cut(t20))
+    at_A = r + ops.abs(y) <= t17
     no_link_c = L1 * L2 <= t5 * ops.vanishing
-    M_c = ops.max(t11, 0.0)
+    M_c = ops.max(t12, 0.0)
     N_c = ops.max(t6, 0.0)
     ahead_c = ops.select(no_link_c, 1.0, t2 * M_c + N_c * t8)
-    t21 = t17 & ops.opposite(at_A)
-    at_B = r + ops.abs(t12) <= t16
-    t22 = t17 & ops.opposite(at_B)
-    r_2 = ops.sqrt(ops.select(t21 | t22, r2, 1.0))
-    t23 = ahead_c * r_2
-    t24 = ops.opposite(no_link_c)
-    t25 = N_c * M_c
-    t26 = t3 * ops.sqrt(ops.select(t21 & t24, t25, 1.0))
-    beyond_c = ops.select(no_link_c, 0.0, t26)
-    t27 = y * beyond_c
-    t28 = y * ahead_c
-    t29 = r_2 * beyond_c
-    t30 = ops.atan2(t23 - t27, ops.select(t21, t28 + t29, 1.0))
-    t31 = ops.select(at_A, 0.0, t30)
-    t32 = ops.select(failed, ops.nan, ops.wrap_cut(t31))
-    M_d = ops.max(t14, 0.0)
-    N_d = ops.max(t13, 0.0)
+    t22 = t18 & ops.opposite(at_A)
+    at_B = r + ops.abs(t13) <= t17
+    t23 = t18 & ops.opposite(at_B)
+    r_2 = ops.sqrt(ops.select(t22 | t23, r2, 1.0))
+    t24 = ahead_c * r_2
+    t25 = ops.opposite(no_link_c)
+    t26 = N_c * M_c
+    t27 = t3 * ops.sqrt(ops.select(t22 & t25, t26, 1.0))
+    beyond_c = ops.select(no_link_c, 0.0, t27)
+    t28 = y * beyond_c
+    t29 = y * ahead_c
+    t30 = r_2 * beyond_c
+    t31 = ops.atan2(t24 - t28, ops.select(t22, t29 + t30, 1.0))
+    t32 = ops.select(at_A, 0.0, t31)
+    t33 = ops.select(failed, ops.nan, ops.wrap_cut(t32))
+    M_d = ops.max(t15, 0.0)
+    N_d = ops.max(t14, 0.0)
     ahead_d = ops.select(no_link_c, 1.0, t2 * M_d + t8 * N_d)
-    t33 = ahead_d * r_2
-    t34 = N_d * M_d
-    t35 = t3 * ops.sqrt(ops.select(t22 & t24, t34, 1.0))
-    beyond_d = ops.select(no_link_c, 0.0, t35)
-    t36 = t12 * beyond_d
-    t37 = t12 * ahead_d
-    t38 = r_2 * beyond_d
-    t39 = ops.atan2(t33 - t36, ops.select(t22, t37 + t38, 1.0))
-    t40 = ops.select(at_B, 0.0, t39)
-    t41 = ops.select(failed, ops.nan, ops.wrap_cut(t40))
-    t42 = ops.atan2(t33 + t36, ops.select(t22, t37 - t38, 1.0))
-    t43 = ops.select(at_B, 0.0, t42)
-    t44 = ops.select(failed, ops.nan, ops.wrap_cut(t43))
-    t45 = ops.atan2(t23 + t27, ops.select(t21, t28 - t29, 1.0))
-    t46 = ops.select(at_A, 0.0, t45)
-    t47 = ops.select(failed, ops.nan, ops.wrap_cut(t46))
-    t48 = ops.select(on_axis, 0.0, ops.atan2(z, ops.select(t18, x, 1.0)))
-    t49 = ops.select(failed, ops.nan, ops.wrap_cut(-t48))
-    t50 = ops.select(failed, ops.nan, ops.wrap_cut(-t46))
-    t51 = ops.select(failed, ops.nan, ops.wrap_cut(-t43))
-    t52 = ops.select(failed, ops.nan, ops.wrap_cut(-t40))
-    t53 = ops.select(failed, ops.nan, ops.wrap_cut(-t31))
-    t54 = on_axis | at_A | at_B | (L1 <= t2 * ops.vanishing)
-    t55 = t2 * t8
-    inner_c = square_c - t55
-    inner_d = square_d - t55
-    t56 = inner_c * inner_d
-    t57 = ops.sqrt(t25)
-    t58 = ops.sqrt(t34)
-    t59 = t57 * t58
-    t60 = L0 * r
-    t61 = (t56 + t59) * t60
-    t62 = r2 + y * t12
-    t63 = inner_d * t57
-    t64 = inner_c * t58
-    t65 = t62 * (t63 - t64)
-    t66 = ops.determined * (square_c * square_d * 4.0 * (L2 * L2))
-    t67 = ops.status(invalid, unreachable, t54 | (ops.abs(t61 - t65) <= t66))
-    t68 = t62 * (t63 + t64)
-    t69 = (t56 - t59) * t60
-    t70 = ops.status(invalid, unreachable, t54 | (ops.abs(t68 - t69) <= t66))
-    t71 = ops.status(invalid, unreachable, t54 | (ops.abs(-(t68 + t69)) <= t66))
-    t72 = ops.status(invalid, unreachable, t54 | (ops.abs(t65 + t61) <= t66))
+    t34 = ahead_d * r_2
+    t35 = N_d * M_d
+    t36 = t3 * ops.sqrt(ops.select(t23 & t25, t35, 1.0))
+    beyond_d = ops.select(no_link_c, 0.0, t36)
+    t37 = t13 * beyond_d
+    t38 = t13 * ahead_d
+    t39 = r_2 * beyond_d
+    t40 = ops.atan2(t34 - t37, ops.select(t23, t38 + t39, 1.0))
+    t41 = ops.select(at_B, 0.0, t40)
+    t42 = ops.select(failed, ops.nan, ops.wrap_cut(t41))
+    t43 = ops.atan2(t34 + t37, ops.select(t23, t38 - t39, 1.0))
+    t44 = ops.select(at_B, 0.0, t43)
+    t45 = ops.select(failed, ops.nan, ops.wrap_cut(t44))
+    t46 = ops.atan2(t24 + t28, ops.select(t22, t29 - t30, 1.0))
+    t47 = ops.select(at_A, 0.0, t46)
+    t48 = ops.select(failed, ops.nan, ops.wrap_cut(t47))
+    t49 = ops.select(on_axis, 0.0, ops.atan2(z, ops.select(t19, x, 1.0)))
+    t50 = ops.select(failed, ops.nan, ops.wrap_cut(-t49))
+    t51 = ops.select(failed, ops.nan, ops.wrap_cut(-t47))
+    t52 = ops.select(failed, ops.nan, ops.wrap_cut(-t44))
+    t53 = ops.select(failed, ops.nan, ops.wrap_cut(-t41))
+    t54 = ops.select(failed, ops.nan, ops.wrap_cut(-t32))
+    t55 = on_axis | at_A | at_B | (L1 <= t2 * ops.vanishing)
+    t56 = t2 * t8
+    inner_c = square_c - t56
+    inner_d = square_d - t56
+    t57 = inner_c * inner_d
+    t58 = ops.sqrt(t26)
+    t59 = ops.sqrt(t35)
+    t60 = t58 * t59
+    t61 = L0 * r
+    t62 = (t57 + t60) * t61
+    t63 = r2 + y * t13
+    t64 = inner_d * t58
+    t65 = inner_c * t59
+    t66 = t63 * (t64 - t65)
+    t67 = ops.determined * (square_c * square_d * 4.0 * (L2 * L2))
+    t68 = ops.sqrt(square_c)
+    t69 = ops.sqrt(square_d)
+    t70 = ops.max(ops.max(0.0, t9 - t68), t68 - t2) + ops.max(ops.max(0.0, t9 - t69), t69 - t2)
+    t71 = t67 * (t17 + t70)
+    t72 = ops.status(invalid, unreachable, t55 | (ops.abs(t62 - t66) * t17 <= t71))
+    t73 = t63 * (t64 + t65)
+    t74 = (t57 - t60) * t61
+    t75 = ops.status(invalid, unreachable, t55 | (ops.abs(t73 - t74) * t17 <= t71))
+    t76 = ops.status(invalid, unreachable, t55 | (ops.abs(-(t73 + t74)) * t17 <= t71))
+    t77 = ops.status(invalid, unreachable, t55 | (ops.abs(t66 + t62) * t17 <= t71))
     return (
-        t20,
-        t32,
-        t41,
-        t20,
-        t32,
-        t44,
-        t20,
-        t47,
-        t41,
-        t20,
-        t47,
-        t44,
-        t49,
+        t21,
+        t33,
+        t42,
+        t21,
+        t33,
+        t45,
+        t21,
+        t48,
+        t42,
+        t21,
+        t48,
+        t45,
         t50,
         t51,
-        t49,
+        t52,
         t50,
-        t52,
-        t49,
-        t53,
         t51,
-        t49,
         t53,
+        t50,
+        t54,
         t52,
-        t67,
-        t70,
-        t71,
+        t50,
+        t54,
+        t53,
         t72,
+        t75,
+        t76,
+        t77,
+        t77,
+        t76,
+        t75,
         t72,
-        t71,
-        t70,
-        t67,
     )
 
 
@@ -1207,7 +1212,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 12),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 14),
 )
 
 
@@ -1254,7 +1259,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       L1 = 0.
     - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
       less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
-      the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+      the lengths. The length by which the answer misses a target just outside of the workspace
+      counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last
+      two entries.
     - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
       the loop still closes.
     """

@@ -11,7 +11,7 @@
 #   singularities: 66 compare and select, 42 add, 14 divide, 64 multiply, 1 sqrt
 #   condition_number: 65 compare and select, 106 add, 18 divide, 142 multiply, 3 sqrt
 #   constraint: 62 compare and select, 64 add, 22 divide, 96 multiply, 1 sqrt
-#   ik: 75 compare and select, 66 add, 5 divide, 37 multiply, 12 sqrt
+#   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
@@ -1634,37 +1634,39 @@ def _ik(ops, x, y, z, f, e, l):
     t22 = ops.select(failed, ops.nan, z + root_3)
     t23 = ops.select(failed, ops.nan, z + root_2)
     t24 = ops.select(failed, ops.nan, z + root_1)
+    t25 = size * ops.vanishing
     root_3_2 = ops.sqrt(ops.max(t13, 0.0) * ops.max(t14, 0.0))
     A_33 = z - (z - root_3_2)
-    t25 = A_22 * A_33
+    t26 = A_22 * A_33
     root_2_2 = ops.sqrt(ops.max(t9, 0.0) * ops.max(t10, 0.0))
     A_23 = z - (z - root_2_2)
-    t26 = A_32 * A_23
-    t27 = A_21 * A_33
-    t28 = A_21 * A_23
-    t29 = A_11 * (t25 - t26) - y * (t27 - t28)
+    t27 = A_32 * A_23
+    t28 = A_21 * A_33
+    t29 = A_21 * A_23
+    t30 = A_11 * (t26 - t27) - y * (t28 - t29)
     root_1_2 = ops.sqrt(ops.max(t4, 0.0) * ops.max(t5, 0.0))
-    t30 = A_21 * A_32 - A_21 * A_22
-    t31 = (z - (z - root_1_2)) * t30
-    t32 = ops.determined * (l * l * l)
-    t33 = ops.status(invalid, unreachable, ops.abs(t29 + t31) <= t32)
+    t31 = A_21 * A_32 - A_21 * A_22
+    t32 = (z - (z - root_1_2)) * t31
+    t33 = ops.max(0.0, -t4) + ops.max(0.0, -t9) + ops.max(0.0, -t13)
+    t34 = ops.determined * (l * l * l) * (t25 + t33)
+    t35 = ops.status(invalid, unreachable, t25 * ops.abs(t30 + t32) <= t34)
     A_33_plus_plus_minus = z - (z + root_3_2)
-    t34 = A_22 * A_33_plus_plus_minus
-    t35 = A_21 * A_33_plus_plus_minus
-    t36 = A_11 * (t26 - t34) - y * (t28 - t35)
-    t37 = ops.status(invalid, unreachable, ops.abs(t31 - t36) <= t32)
+    t36 = A_22 * A_33_plus_plus_minus
+    t37 = A_21 * A_33_plus_plus_minus
+    t38 = A_11 * (t27 - t36) - y * (t29 - t37)
+    t39 = ops.status(invalid, unreachable, t25 * ops.abs(t32 - t38) <= t34)
     A_23_plus_minus_plus = z - (z + root_2_2)
-    t38 = A_32 * A_23_plus_minus_plus
-    t39 = A_21 * A_23_plus_minus_plus
-    t40 = A_11 * (t25 - t38) - y * (t27 - t39)
-    t41 = ops.status(invalid, unreachable, ops.abs(t31 + t40) <= t32)
-    t42 = A_11 * (t34 - t38) - y * (t35 - t39)
-    t43 = ops.status(invalid, unreachable, ops.abs(t31 + t42) <= t32)
-    t44 = (z - (z + root_1_2)) * t30
-    t45 = ops.status(invalid, unreachable, ops.abs(t29 + t44) <= t32)
-    t46 = ops.status(invalid, unreachable, ops.abs(t36 - t44) <= t32)
-    t47 = ops.status(invalid, unreachable, ops.abs(t40 + t44) <= t32)
-    t48 = ops.status(invalid, unreachable, ops.abs(t42 + t44) <= t32)
+    t40 = A_32 * A_23_plus_minus_plus
+    t41 = A_21 * A_23_plus_minus_plus
+    t42 = A_11 * (t26 - t40) - y * (t28 - t41)
+    t43 = ops.status(invalid, unreachable, t25 * ops.abs(t32 + t42) <= t34)
+    t44 = A_11 * (t36 - t40) - y * (t37 - t41)
+    t45 = ops.status(invalid, unreachable, t25 * ops.abs(t32 + t44) <= t34)
+    t46 = (z - (z + root_1_2)) * t31
+    t47 = ops.status(invalid, unreachable, t25 * ops.abs(t30 + t46) <= t34)
+    t48 = ops.status(invalid, unreachable, t25 * ops.abs(t38 - t46) <= t34)
+    t49 = ops.status(invalid, unreachable, t25 * ops.abs(t42 + t46) <= t34)
+    t50 = ops.status(invalid, unreachable, t25 * ops.abs(t44 + t46) <= t34)
     return (
         t17,
         t19,
@@ -1690,14 +1692,14 @@ def _ik(ops, x, y, z, f, e, l):
         t24,
         t23,
         t22,
-        t33,
-        t37,
-        t41,
+        t35,
+        t39,
         t43,
         t45,
-        t46,
         t47,
         t48,
+        t49,
+        t50,
     )
 
 
@@ -1708,7 +1710,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 8),
 )
 
 
@@ -1746,7 +1748,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """

@@ -11,7 +11,7 @@
 #   singularities: 64 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
 #   condition_number: 61 compare and select, 93 add, 14 divide, 127 multiply, 3 sqrt
 #   constraint: 58 compare and select, 45 add, 12 divide, 77 multiply, 1 sqrt
-#   ik: 71 compare and select, 48 add, 1 divide, 37 multiply, 12 sqrt
+#   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
 
@@ -1504,111 +1504,117 @@ def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _ik(ops, x, y, z, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(x, y, z)
     invalid = ops.opposite(t1)
-    t2 = (L + ops.abs(x) + ops.abs(y) + ops.abs(z)) * 0.5
-    t3 = -(ops.feasibility * t2)
-    t4 = y * y
-    t5 = z * z
-    t6 = t4 + t5
-    aside_1 = ops.sqrt(t6)
-    t7 = L - aside_1
-    t8 = L + aside_1
-    t9 = x * x
-    t10 = t5 + t9
-    aside_2 = ops.sqrt(t10)
-    t11 = L - aside_2
-    t12 = L + aside_2
-    t13 = (t3 <= t7) & (t3 <= t8) & (t3 <= t11) & (t3 <= t12)
-    t14 = t4 + t9
-    aside_3 = ops.sqrt(t14)
-    t15 = L - aside_3
-    t16 = L + aside_3
-    unreachable = ops.opposite(t13 & (t3 <= t15) & (t3 <= t16))
+    size = L + ops.abs(x) + ops.abs(y) + ops.abs(z)
+    t2 = -(ops.feasibility * (size * 0.5))
+    t3 = y * y
+    t4 = z * z
+    t5 = t3 + t4
+    aside_1 = ops.sqrt(t5)
+    t6 = L - aside_1
+    t7 = L + aside_1
+    t8 = x * x
+    t9 = t4 + t8
+    aside_2 = ops.sqrt(t9)
+    t10 = L - aside_2
+    t11 = L + aside_2
+    t12 = (t2 <= t6) & (t2 <= t7) & (t2 <= t10) & (t2 <= t11)
+    t13 = t3 + t8
+    aside_3 = ops.sqrt(t13)
+    t14 = L - aside_3
+    t15 = L + aside_3
+    unreachable = ops.opposite(t12 & (t2 <= t14) & (t2 <= t15))
     failed = invalid | unreachable
-    t17 = ops.opposite(failed)
-    aside_1_2 = ops.sqrt(ops.select(t17, t6, 1.0))
-    t18 = ops.max(L - aside_1_2, 0.0) * ops.max(L + aside_1_2, 0.0)
-    root_1 = ops.sqrt(ops.select(t17, t18, 1.0))
-    t19 = ops.select(failed, ops.nan, x - root_1)
-    aside_2_2 = ops.sqrt(ops.select(t17, t10, 1.0))
-    t20 = ops.max(L - aside_2_2, 0.0) * ops.max(L + aside_2_2, 0.0)
-    root_2 = ops.sqrt(ops.select(t17, t20, 1.0))
-    t21 = ops.select(failed, ops.nan, y - root_2)
-    aside_3_2 = ops.sqrt(ops.select(t17, t14, 1.0))
-    t22 = ops.max(L - aside_3_2, 0.0) * ops.max(L + aside_3_2, 0.0)
-    root_3 = ops.sqrt(ops.select(t17, t22, 1.0))
-    t23 = ops.select(failed, ops.nan, z - root_3)
-    t24 = ops.select(failed, ops.nan, z + root_3)
-    t25 = ops.select(failed, ops.nan, y + root_2)
-    t26 = ops.select(failed, ops.nan, x + root_1)
-    root_1_2 = ops.sqrt(ops.max(t7, 0.0) * ops.max(t8, 0.0))
+    t16 = ops.opposite(failed)
+    aside_1_2 = ops.sqrt(ops.select(t16, t5, 1.0))
+    t17 = ops.max(L - aside_1_2, 0.0) * ops.max(L + aside_1_2, 0.0)
+    root_1 = ops.sqrt(ops.select(t16, t17, 1.0))
+    t18 = ops.select(failed, ops.nan, x - root_1)
+    aside_2_2 = ops.sqrt(ops.select(t16, t9, 1.0))
+    t19 = ops.max(L - aside_2_2, 0.0) * ops.max(L + aside_2_2, 0.0)
+    root_2 = ops.sqrt(ops.select(t16, t19, 1.0))
+    t20 = ops.select(failed, ops.nan, y - root_2)
+    aside_3_2 = ops.sqrt(ops.select(t16, t13, 1.0))
+    t21 = ops.max(L - aside_3_2, 0.0) * ops.max(L + aside_3_2, 0.0)
+    root_3 = ops.sqrt(ops.select(t16, t21, 1.0))
+    t22 = ops.select(failed, ops.nan, z - root_3)
+    t23 = ops.select(failed, ops.nan, z + root_3)
+    t24 = ops.select(failed, ops.nan, y + root_2)
+    t25 = ops.select(failed, ops.nan, x + root_1)
+    t26 = size * ops.vanishing
+    root_1_2 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
     slide_1 = x - root_1_2
     A_11 = x - slide_1
-    root_2_2 = ops.sqrt(ops.max(t11, 0.0) * ops.max(t12, 0.0))
+    root_2_2 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
     slide_2 = y - root_2_2
-    root_3_2 = ops.sqrt(ops.max(t15, 0.0) * ops.max(t16, 0.0))
+    root_3_2 = ops.sqrt(ops.max(t14, 0.0) * ops.max(t15, 0.0))
     slide_3 = z - root_3_2
     t27 = slide_2 * slide_3
     t28 = z * slide_1
     t29 = slide_2 * t28
     t30 = y * slide_1
     t31 = slide_3 * t30
-    t32 = ops.determined * (L * L * L)
-    t33 = ops.status(invalid, unreachable, ops.abs(A_11 * t27 + t29 + t31) <= t32)
+    t32 = ops.max(0.0, -t6) + ops.max(0.0, -t10) + ops.max(0.0, -t14)
+    t33 = ops.determined * (L * L * L) * (t26 + t32)
+    t34 = ops.status(invalid, unreachable, t26 * ops.abs(A_11 * t27 + t29 + t31) <= t33)
     slide_3_plus_plus_minus = z + root_3_2
-    t34 = slide_2 * slide_3_plus_plus_minus
-    t35 = slide_3_plus_plus_minus * t30
-    t36 = ops.status(invalid, unreachable, ops.abs(t29 + A_11 * t34 + t35) <= t32)
+    t35 = slide_2 * slide_3_plus_plus_minus
+    t36 = slide_3_plus_plus_minus * t30
+    t37 = ops.status(invalid, unreachable, t26 * ops.abs(t29 + A_11 * t35 + t36) <= t33)
     slide_2_plus_minus_plus = y + root_2_2
-    t37 = slide_3 * slide_2_plus_minus_plus
-    t38 = slide_2_plus_minus_plus * t28
-    t39 = ops.status(invalid, unreachable, ops.abs(t31 + A_11 * t37 + t38) <= t32)
-    t40 = slide_3_plus_plus_minus * slide_2_plus_minus_plus
-    t41 = ops.status(invalid, unreachable, ops.abs(t35 + t38 + A_11 * t40) <= t32)
+    t38 = slide_3 * slide_2_plus_minus_plus
+    t39 = slide_2_plus_minus_plus * t28
+    t40 = ops.status(invalid, unreachable, t26 * ops.abs(t31 + A_11 * t38 + t39) <= t33)
+    t41 = slide_3_plus_plus_minus * slide_2_plus_minus_plus
+    t42 = ops.status(invalid, unreachable, t26 * ops.abs(t36 + t39 + A_11 * t41) <= t33)
     slide_1_minus_plus_plus = x + root_1_2
     A_11_minus_plus_plus = x - slide_1_minus_plus_plus
-    t42 = z * slide_1_minus_plus_plus
-    t43 = slide_2 * t42
-    t44 = y * slide_1_minus_plus_plus
-    t45 = slide_3 * t44
-    t46 = ops.abs(A_11_minus_plus_plus * t27 + t43 + t45)
-    t47 = slide_3_plus_plus_minus * t44
-    t48 = ops.abs(t43 + A_11_minus_plus_plus * t34 + t47)
-    t49 = slide_2_plus_minus_plus * t42
-    t50 = ops.abs(t45 + A_11_minus_plus_plus * t37 + t49)
-    t51 = ops.abs(t47 + t49 + A_11_minus_plus_plus * t40)
+    t43 = z * slide_1_minus_plus_plus
+    t44 = slide_2 * t43
+    t45 = y * slide_1_minus_plus_plus
+    t46 = slide_3 * t45
+    t47 = ops.abs(A_11_minus_plus_plus * t27 + t44 + t46)
+    t48 = ops.status(invalid, unreachable, t26 * t47 <= t33)
+    t49 = slide_3_plus_plus_minus * t45
+    t50 = ops.abs(t44 + A_11_minus_plus_plus * t35 + t49)
+    t51 = ops.status(invalid, unreachable, t26 * t50 <= t33)
+    t52 = slide_2_plus_minus_plus * t43
+    t53 = ops.abs(t46 + A_11_minus_plus_plus * t38 + t52)
+    t54 = ops.status(invalid, unreachable, t26 * t53 <= t33)
+    t55 = ops.abs(t49 + t52 + A_11_minus_plus_plus * t41)
+    t56 = ops.status(invalid, unreachable, t26 * t55 <= t33)
     return (
-        t19,
-        t21,
+        t18,
+        t20,
+        t22,
+        t18,
+        t20,
         t23,
-        t19,
-        t21,
+        t18,
         t24,
-        t19,
-        t25,
-        t23,
-        t19,
-        t25,
+        t22,
+        t18,
         t24,
-        t26,
-        t21,
         t23,
-        t26,
-        t21,
-        t24,
-        t26,
         t25,
+        t20,
+        t22,
+        t25,
+        t20,
         t23,
-        t26,
         t25,
         t24,
-        t33,
-        t36,
-        t39,
-        t41,
-        ops.status(invalid, unreachable, t46 <= t32),
-        ops.status(invalid, unreachable, t48 <= t32),
-        ops.status(invalid, unreachable, t50 <= t32),
-        ops.status(invalid, unreachable, t51 <= t32),
+        t22,
+        t25,
+        t24,
+        t23,
+        t34,
+        t37,
+        t40,
+        t42,
+        t48,
+        t51,
+        t54,
+        t56,
     )
 
 
@@ -1619,7 +1625,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 8),
 )
 
 
@@ -1657,7 +1663,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """

@@ -9,7 +9,7 @@
 #   jacobian: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   determinant: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   singularities: 22 compare and select, 11 add, 8 multiply, 1 sincos, 1 sqrt
-#   ik: 52 compare and select, 24 add, 2 atan2, 2 divide, 22 multiply, 4 sqrt
+#   ik: 55 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 4 sqrt
 #   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
 """Slider-crank.
 
@@ -625,15 +625,16 @@ def _ik(ops, x, r, l, e):
     t29 = x * (t26 - t27)
     share_1 = r / ops.select(t10, 1.0, R_1 * (t26 + t27))
     A = x - ops.select(t10, 1.0, t28 - t29) * share_1
-    t30 = l * ops.determined
-    t31 = ops.status(invalid, unreachable, t10 | (ops.abs(A) <= t30))
+    t30 = t9 - ops.min(ops.min(ops.min(0.0, t5), t7), t8)
+    t31 = l * ops.determined * t30
+    t32 = ops.status(invalid, unreachable, t10 | (t9 * ops.abs(A) <= t31))
     A_minus = x - ops.select(t10, 1.0, -(t29 + t28)) * share_1
-    t32 = ops.status(invalid, unreachable, t10 | (ops.abs(A_minus) <= t30))
+    t33 = ops.status(invalid, unreachable, t10 | (t9 * ops.abs(A_minus) <= t31))
     return (
         t22,
         t25,
-        t31,
         t32,
+        t33,
     )
 
 

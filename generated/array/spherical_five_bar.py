@@ -9,8 +9,8 @@
 #   jacobian: 106 compare and select, 102 add, 26 divide, 168 multiply, 7 sincos, 7 sqrt
 #   singularities: 99 compare and select, 84 add, 14 divide, 132 multiply, 7 sincos, 7 sqrt
 #   condition_number: 106 compare and select, 128 add, 22 divide, 177 multiply, 7 sincos, 11 sqrt
-#   ik: 137 compare and select, 103 add, 4 atan2, 11 divide, 129 multiply, 5 sincos, 14 sqrt
-#   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
+#   ik: 149 compare and select, 107 add, 4 atan2, 15 divide, 132 multiply, 5 sincos, 14 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -1673,175 +1673,184 @@ def _ik(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(x, y, z))
     t4 = x * x + y * y + z * z
     strut_0 = ops.sqrt(t4)
-    t5 = r * 0.5
-    t6 = ops.feasibility * t5
-    t7 = ops.abs(s_beta1_half)
-    t8 = r * 2.0
-    r_1 = t7 * t8
-    t9 = r * ops.vanishing
-    none_0 = strut_0 <= t9
+    t5 = ops.feasibility * (r * 0.5)
+    t6 = ops.abs(s_beta1_half)
+    t7 = r * 2.0
+    r_1 = t6 * t7
+    t8 = r * ops.vanishing
+    none_0 = strut_0 <= t8
     share_0 = ops.select(none_0, 1.0, r / strut_0)
     px_0 = x * share_0
-    t10 = r * c_alpha1
-    aside_1 = px_0 - t10
-    t11 = r_1 - aside_1
-    t12 = aside_1 + r_1
-    t13 = (ops.abs(r - strut_0) <= t6) & (-t6 <= t11) & (-t6 <= t12)
-    t14 = r * 2.384185791015625e-07
-    fore_1 = ops.sqrt(ops.max(t11, 0.0) * ops.max(t12, 0.0))
-    t15 = ops.feasibility * (t5 + r * r_1 / (2.0 * (t14 + fore_1)))
+    t9 = r * c_alpha1
+    aside_1 = px_0 - t9
+    t10 = r_1 - aside_1
+    t11 = aside_1 + r_1
+    t12 = (ops.abs(r - strut_0) <= t5) & (-t5 <= t10) & (-t5 <= t11)
+    t13 = r * 2.384185791015625e-07
+    fore_1 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
+    lost_1 = ops.max(1.0, r_1 / (t13 + fore_1))
+    t14 = -(ops.feasibility * (r * lost_1 * 0.5))
     l_1 = r * ops.abs(s_alpha1)
     py_0 = y * share_0
     pz_0 = z * share_0
-    t16 = pz_0 * pz_0
-    R_1 = ops.sqrt(py_0 * py_0 + t16)
-    t17 = l_1 - R_1
-    t18 = fore_1 + t17
-    t19 = l_1 + R_1
-    t20 = t19 - fore_1
-    t21 = fore_1 - t17
-    t22 = t13 & (-t15 <= t18) & (-t15 <= t20) & (-t15 <= t21)
-    t23 = ops.abs(s_beta2_half)
-    r_2 = t23 * t8
-    t24 = r * c_alpha2
-    t25 = c_gamma * t24
-    t26 = px_0 - t25
-    t27 = s_gamma * t24
-    t28 = py_0 - t27
-    aside_2 = c_gamma * t26 + s_gamma * t28
-    t29 = r_2 - aside_2
-    t30 = r_2 + aside_2
-    fore_2 = ops.sqrt(ops.max(t29, 0.0) * ops.max(t30, 0.0))
-    t31 = ops.feasibility * (t5 + r * r_2 / (2.0 * (t14 + fore_2)))
+    t15 = pz_0 * pz_0
+    R_1 = ops.sqrt(py_0 * py_0 + t15)
+    t16 = l_1 - R_1
+    t17 = fore_1 + t16
+    t18 = l_1 + R_1
+    t19 = t18 - fore_1
+    t20 = fore_1 - t16
+    t21 = t12 & (t14 <= t17) & (t14 <= t19) & (t14 <= t20)
+    t22 = ops.abs(s_beta2_half)
+    r_2 = t22 * t7
+    t23 = r * c_alpha2
+    t24 = c_gamma * t23
+    t25 = px_0 - t24
+    t26 = s_gamma * t23
+    t27 = py_0 - t26
+    aside_2 = c_gamma * t25 + s_gamma * t27
+    t28 = r_2 - aside_2
+    t29 = r_2 + aside_2
+    fore_2 = ops.sqrt(ops.max(t28, 0.0) * ops.max(t29, 0.0))
+    lost_2 = ops.max(1.0, r_2 / (t13 + fore_2))
+    t30 = -(ops.feasibility * (r * lost_2 * 0.5))
     l_2 = r * ops.abs(s_alpha2)
-    t32 = l_2 + fore_2
-    t33 = s_gamma * t26 - c_gamma * t28
-    R_2 = ops.sqrt(t16 + t33 * t33)
-    t34 = t32 - R_2
-    t35 = t22 & (-t6 <= t29) & (-t6 <= t30) & (-t31 <= t34)
-    t36 = l_2 - fore_2
-    t37 = R_2 + t36
-    t38 = R_2 - t36
-    unreachable = ops.opposite(t35 & (-t31 <= t37) & (-t31 <= t38))
+    t31 = l_2 + fore_2
+    t32 = s_gamma * t25 - c_gamma * t27
+    R_2 = ops.sqrt(t15 + t32 * t32)
+    t33 = t31 - R_2
+    t34 = t21 & (-t5 <= t28) & (-t5 <= t29) & (t30 <= t33)
+    t35 = l_2 - fore_2
+    t36 = R_2 + t35
+    t37 = R_2 - t35
+    unreachable = ops.opposite(t34 & (t30 <= t36) & (t30 <= t37))
     failed = invalid | unreachable
-    t39 = (R_1 <= t9) | (l_1 <= t9)
-    t40 = ops.opposite(failed)
-    t41 = t40 & ops.opposite(t39)
-    met_2 = R_2 <= t9
-    no_crank_2 = l_2 <= t9
-    t42 = met_2 | no_crank_2
-    t43 = t40 & ops.opposite(t42)
-    t44 = (t41 | t43) & ops.opposite(none_0)
-    t45 = ops.select(t44, ops.sqrt(ops.select(t44, t4, 1.0)), 1.0)
-    share_0_2 = ops.select(none_0, 1.0, r / t45)
+    t38 = (R_1 <= t8) | (l_1 <= t8)
+    t39 = ops.opposite(failed)
+    t40 = t39 & ops.opposite(t38)
+    met_2 = R_2 <= t8
+    no_crank_2 = l_2 <= t8
+    t41 = met_2 | no_crank_2
+    t42 = t39 & ops.opposite(t41)
+    t43 = (t40 | t42) & ops.opposite(none_0)
+    t44 = ops.select(t43, ops.sqrt(ops.select(t43, t4, 1.0)), 1.0)
+    share_0_2 = ops.select(none_0, 1.0, r / t44)
     pz_0_2 = z * share_0_2
     px_0_2 = x * share_0_2
-    aside_1_2 = px_0_2 - t10
-    t46 = ops.max(r_1 - aside_1_2, 0.0) * ops.max(aside_1_2 + r_1, 0.0)
-    fore_1_2 = ops.sqrt(ops.select(t41, t46, 1.0))
+    aside_1_2 = px_0_2 - t9
+    t45 = ops.max(r_1 - aside_1_2, 0.0) * ops.max(aside_1_2 + r_1, 0.0)
+    fore_1_2 = ops.sqrt(ops.select(t40, t45, 1.0))
     py_0_2 = y * share_0_2
-    t47 = pz_0_2 * pz_0_2
-    R_1_2 = ops.sqrt(ops.select(t41, py_0_2 * py_0_2 + t47, 1.0))
-    t48 = l_1 - R_1_2
-    t49 = ops.max(fore_1_2 + t48, 0.0) * ops.max(fore_1_2 - t48, 0.0)
-    t50 = l_1 + R_1_2
-    t51 = (fore_1_2 + t50) * ops.max(t50 - fore_1_2, 0.0)
-    t52 = t49 - t51
-    t53 = pz_0_2 * t52
-    beyond_1 = 2.0 * ops.sqrt(ops.select(t41, t49 * t51, 1.0))
-    t54 = py_0_2 * beyond_1
-    t55 = pz_0_2 * beyond_1
-    t56 = py_0_2 * t52
-    t57 = ops.select(t40, ops.select(t39, 1.0, t55 - t56), 1.0)
-    t58 = ops.atan2(ops.select(t39, 0.0, t53 + t54), t57)
-    t59 = ops.select(failed, ops.nan, ops.wrap_cut(-t58))
-    t60 = px_0_2 - t25
-    t61 = py_0_2 - t27
-    aside_2_2 = c_gamma * t60 + s_gamma * t61
-    t62 = ops.max(r_2 - aside_2_2, 0.0) * ops.max(r_2 + aside_2_2, 0.0)
-    fore_2_2 = ops.sqrt(ops.select(t43, t62, 1.0))
-    t63 = l_2 + fore_2_2
-    t64 = s_gamma * t60 - c_gamma * t61
-    R_2_2 = ops.sqrt(ops.select(t43, t47 + t64 * t64, 1.0))
-    t65 = l_2 - fore_2_2
-    t66 = ops.max(t63 - R_2_2, 0.0) * ops.max(R_2_2 - t65, 0.0)
-    t67 = (R_2_2 + t63) * ops.max(R_2_2 + t65, 0.0)
-    t68 = t66 - t67
-    t69 = pz_0_2 * t68
-    beyond_2 = 2.0 * ops.sqrt(ops.select(t43, t66 * t67, 1.0))
-    t70 = t64 * beyond_2
-    t71 = t64 * t68
-    t72 = pz_0_2 * beyond_2
-    t73 = ops.select(t40, ops.select(t42, 1.0, t71 + t72), 1.0)
-    t74 = ops.atan2(ops.select(t42, 0.0, t69 - t70), t73)
-    t75 = ops.select(failed, ops.nan, ops.wrap_cut(-t74))
-    t76 = ops.select(t40, ops.select(t42, 1.0, t71 - t72), 1.0)
-    t77 = ops.atan2(ops.select(t42, 0.0, t69 + t70), t76)
-    t78 = ops.select(failed, ops.nan, ops.wrap_cut(-t77))
-    t79 = ops.select(t40, ops.select(t39, 1.0, -(t56 + t55)), 1.0)
-    t80 = ops.atan2(ops.select(t39, 0.0, t53 - t54), t79)
-    t81 = ops.select(failed, ops.nan, ops.wrap_cut(-t80))
-    t82 = t39 | met_2 | no_crank_2
-    t83 = ops.max(t18, 0.0) * ops.max(t21, 0.0)
-    t84 = (fore_1 + t19) * ops.max(t20, 0.0)
-    beyond_1_2 = 2.0 * ops.sqrt(t83 * t84)
-    t85 = pz_0 * beyond_1_2
-    t86 = t83 - t84
-    t87 = py_0 * t86
-    share_1 = l_1 / ops.select(t39, 1.0, R_1 * (t83 + t84))
-    t88 = ops.select(t39, 1.0, t85 - t87) * share_1
-    t89 = ops.max(t34, 0.0) * ops.max(t38, 0.0)
-    t90 = (R_2 + t32) * ops.max(t37, 0.0)
-    t91 = t89 - t90
-    t92 = pz_0 * t91
-    beyond_2_2 = 2.0 * ops.sqrt(t89 * t90)
-    t93 = t33 * beyond_2_2
-    share_2 = l_2 / ops.select(t42, 1.0, R_2 * (t89 + t90))
-    A_23 = ops.select(t42, 0.0, t92 - t93) * share_2
-    t94 = pz_0 * t86
-    t95 = py_0 * beyond_1_2
-    A_13 = ops.select(t39, 0.0, t94 + t95) * share_1
-    t96 = t33 * t91
-    t97 = pz_0 * beyond_2_2
-    cosine_2 = ops.select(t42, 1.0, t96 + t97)
-    t98 = c_gamma * share_2
-    t99 = t27 + cosine_2 * t98
-    t100 = t10 * A_23
-    t101 = s_gamma * share_2
-    t102 = t25 - cosine_2 * t101
-    t103 = px_0 * (t88 * A_23 - A_13 * t99) - py_0 * (t100 - A_13 * t102)
-    t104 = t10 * t99
-    t105 = t7 * t23 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
-    t106 = ops.determined * t105
-    t107 = ops.abs(t103 - pz_0 * (t104 - t88 * t102)) <= t106
-    A_23_plus_minus = ops.select(t42, 0.0, t92 + t93) * share_2
-    cosine_2_plus_minus = ops.select(t42, 1.0, t96 - t97)
-    t108 = t27 + cosine_2_plus_minus * t98
-    t109 = t10 * A_23_plus_minus
-    t110 = t25 - cosine_2_plus_minus * t101
-    t111 = px_0 * (t88 * A_23_plus_minus - A_13 * t108) - py_0 * (t109 - A_13 * t110)
-    t112 = t10 * t108
-    t113 = ops.abs(t111 - pz_0 * (t112 - t88 * t110)) <= t106
-    t114 = ops.select(t39, 1.0, -(t87 + t85)) * share_1
-    A_13_minus_plus = ops.select(t39, 0.0, t94 - t95) * share_1
-    t115 = px_0 * (A_23 * t114 - t99 * A_13_minus_plus) - py_0 * (t100 - t102 * A_13_minus_plus)
-    t116 = ops.abs(t115 - pz_0 * (t104 - t102 * t114)) <= t106
-    t117 = A_23_plus_minus * t114 - t108 * A_13_minus_plus
-    t118 = px_0 * t117 - py_0 * (t109 - t110 * A_13_minus_plus)
-    t119 = ops.abs(t118 - pz_0 * (t112 - t110 * t114)) <= t106
+    t46 = pz_0_2 * pz_0_2
+    R_1_2 = ops.sqrt(ops.select(t40, py_0_2 * py_0_2 + t46, 1.0))
+    t47 = l_1 - R_1_2
+    t48 = ops.max(fore_1_2 + t47, 0.0) * ops.max(fore_1_2 - t47, 0.0)
+    t49 = l_1 + R_1_2
+    t50 = (fore_1_2 + t49) * ops.max(t49 - fore_1_2, 0.0)
+    t51 = t48 - t50
+    t52 = pz_0_2 * t51
+    beyond_1 = 2.0 * ops.sqrt(ops.select(t40, t48 * t50, 1.0))
+    t53 = py_0_2 * beyond_1
+    t54 = pz_0_2 * beyond_1
+    t55 = py_0_2 * t51
+    t56 = ops.select(t39, ops.select(t38, 1.0, t54 - t55), 1.0)
+    t57 = ops.atan2(ops.select(t38, 0.0, t52 + t53), t56)
+    t58 = ops.select(failed, ops.nan, ops.wrap_cut(-t57))
+    t59 = px_0_2 - t24
+    t60 = py_0_2 - t26
+    aside_2_2 = c_gamma * t59 + s_gamma * t60
+    t61 = ops.max(r_2 - aside_2_2, 0.0) * ops.max(r_2 + aside_2_2, 0.0)
+    fore_2_2 = ops.sqrt(ops.select(t42, t61, 1.0))
+    t62 = l_2 + fore_2_2
+    t63 = s_gamma * t59 - c_gamma * t60
+    R_2_2 = ops.sqrt(ops.select(t42, t46 + t63 * t63, 1.0))
+    t64 = l_2 - fore_2_2
+    t65 = ops.max(t62 - R_2_2, 0.0) * ops.max(R_2_2 - t64, 0.0)
+    t66 = (R_2_2 + t62) * ops.max(R_2_2 + t64, 0.0)
+    t67 = t65 - t66
+    t68 = pz_0_2 * t67
+    beyond_2 = 2.0 * ops.sqrt(ops.select(t42, t65 * t66, 1.0))
+    t69 = t63 * beyond_2
+    t70 = t63 * t67
+    t71 = pz_0_2 * beyond_2
+    t72 = ops.select(t39, ops.select(t41, 1.0, t70 + t71), 1.0)
+    t73 = ops.atan2(ops.select(t41, 0.0, t68 - t69), t72)
+    t74 = ops.select(failed, ops.nan, ops.wrap_cut(-t73))
+    t75 = ops.select(t39, ops.select(t41, 1.0, t70 - t71), 1.0)
+    t76 = ops.atan2(ops.select(t41, 0.0, t68 + t69), t75)
+    t77 = ops.select(failed, ops.nan, ops.wrap_cut(-t76))
+    t78 = ops.select(t39, ops.select(t38, 1.0, -(t55 + t54)), 1.0)
+    t79 = ops.atan2(ops.select(t38, 0.0, t52 - t53), t78)
+    t80 = ops.select(failed, ops.nan, ops.wrap_cut(-t79))
+    t81 = t38 | met_2 | no_crank_2
+    t82 = ops.max(t17, 0.0) * ops.max(t20, 0.0)
+    t83 = (fore_1 + t18) * ops.max(t19, 0.0)
+    beyond_1_2 = 2.0 * ops.sqrt(t82 * t83)
+    t84 = pz_0 * beyond_1_2
+    t85 = t82 - t83
+    t86 = py_0 * t85
+    share_1 = l_1 / ops.select(t38, 1.0, R_1 * (t82 + t83))
+    t87 = ops.select(t38, 1.0, t84 - t86) * share_1
+    t88 = ops.max(t33, 0.0) * ops.max(t37, 0.0)
+    t89 = (R_2 + t31) * ops.max(t36, 0.0)
+    t90 = t88 - t89
+    t91 = pz_0 * t90
+    beyond_2_2 = 2.0 * ops.sqrt(t88 * t89)
+    t92 = t32 * beyond_2_2
+    share_2 = l_2 / ops.select(t41, 1.0, R_2 * (t88 + t89))
+    A_23 = ops.select(t41, 0.0, t91 - t92) * share_2
+    t93 = pz_0 * t85
+    t94 = py_0 * beyond_1_2
+    A_13 = ops.select(t38, 0.0, t93 + t94) * share_1
+    t95 = t32 * t90
+    t96 = pz_0 * beyond_2_2
+    cosine_2 = ops.select(t41, 1.0, t95 + t96)
+    t97 = c_gamma * share_2
+    t98 = t26 + cosine_2 * t97
+    t99 = t9 * A_23
+    t100 = s_gamma * share_2
+    t101 = t24 - cosine_2 * t100
+    t102 = px_0 * (t87 * A_23 - A_13 * t98) - py_0 * (t99 - A_13 * t101)
+    t103 = t9 * t98
+    t104 = t8 * ops.abs(t102 - pz_0 * (t103 - t87 * t101))
+    t105 = t6 * t22 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    t106 = ops.min(ops.min(ops.min(0.0, t17), t19), t20)
+    missed_1 = ops.max(0.0, ops.abs(aside_1) - r_1) - t106 / lost_1
+    t107 = ops.min(ops.min(ops.min(0.0, t33), t36), t37)
+    missed_2 = ops.max(0.0, ops.abs(aside_2) - r_2) - t107 / lost_2
+    t108 = ops.determined * t105 * (t8 + (missed_1 + missed_2))
+    t109 = ops.status(invalid, unreachable, t81 | (t104 <= t108))
+    A_23_plus_minus = ops.select(t41, 0.0, t91 + t92) * share_2
+    cosine_2_plus_minus = ops.select(t41, 1.0, t95 - t96)
+    t110 = t26 + cosine_2_plus_minus * t97
+    t111 = t9 * A_23_plus_minus
+    t112 = t24 - cosine_2_plus_minus * t100
+    t113 = px_0 * (t87 * A_23_plus_minus - A_13 * t110) - py_0 * (t111 - A_13 * t112)
+    t114 = t9 * t110
+    t115 = t8 * ops.abs(t113 - pz_0 * (t114 - t87 * t112))
+    t116 = ops.status(invalid, unreachable, t81 | (t115 <= t108))
+    t117 = ops.select(t38, 1.0, -(t86 + t84)) * share_1
+    A_13_minus_plus = ops.select(t38, 0.0, t93 - t94) * share_1
+    t118 = px_0 * (A_23 * t117 - t98 * A_13_minus_plus) - py_0 * (t99 - t101 * A_13_minus_plus)
+    t119 = t8 * ops.abs(t118 - pz_0 * (t103 - t101 * t117))
+    t120 = ops.status(invalid, unreachable, t81 | (t119 <= t108))
+    t121 = A_23_plus_minus * t117 - t110 * A_13_minus_plus
+    t122 = px_0 * t121 - py_0 * (t111 - t112 * A_13_minus_plus)
+    t123 = t8 * ops.abs(t122 - pz_0 * (t114 - t112 * t117))
+    t124 = ops.status(invalid, unreachable, t81 | (t123 <= t108))
     return (
-        t59,
-        t75,
-        t59,
-        t78,
-        t81,
-        t75,
-        t81,
-        t78,
-        ops.status(invalid, unreachable, t82 | t107),
-        ops.status(invalid, unreachable, t82 | t113),
-        ops.status(invalid, unreachable, t82 | t116),
-        ops.status(invalid, unreachable, t82 | t119),
+        t58,
+        t74,
+        t58,
+        t77,
+        t80,
+        t74,
+        t80,
+        t77,
+        t109,
+        t116,
+        t120,
+        t124,
     )
 
 
@@ -1890,7 +1899,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
     - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)
@@ -1909,42 +1920,41 @@ def _workspace_contains(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     strut_0 = ops.sqrt(x * x + y * y + z * z)
-    t4 = r * 0.5
-    t5 = ops.feasibility * t4
-    t6 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t6
+    t4 = ops.feasibility * (r * 0.5)
+    t5 = r * 2.0
+    r_1 = ops.abs(s_beta1_half) * t5
     share_0 = ops.select(strut_0 <= r * ops.vanishing, 1.0, r / strut_0)
     px_0 = x * share_0
     aside_1 = px_0 - r * c_alpha1
-    t7 = r_1 - aside_1
-    t8 = aside_1 + r_1
-    t9 = (ops.abs(r - strut_0) <= t5) & (-t5 <= t7) & (-t5 <= t8)
-    t10 = r * 2.384185791015625e-07
-    fore_1 = ops.sqrt(ops.max(t7, 0.0) * ops.max(t8, 0.0))
-    t11 = ops.feasibility * (t4 + r * r_1 / (2.0 * (t10 + fore_1)))
+    t6 = r_1 - aside_1
+    t7 = aside_1 + r_1
+    t8 = (ops.abs(r - strut_0) <= t4) & (-t4 <= t6) & (-t4 <= t7)
+    t9 = r * 2.384185791015625e-07
+    fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
+    t10 = ops.feasibility * (r * ops.max(1.0, r_1 / (t9 + fore_1)) * 0.5)
     l_1 = r * ops.abs(s_alpha1)
     py_0 = y * share_0
     pz_0 = z * share_0
-    t12 = pz_0 * pz_0
-    R_1 = ops.sqrt(py_0 * py_0 + t12)
-    t13 = l_1 - R_1
-    t14 = t9 & (-t11 <= fore_1 + t13) & (-t11 <= l_1 + R_1 - fore_1)
-    r_2 = ops.abs(s_beta2_half) * t6
-    t15 = r * c_alpha2
-    t16 = px_0 - c_gamma * t15
-    t17 = py_0 - s_gamma * t15
-    aside_2 = c_gamma * t16 + s_gamma * t17
-    t18 = r_2 - aside_2
-    t19 = r_2 + aside_2
-    t20 = t14 & (-t11 <= fore_1 - t13) & (-t5 <= t18) & (-t5 <= t19)
-    fore_2 = ops.sqrt(ops.max(t18, 0.0) * ops.max(t19, 0.0))
-    t21 = ops.feasibility * (t4 + r * r_2 / (2.0 * (t10 + fore_2)))
+    t11 = pz_0 * pz_0
+    R_1 = ops.sqrt(py_0 * py_0 + t11)
+    t12 = l_1 - R_1
+    t13 = t8 & (-t10 <= fore_1 + t12) & (-t10 <= l_1 + R_1 - fore_1)
+    r_2 = ops.abs(s_beta2_half) * t5
+    t14 = r * c_alpha2
+    t15 = px_0 - c_gamma * t14
+    t16 = py_0 - s_gamma * t14
+    aside_2 = c_gamma * t15 + s_gamma * t16
+    t17 = r_2 - aside_2
+    t18 = r_2 + aside_2
+    t19 = t13 & (-t10 <= fore_1 - t12) & (-t4 <= t17) & (-t4 <= t18)
+    fore_2 = ops.sqrt(ops.max(t17, 0.0) * ops.max(t18, 0.0))
+    t20 = ops.feasibility * (r * ops.max(1.0, r_2 / (t9 + fore_2)) * 0.5)
     l_2 = r * ops.abs(s_alpha2)
-    t22 = s_gamma * t16 - c_gamma * t17
-    R_2 = ops.sqrt(t12 + t22 * t22)
-    t23 = l_2 - fore_2
-    t24 = t20 & (-t21 <= l_2 + fore_2 - R_2) & (-t21 <= R_2 + t23)
-    failed = ops.opposite(t3 & ops.finite(x, y, z)) | ops.opposite(t24 & (-t21 <= R_2 - t23))
+    t21 = s_gamma * t15 - c_gamma * t16
+    R_2 = ops.sqrt(t11 + t21 * t21)
+    t22 = l_2 - fore_2
+    t23 = t19 & (-t20 <= l_2 + fore_2 - R_2) & (-t20 <= R_2 + t22)
+    failed = ops.opposite(t3 & ops.finite(x, y, z)) | ops.opposite(t23 & (-t20 <= R_2 - t22))
     return (
         ops.opposite(failed),
     )

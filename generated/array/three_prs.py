@@ -10,7 +10,7 @@
 #   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
 #   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
 #   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 88 compare and select, 236 add, 53 divide, 267 multiply, 2 sincos, 8 sqrt
+#   ik: 94 compare and select, 242 add, 53 divide, 277 multiply, 2 sincos, 8 sqrt
 #   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
@@ -1100,7 +1100,8 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t1 = ops.finite(b, a, l) & (0.0 <= b) & (0.0 <= a)
     t2 = t1 & (0.0 <= l) & ops.finite(z, tilt_x, tilt_y)
     invalid = ops.opposite(t2)
-    t3 = ops.feasibility * ((b + a + l + ops.abs(z)) * 0.5)
+    size = b + a + l + ops.abs(z)
+    t3 = -(ops.feasibility * (size * 0.5))
     t4 = a * 1.299038105676658
     t5 = s_tilt_y * t4
     t6 = s_tilt_x * t5
@@ -1139,13 +1140,13 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     aside_2 = t25 - t26
     t27 = l - aside_2
     t28 = l + aside_2
-    t29 = (-t3 <= t23) & (-t3 <= t24) & (-t3 <= t27) & (-t3 <= t28)
+    t29 = (t3 <= t23) & (t3 <= t24) & (t3 <= t27) & (t3 <= t28)
     t30 = t14 + t16
     t31 = 1.7320508075688772 * (h_12 + (t13 + t19)) * 0.5
     aside_3 = t30 * 0.5 + t31 - t26
     t32 = l - aside_3
     t33 = l + aside_3
-    unreachable = ops.opposite(t29 & (-t3 <= t32) & (-t3 <= t33))
+    unreachable = ops.opposite(t29 & (t3 <= t32) & (t3 <= t33))
     failed = invalid | unreachable
     t34 = ops.opposite(failed)
     t35 = t34 & ops.opposite(untwisted)
@@ -1189,171 +1190,174 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t60 = ops.select(failed, ops.nan, m_3 + root_3)
     t61 = ops.select(failed, ops.nan, m_2 + root_2)
     t62 = ops.select(failed, ops.nan, m_1 + root_1)
+    t63 = size * ops.vanishing
     least = a * a * (l * l * l)
-    t63 = least * delta
-    t64 = s_tilt_y * c - c_tilt_y * t12
-    t65 = a * t64
+    t64 = least * delta
+    t65 = s_tilt_y * c - c_tilt_y * t12
+    t66 = a * t65
     R_32 = c_tilt_y * t15 + s_tilt_y * s
-    t66 = t9 * R_32 * 0.5
-    t67 = ops.select(untwisted, 1.0, t11)
-    twist_tilt_y = t67 * (t7 * t15 + t5 * s)
-    t68 = t9 * R_11
-    t69 = t68 * 0.25
-    t70 = a * 1.5
-    t71 = t70 * R_22
-    t72 = t9 * R_21
-    t73 = t72 * 0.5
-    t74 = a * R_12
-    t75 = a * 0.75
-    t76 = 1.7320508075688772 * (t68 * 0.5 + t74 * 0.5) * 0.5
-    t77 = t75 * R_22 + t72 * 0.25 + t76
-    t78 = t74 * 0.25 - 1.7320508075688772 * t77 / 3.0
-    t79 = t69 - 1.7320508075688772 * (t71 - t73) * 0.5 - t78
-    t80 = aside_3 * (t66 - twist_tilt_y * t79)
-    t81 = t9 * t64 * 0.5
-    t82 = a * R_32
-    t83 = t82 * 0.5
-    t84 = t81 + t83
-    t85 = t30 - twist_tilt_y * t84
-    t86 = t65 * 0.5
-    h_33 = t86 - t66
+    t67 = t9 * R_32 * 0.5
+    t68 = ops.select(untwisted, 1.0, t11)
+    twist_tilt_y = t68 * (t7 * t15 + t5 * s)
+    t69 = t9 * R_11
+    t70 = t69 * 0.25
+    t71 = a * 1.5
+    t72 = t71 * R_22
+    t73 = t9 * R_21
+    t74 = t73 * 0.5
+    t75 = a * R_12
+    t76 = a * 0.75
+    t77 = 1.7320508075688772 * (t69 * 0.5 + t75 * 0.5) * 0.5
+    t78 = t76 * R_22 + t73 * 0.25 + t77
+    t79 = t75 * 0.25 - 1.7320508075688772 * t78 / 3.0
+    t80 = t70 - 1.7320508075688772 * (t72 - t74) * 0.5 - t79
+    t81 = aside_3 * (t67 - twist_tilt_y * t80)
+    t82 = t9 * t65 * 0.5
+    t83 = a * R_32
+    t84 = t83 * 0.5
+    t85 = t82 + t84
+    t86 = t30 - twist_tilt_y * t85
+    t87 = t66 * 0.5
+    h_33 = t87 - t67
     m_3_2 = z + h_33
     root_3_2 = ops.sqrt(ops.max(t32, 0.0) * ops.max(t33, 0.0))
     slide_3 = m_3_2 - root_3_2
-    t87 = m_3_2 - slide_3
-    t88 = t80 + t85 * t87
-    t89 = s_tilt_y * t18
-    t90 = t89 * 0.25
-    t91 = t9 * t15
-    t92 = t91 * 0.5
-    t93 = t70 * t12
-    t94 = s_tilt_y * h_12
-    t95 = 1.7320508075688772 * (t89 * 0.5 - t94 * 0.5) * 0.5
-    t96 = t91 * 0.25 - t75 * t12 - t95
-    t97 = t94 * 0.25 - 1.7320508075688772 * t96 / 3.0
-    t98 = t90 + 1.7320508075688772 * (t92 - t93) * 0.5 - t97
-    twist_tilt_x = t67 * (t5 * R_22 + t4 * t12)
-    t99 = t69 - 1.7320508075688772 * (t71 + t73) * 0.5 + t78
-    t100 = aside_2 * (t98 - twist_tilt_x * t99)
-    t101 = c_tilt_y * t18 * 0.5
-    t102 = c_tilt_y * h_12
-    t103 = t102 * 0.5
-    t104 = t81 - t83
-    t105 = t101 - t103 + twist_tilt_x * t104
-    h_23 = t86 + t66
+    t88 = m_3_2 - slide_3
+    t89 = t81 + t86 * t88
+    t90 = s_tilt_y * t18
+    t91 = t90 * 0.25
+    t92 = t9 * t15
+    t93 = t92 * 0.5
+    t94 = t71 * t12
+    t95 = s_tilt_y * h_12
+    t96 = 1.7320508075688772 * (t90 * 0.5 - t95 * 0.5) * 0.5
+    t97 = t92 * 0.25 - t76 * t12 - t96
+    t98 = t95 * 0.25 - 1.7320508075688772 * t97 / 3.0
+    t99 = t91 + 1.7320508075688772 * (t93 - t94) * 0.5 - t98
+    twist_tilt_x = t68 * (t5 * R_22 + t4 * t12)
+    t100 = t70 - 1.7320508075688772 * (t72 + t74) * 0.5 + t79
+    t101 = aside_2 * (t99 - twist_tilt_x * t100)
+    t102 = c_tilt_y * t18 * 0.5
+    t103 = c_tilt_y * h_12
+    t104 = t103 * 0.5
+    t105 = t82 - t84
+    t106 = t102 - t104 + twist_tilt_x * t105
+    h_23 = t87 + t67
     m_2_2 = z + h_23
     root_2_2 = ops.sqrt(ops.max(t27, 0.0) * ops.max(t28, 0.0))
     slide_2 = m_2_2 - root_2_2
-    t106 = m_2_2 - slide_2
-    t107 = t100 - t105 * t106
-    t108 = t88 * t107
-    t109 = twist_tilt_y * aside_2 * t99
-    t110 = t17 + twist_tilt_y * t104
-    t111 = t109 + t106 * t110
-    t112 = t90 - 1.7320508075688772 * (t92 + t93) * 0.5 + t97
-    t113 = aside_3 * (t112 - twist_tilt_x * t79)
-    t114 = t101 + t103 + twist_tilt_x * t84
-    t115 = t113 - t114 * t87
-    t116 = t111 * t115
-    t117 = t65 * t108 - z * t108 + (t65 * t116 - z * t116)
-    t118 = t74 + 1.1547005383792515 * t77
-    t119 = t94 + twist_tilt_x * t118 + 1.1547005383792515 * t96
-    t120 = t22 * t119
-    t121 = t102 + twist_tilt_x * t82
-    m_1_2 = z - t65
+    t107 = m_2_2 - slide_2
+    t108 = t101 - t106 * t107
+    t109 = t89 * t108
+    t110 = twist_tilt_y * aside_2 * t100
+    t111 = t17 + twist_tilt_y * t105
+    t112 = t110 + t107 * t111
+    t113 = t91 - 1.7320508075688772 * (t93 + t94) * 0.5 + t98
+    t114 = aside_3 * (t113 - twist_tilt_x * t80)
+    t115 = t102 + t104 + twist_tilt_x * t85
+    t116 = t114 - t115 * t88
+    t117 = t112 * t116
+    t118 = t66 * t109 - z * t109 + (t66 * t117 - z * t117)
+    t119 = t75 + 1.1547005383792515 * t78
+    t120 = t95 + twist_tilt_x * t119 + 1.1547005383792515 * t97
+    t121 = t22 * t120
+    t122 = t103 + twist_tilt_x * t83
+    m_1_2 = z - t66
     root_1_2 = ops.sqrt(ops.max(t23, 0.0) * ops.max(t24, 0.0))
     slide_1 = m_1_2 - root_1_2
-    t122 = m_1_2 - slide_1
-    t123 = t120 - t121 * t122
-    t124 = t88 * t123
-    t125 = z * t123
-    t126 = t22 * (t66 + t70 * t64 - t118 * twist_tilt_y)
-    t127 = h_11 - t82 * twist_tilt_y
-    t128 = t126 - t127 * t122
-    t129 = t115 * t128
-    t130 = z * t128
-    t131 = h_23 * t124 + t88 * t125 + (h_23 * t129 + t115 * t130)
-    t132 = t111 * t123
-    t133 = t107 * t128
-    t134 = h_33 * t132 + t111 * t125 - (h_33 * t133 + t107 * t130)
-    t135 = t117 + t131 - t134 + slide_3 * t132 - slide_2 * t124
-    t136 = t135 - slide_3 * t133 - slide_2 * t129 + slide_1 * t108
-    t137 = ops.min(t63, t10 * ops.abs(-(t136 + slide_1 * t116)))
-    t138 = ops.determined * (t10 * least)
-    t139 = ops.status(invalid, unreachable, t137 <= t138)
+    t123 = m_1_2 - slide_1
+    t124 = t121 - t122 * t123
+    t125 = t89 * t124
+    t126 = z * t124
+    t127 = t22 * (t67 + t71 * t65 - t119 * twist_tilt_y)
+    t128 = h_11 - t83 * twist_tilt_y
+    t129 = t127 - t128 * t123
+    t130 = t116 * t129
+    t131 = z * t129
+    t132 = h_23 * t125 + t89 * t126 + (h_23 * t130 + t116 * t131)
+    t133 = t112 * t124
+    t134 = t108 * t129
+    t135 = h_33 * t133 + t112 * t126 - (h_33 * t134 + t108 * t131)
+    t136 = t118 + t132 - t135 + slide_3 * t133 - slide_2 * t125
+    t137 = t136 - slide_3 * t134 - slide_2 * t130 + slide_1 * t109
+    t138 = ops.min(t64, t10 * ops.abs(-(t137 + slide_1 * t117)))
+    t139 = ops.max(0.0, ops.abs(t22) - l) + ops.max(0.0, ops.abs(-aside_2) - l)
+    t140 = t63 + (t139 + ops.max(0.0, ops.abs(-aside_3) - l))
+    t141 = ops.determined * (t10 * least) * t140
+    t142 = ops.status(invalid, unreachable, t63 * t138 <= t141)
     slide_3_plus_plus_minus = m_3_2 + root_3_2
-    t140 = m_3_2 - slide_3_plus_plus_minus
-    t141 = t80 + t85 * t140
-    t142 = t107 * t141
-    t143 = t113 - t114 * t140
-    t144 = t111 * t143
-    t145 = t65 * t142 - z * t142 + (t65 * t144 - z * t144)
-    t146 = t123 * t141
-    t147 = t128 * t143
-    t148 = h_23 * t146 + t125 * t141 + (h_23 * t147 + t130 * t143)
-    t149 = t134 - t145 - t148 - slide_3_plus_plus_minus * t132
-    t150 = t149 + slide_2 * t146 + slide_3_plus_plus_minus * t133
-    t151 = t150 + slide_2 * t147 - slide_1 * t142 - slide_1 * t144
-    t152 = ops.status(invalid, unreachable, ops.min(t63, t10 * ops.abs(t151)) <= t138)
+    t143 = m_3_2 - slide_3_plus_plus_minus
+    t144 = t81 + t86 * t143
+    t145 = t108 * t144
+    t146 = t114 - t115 * t143
+    t147 = t112 * t146
+    t148 = t66 * t145 - z * t145 + (t66 * t147 - z * t147)
+    t149 = t124 * t144
+    t150 = t129 * t146
+    t151 = h_23 * t149 + t126 * t144 + (h_23 * t150 + t131 * t146)
+    t152 = t135 - t148 - t151 - slide_3_plus_plus_minus * t133
+    t153 = t152 + slide_2 * t149 + slide_3_plus_plus_minus * t134
+    t154 = t153 + slide_2 * t150 - slide_1 * t145 - slide_1 * t147
+    t155 = t63 * ops.min(t64, t10 * ops.abs(t154)) <= t141
     slide_2_plus_minus_plus = m_2_2 + root_2_2
-    t153 = m_2_2 - slide_2_plus_minus_plus
-    t154 = t100 - t105 * t153
-    t155 = t88 * t154
-    t156 = t109 + t110 * t153
-    t157 = t115 * t156
-    t158 = t65 * t155 - z * t155 + (t65 * t157 - z * t157)
-    t159 = t123 * t156
-    t160 = t128 * t154
-    t161 = h_33 * t159 + t125 * t156 - (h_33 * t160 + t130 * t154)
-    t162 = t131 + t158 - t161 + slide_3 * t159 - slide_2_plus_minus_plus * t124
-    t163 = t162 - slide_3 * t160 - slide_2_plus_minus_plus * t129
-    t164 = ops.abs(t163 + slide_1 * t155 + slide_1 * t157)
-    t165 = ops.status(invalid, unreachable, ops.min(t63, t10 * t164) <= t138)
-    t166 = t141 * t154
-    t167 = t143 * t156
-    t168 = t65 * t166 - z * t166 + (t65 * t167 - z * t167)
-    t169 = t148 - t161 + t168 + slide_3_plus_plus_minus * t159
-    t170 = t169 - slide_2_plus_minus_plus * t146 - slide_3_plus_plus_minus * t160
-    t171 = t170 - slide_2_plus_minus_plus * t147 + slide_1 * t166
-    t172 = ops.min(t63, t10 * ops.abs(t171 + slide_1 * t167))
-    t173 = ops.status(invalid, unreachable, t172 <= t138)
+    t156 = m_2_2 - slide_2_plus_minus_plus
+    t157 = t101 - t106 * t156
+    t158 = t89 * t157
+    t159 = t110 + t111 * t156
+    t160 = t116 * t159
+    t161 = t66 * t158 - z * t158 + (t66 * t160 - z * t160)
+    t162 = t124 * t159
+    t163 = t129 * t157
+    t164 = h_33 * t162 + t126 * t159 - (h_33 * t163 + t131 * t157)
+    t165 = t132 + t161 - t164 + slide_3 * t162 - slide_2_plus_minus_plus * t125
+    t166 = t165 - slide_3 * t163 - slide_2_plus_minus_plus * t130
+    t167 = ops.abs(t166 + slide_1 * t158 + slide_1 * t160)
+    t168 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t167) <= t141)
+    t169 = t144 * t157
+    t170 = t146 * t159
+    t171 = t66 * t169 - z * t169 + (t66 * t170 - z * t170)
+    t172 = t151 - t164 + t171 + slide_3_plus_plus_minus * t162
+    t173 = t172 - slide_2_plus_minus_plus * t149 - slide_3_plus_plus_minus * t163
+    t174 = t173 - slide_2_plus_minus_plus * t150 + slide_1 * t169
+    t175 = ops.min(t64, t10 * ops.abs(t174 + slide_1 * t170))
+    t176 = ops.status(invalid, unreachable, t63 * t175 <= t141)
     slide_1_minus_plus_plus = m_1_2 + root_1_2
-    t174 = m_1_2 - slide_1_minus_plus_plus
-    t175 = t120 - t121 * t174
-    t176 = t88 * t175
-    t177 = z * t175
-    A_13_minus_plus_plus = t126 - t127 * t174
-    t178 = t115 * A_13_minus_plus_plus
-    t179 = z * A_13_minus_plus_plus
-    t180 = h_23 * t176 + t88 * t177 + (h_23 * t178 + t115 * t179)
-    t181 = t111 * t175
-    t182 = t107 * A_13_minus_plus_plus
-    t183 = h_33 * t181 + t111 * t177 - (h_33 * t182 + t107 * t179)
-    t184 = t117 + t180 - t183 + slide_3 * t181 - slide_2 * t176
-    t185 = t184 - slide_3 * t182 - slide_2 * t178 + slide_1_minus_plus_plus * t108
-    t186 = ops.abs(t185 + slide_1_minus_plus_plus * t116)
-    t187 = ops.status(invalid, unreachable, ops.min(t63, t10 * t186) <= t138)
-    t188 = t141 * t175
-    t189 = t143 * A_13_minus_plus_plus
-    t190 = h_23 * t188 + t141 * t177 + (h_23 * t189 + t143 * t179)
-    t191 = t145 - t183 + t190 + slide_3_plus_plus_minus * t181
-    t192 = t191 - slide_2 * t188 - slide_3_plus_plus_minus * t182
-    t193 = t192 - slide_2 * t189 + slide_1_minus_plus_plus * t142
-    t194 = ops.abs(t193 + slide_1_minus_plus_plus * t144)
-    t195 = ops.status(invalid, unreachable, ops.min(t63, t10 * t194) <= t138)
-    t196 = t156 * t175
-    t197 = t154 * A_13_minus_plus_plus
-    t198 = h_33 * t196 + t156 * t177 - (h_33 * t197 + t154 * t179)
-    t199 = t158 + t180 - t198 + slide_3 * t196 - slide_2_plus_minus_plus * t176
-    t200 = t199 - slide_3 * t197 - slide_2_plus_minus_plus * t178
-    Delta_minus_minus_plus = t200 + slide_1_minus_plus_plus * t155 + slide_1_minus_plus_plus * t157
-    t201 = ops.min(t63, t10 * ops.abs(Delta_minus_minus_plus))
-    t202 = ops.status(invalid, unreachable, t201 <= t138)
-    t203 = t168 + t190 - t198 + slide_3_plus_plus_minus * t196
-    t204 = t203 - slide_2_plus_minus_plus * t188 - slide_3_plus_plus_minus * t197
-    t205 = t204 - slide_2_plus_minus_plus * t189 + slide_1_minus_plus_plus * t166
-    t206 = ops.abs(t205 + slide_1_minus_plus_plus * t167)
-    t207 = ops.status(invalid, unreachable, ops.min(t63, t10 * t206) <= t138)
+    t177 = m_1_2 - slide_1_minus_plus_plus
+    t178 = t121 - t122 * t177
+    t179 = t89 * t178
+    t180 = z * t178
+    A_13_minus_plus_plus = t127 - t128 * t177
+    t181 = t116 * A_13_minus_plus_plus
+    t182 = z * A_13_minus_plus_plus
+    t183 = h_23 * t179 + t89 * t180 + (h_23 * t181 + t116 * t182)
+    t184 = t112 * t178
+    t185 = t108 * A_13_minus_plus_plus
+    t186 = h_33 * t184 + t112 * t180 - (h_33 * t185 + t108 * t182)
+    t187 = t118 + t183 - t186 + slide_3 * t184 - slide_2 * t179
+    t188 = t187 - slide_3 * t185 - slide_2 * t181 + slide_1_minus_plus_plus * t109
+    t189 = ops.abs(t188 + slide_1_minus_plus_plus * t117)
+    t190 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t189) <= t141)
+    t191 = t144 * t178
+    t192 = t146 * A_13_minus_plus_plus
+    t193 = h_23 * t191 + t144 * t180 + (h_23 * t192 + t146 * t182)
+    t194 = t148 - t186 + t193 + slide_3_plus_plus_minus * t184
+    t195 = t194 - slide_2 * t191 - slide_3_plus_plus_minus * t185
+    t196 = t195 - slide_2 * t192 + slide_1_minus_plus_plus * t145
+    t197 = ops.abs(t196 + slide_1_minus_plus_plus * t147)
+    t198 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t197) <= t141)
+    t199 = t159 * t178
+    t200 = t157 * A_13_minus_plus_plus
+    t201 = h_33 * t199 + t159 * t180 - (h_33 * t200 + t157 * t182)
+    t202 = t161 + t183 - t201 + slide_3 * t199 - slide_2_plus_minus_plus * t179
+    t203 = t202 - slide_3 * t200 - slide_2_plus_minus_plus * t181
+    Delta_minus_minus_plus = t203 + slide_1_minus_plus_plus * t158 + slide_1_minus_plus_plus * t160
+    t204 = ops.min(t64, t10 * ops.abs(Delta_minus_minus_plus))
+    t205 = ops.status(invalid, unreachable, t63 * t204 <= t141)
+    t206 = t171 + t193 - t201 + slide_3_plus_plus_minus * t199
+    t207 = t206 - slide_2_plus_minus_plus * t191 - slide_3_plus_plus_minus * t200
+    t208 = t207 - slide_2_plus_minus_plus * t192 + slide_1_minus_plus_plus * t169
+    t209 = ops.abs(t208 + slide_1_minus_plus_plus * t170)
+    t210 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t209) <= t141)
     return (
         t50,
         t56,
@@ -1379,14 +1383,14 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
         t62,
         t61,
         t60,
-        t139,
-        t152,
-        t165,
-        t173,
-        t187,
-        t195,
-        t202,
-        t207,
+        t142,
+        ops.status(invalid, unreachable, t155),
+        t168,
+        t176,
+        t190,
+        t198,
+        t205,
+        t210,
     )
 
 
@@ -1397,7 +1401,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
     ('b', 'a', 'l'),
-    _runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 12),
+    _runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 14),
 )
 
 

@@ -12,8 +12,8 @@
  *   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
  *   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
  *   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
- *   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
- *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
+ *   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
+ *   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
@@ -303,7 +303,9 @@ void delta_constraint_batch(size_t n, const delta_params *params,
  *   returned.
  * - SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
  *   which the hand is turned.
  */

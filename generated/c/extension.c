@@ -6298,7 +6298,9 @@ const cf_function cf_functions[] = {
       "  returned.\n"
       "- SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
+      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
+      "  as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -6668,7 +6670,9 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,\n"
-      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target\n"
+      "  is just outside of the workspace, the length by which the answer misses it counts as a\n"
+      "  rounding error too.\n"
       ,
       5, five_bar_values, five_bar_fields,
       1, five_bar_ik_in, 2, five_bar_ik_out,
@@ -8511,7 +8515,9 @@ const cf_function cf_functions[] = {
       "  L1 = 0.\n"
       "- SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is\n"
       "  less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of\n"
-      "  the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.\n"
+      "  the lengths. The length by which the answer misses a target just outside of the workspace\n"
+      "  counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last\n"
+      "  two entries.\n"
       "- Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but\n"
       "  the loop still closes.\n"
       ,
@@ -9767,7 +9773,9 @@ const cf_function cf_functions[] = {
       "  minus_minus_minus.\n"
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
+      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
+      "  as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -10416,7 +10424,9 @@ const cf_function cf_functions[] = {
       "  minus_minus_minus.\n"
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
+      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
+      "  as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -11384,7 +11394,9 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,\n"
-      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target\n"
+      "  is just outside of the workspace, the length by which the answer misses it counts as a\n"
+      "  rounding error too.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,
@@ -12230,7 +12242,9 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
+      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
+      "  as a rounding error too.\n"
       ,
       6, spherical_five_bar_values, spherical_five_bar_fields,
       1, spherical_five_bar_ik_in, 2, spherical_five_bar_ik_out,

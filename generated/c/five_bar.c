@@ -13,7 +13,7 @@
  *   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
  *   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
  *   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
- *   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+ *   ik: 78 compare and select, 47 add, 4 atan2, 3 divide, 46 multiply, 4 sqrt
  *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
  */
 #include "five_bar.h"
@@ -1357,7 +1357,7 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
     const real_t t2 = L1 + L3;
     const real_t t3 = L2 + L4;
     const real_t size = L0 + t2 + t3;
-    const real_t t4 = CLOSEDFORM_VANISHING * size;
+    const real_t t4 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
     const int t5 = (R_1 <= t4) | (L1 <= t4);
     const real_t t6 = t2 - R_1;
     const real_t t7 = L1 - L3;
@@ -1415,27 +1415,29 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
     const real_t A_12 = y + cf_rounded(single, one, t15 * share_1);
     const real_t A_21 = wu_2 - cf_rounded(single, one, cosine_2 * share_2);
     const real_t Delta = cf_rounded(single, one, A_11 * A_22) - cf_rounded(single, one, A_12 * A_21);
-    const real_t t41 = CLOSEDFORM_DETERMINED * (L3 * L4);
-    const int t42 = cf_abs(Delta) <= t41;
-    const real_t t43 = cf_status(single, invalid, unreachable, t40 | t42);
+    const real_t t41 = cf_min(cf_min(cf_min(CLOSEDFORM_C(0.0), t8), t10), t6);
+    const real_t t42 = cf_min(cf_min(cf_min(CLOSEDFORM_C(0.0), t27), t26), t23);
+    const real_t t43 = CLOSEDFORM_DETERMINED * (L3 * L4) * (t4 - (t41 + t42));
+    const int t44 = t4 * cf_abs(Delta) <= t43;
+    const real_t t45 = cf_status(single, invalid, unreachable, t40 | t44);
     const real_t A_22_plus_minus = y + cf_rounded(single, one, t38 * share_2);
-    const real_t t44 = cf_rounded(single, one, A_11 * A_22_plus_minus);
-    const real_t t45 = cf_rounded(single, one, cosine_2_plus_minus * share_2);
-    const real_t A_21_plus_minus = wu_2 - t45;
-    const real_t t46 = cf_rounded(single, one, A_12 * A_21_plus_minus);
-    const int t47 = cf_abs(t44 - t46) <= t41;
-    const real_t t48 = cf_status(single, invalid, unreachable, t40 | t47);
-    const real_t t49 = cf_rounded(single, one, cosine_1_minus_plus * share_1);
-    const real_t A_11_minus_plus = x_2 - t49;
-    const real_t t50 = cf_rounded(single, one, A_22 * A_11_minus_plus);
+    const real_t t46 = cf_rounded(single, one, A_11 * A_22_plus_minus);
+    const real_t t47 = cf_rounded(single, one, cosine_2_plus_minus * share_2);
+    const real_t A_21_plus_minus = wu_2 - t47;
+    const real_t t48 = cf_rounded(single, one, A_12 * A_21_plus_minus);
+    const int t49 = t4 * cf_abs(t46 - t48) <= t43;
+    const real_t t50 = cf_status(single, invalid, unreachable, t40 | t49);
+    const real_t t51 = cf_rounded(single, one, cosine_1_minus_plus * share_1);
+    const real_t A_11_minus_plus = x_2 - t51;
+    const real_t t52 = cf_rounded(single, one, A_22 * A_11_minus_plus);
     const real_t A_12_minus_plus = y + cf_rounded(single, one, t39 * share_1);
-    const real_t t51 = cf_rounded(single, one, A_21 * A_12_minus_plus);
-    const int t52 = cf_abs(t50 - t51) <= t41;
-    const real_t t53 = cf_status(single, invalid, unreachable, t40 | t52);
-    const real_t t54 = cf_rounded(single, one, A_22_plus_minus * A_11_minus_plus);
-    const real_t t55 = cf_rounded(single, one, A_21_plus_minus * A_12_minus_plus);
-    const int t56 = cf_abs(t54 - t55) <= t41;
-    const real_t t57 = cf_status(single, invalid, unreachable, t40 | t56);
+    const real_t t53 = cf_rounded(single, one, A_21 * A_12_minus_plus);
+    const int t54 = t4 * cf_abs(t52 - t53) <= t43;
+    const real_t t55 = cf_status(single, invalid, unreachable, t40 | t54);
+    const real_t t56 = cf_rounded(single, one, A_22_plus_minus * A_11_minus_plus);
+    const real_t t57 = cf_rounded(single, one, A_21_plus_minus * A_12_minus_plus);
+    const int t58 = t4 * cf_abs(t56 - t57) <= t43;
+    const real_t t59 = cf_status(single, invalid, unreachable, t40 | t58);
     const real_t opposite[4] = { t15, t35, t38, t39 };
     const real_t adjacent[4] = { cosine_1, cosine_2, cosine_2_plus_minus, cosine_1_minus_plus };
     real_t angles[4];
@@ -1447,22 +1449,22 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
     }
-    const real_t t58 = cf_wrap_cut(-angles[0]) + t28;
-    const real_t t59 = cf_wrap_cut(-angles[1]) + t28;
-    const real_t t60 = cf_wrap_cut(-angles[2]) + t28;
-    const real_t t61 = cf_wrap_cut(-angles[3]) + t28;
-    q[0] = t58;
-    q[1] = t59;
-    q[2] = t58;
-    q[3] = t60;
-    q[4] = t61;
-    q[5] = t59;
-    q[6] = t61;
-    q[7] = t60;
-    status[0] = t43;
-    status[1] = t48;
-    status[2] = t53;
-    status[3] = t57;
+    const real_t t60 = cf_wrap_cut(-angles[0]) + t28;
+    const real_t t61 = cf_wrap_cut(-angles[1]) + t28;
+    const real_t t62 = cf_wrap_cut(-angles[2]) + t28;
+    const real_t t63 = cf_wrap_cut(-angles[3]) + t28;
+    q[0] = t60;
+    q[1] = t61;
+    q[2] = t60;
+    q[3] = t62;
+    q[4] = t63;
+    q[5] = t61;
+    q[6] = t63;
+    q[7] = t62;
+    status[0] = t45;
+    status[1] = t50;
+    status[2] = t55;
+    status[3] = t59;
 }
 
 CLOSEDFORM_DISPATCHED

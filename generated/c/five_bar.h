@@ -13,7 +13,7 @@
  *   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
  *   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
  *   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
- *   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+ *   ik: 78 compare and select, 47 add, 4 atan2, 3 divide, 46 multiply, 4 sqrt
  *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -294,7 +294,9 @@ void five_bar_condition_number_batch(size_t n, const five_bar_params *params,
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
- *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target is
+ *   just outside of the workspace, the length by which the answer misses it counts as a
+ *   rounding error too.
  */
 void five_bar_ik(const five_bar_params *params, const real_t x[2],
     real_t q[8], uint8_t status[4]);

@@ -10,7 +10,7 @@
  *   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
  *   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
  *   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
- *   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
+ *   ik: 44 compare and select, 25 add, 2 atan2, 2 divide, 28 multiply, 1 sincos, 2 sqrt
  *   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
  */
 #include "four_bar.h"
@@ -945,7 +945,7 @@ CF_INLINE void four_bar_ik_kernel(const int single, const real_t one,
     const real_t R_1 = cf_sqrt(t2);
     const real_t t3 = L2 + L3;
     const real_t size = L1 + L4 + t3;
-    const real_t t4 = CLOSEDFORM_VANISHING * size;
+    const real_t t4 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
     const int t5 = (R_1 <= t4) | (L2 <= t4);
     const real_t t6 = t3 - R_1;
     const real_t t7 = L2 - L3;
@@ -976,14 +976,15 @@ CF_INLINE void four_bar_ik_kernel(const int single, const real_t one,
     const real_t t25 = wv_1 + cf_rounded(single, one, t15 * share_1);
     const real_t t26 = wu_1 - cf_rounded(single, one, cosine_1 * share_1);
     const real_t A = cf_rounded(single, one, t1 * t25) - cf_rounded(single, one, wv_1 * t26);
-    const real_t t27 = CLOSEDFORM_DETERMINED * (L3 * size);
-    const int t28 = cf_abs(A) <= t27;
-    const real_t t29 = cf_status(single, invalid, unreachable, t5 | t28);
-    const real_t t30 = wv_1 + cf_rounded(single, one, t24 * share_1);
-    const real_t t31 = cf_rounded(single, one, cosine_1_minus * share_1);
-    const real_t A_minus = cf_rounded(single, one, t1 * t30) - cf_rounded(single, one, wv_1 * (wu_1 - t31));
-    const int t32 = cf_abs(A_minus) <= t27;
-    const real_t t33 = cf_status(single, invalid, unreachable, t5 | t32);
+    const real_t t27 = cf_min(cf_min(cf_min(CLOSEDFORM_C(0.0), t8), t10), t6);
+    const real_t t28 = CLOSEDFORM_DETERMINED * (L3 * size) * (t4 - t27);
+    const int t29 = t4 * cf_abs(A) <= t28;
+    const real_t t30 = cf_status(single, invalid, unreachable, t5 | t29);
+    const real_t t31 = wv_1 + cf_rounded(single, one, t24 * share_1);
+    const real_t t32 = cf_rounded(single, one, cosine_1_minus * share_1);
+    const real_t A_minus = cf_rounded(single, one, t1 * t31) - cf_rounded(single, one, wv_1 * (wu_1 - t32));
+    const int t33 = t4 * cf_abs(A_minus) <= t28;
+    const real_t t34 = cf_status(single, invalid, unreachable, t5 | t33);
     const real_t opposite[2] = { t15, t24 };
     const real_t adjacent[2] = { cosine_1, cosine_1_minus };
     real_t angles[2];
@@ -995,8 +996,8 @@ CF_INLINE void four_bar_ik_kernel(const int single, const real_t one,
     }
     q[0] = cf_wrap_cut(-angles[0]) + t23;
     q[1] = cf_wrap_cut(-angles[1]) + t23;
-    status[0] = t29;
-    status[1] = t33;
+    status[0] = t30;
+    status[1] = t34;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -14,7 +14,7 @@
  *   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
  *   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
  *   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
- *   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
+ *   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
  *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  */
@@ -1304,7 +1304,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const real_t r2 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, z * z);
     const real_t r = cf_sqrt(r2);
     const real_t t1 = L1 + L2;
-    const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
+    const real_t t2 = cf_rounded(single, one, CLOSEDFORM_VANISHING * (L0 + t1));
     const int on_axis = r <= t2;
     const int t3 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
@@ -1317,63 +1317,68 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const real_t t9 = t8 - square_c;
     const real_t t10 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t11 = L1 - L2;
-    const real_t t12 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * cf_abs(t11)));
-    const real_t t13 = cf_rounded(single, one, t11 * t11);
-    const real_t t14 = square_c - t13;
-    const real_t t15 = y - L0;
-    const real_t square_d = r2 + cf_rounded(single, one, t15 * t15);
-    const real_t t16 = t8 - square_d;
-    const real_t t17 = square_d - t13;
-    const int t18 = (-t7 <= t9) & (-t12 <= t14) & (-t7 <= t16) & (-t12 <= t17);
-    const int unreachable = !t18;
-    const real_t t19 = cf_poison(single, invalid | unreachable);
+    const real_t t12 = cf_abs(t11);
+    const real_t t13 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * t12));
+    const real_t t14 = cf_rounded(single, one, t11 * t11);
+    const real_t t15 = square_c - t14;
+    const real_t t16 = y - L0;
+    const real_t square_d = r2 + cf_rounded(single, one, t16 * t16);
+    const real_t t17 = t8 - square_d;
+    const real_t t18 = square_d - t14;
+    const int t19 = (-t7 <= t9) & (-t13 <= t15) & (-t7 <= t17) & (-t13 <= t18);
+    const int unreachable = !t19;
+    const real_t t20 = cf_poison(single, invalid | unreachable);
     const int at_A = r + cf_abs(y) <= t2;
     const int no_link_c = L1 * L2 <= t8 * CLOSEDFORM_VANISHING;
-    const real_t M_c = cf_max(t14, CLOSEDFORM_C(0.0));
+    const real_t M_c = cf_max(t15, CLOSEDFORM_C(0.0));
     const real_t N_c = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t ahead_c = cf_select(no_link_c, CLOSEDFORM_C(1.0), t1 * M_c + N_c * t11);
-    const real_t t20 = ahead_c * r;
-    const real_t t21 = cf_sqrt(N_c * M_c);
-    const real_t beyond_c = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * t21);
-    const real_t t22 = y * beyond_c;
-    const real_t t23 = y * ahead_c;
-    const real_t t24 = r * beyond_c;
-    const int at_B = r + cf_abs(t15) <= t2;
-    const real_t M_d = cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t N_d = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t t21 = ahead_c * r;
+    const real_t t22 = cf_sqrt(N_c * M_c);
+    const real_t beyond_c = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * t22);
+    const real_t t23 = y * beyond_c;
+    const real_t t24 = y * ahead_c;
+    const real_t t25 = r * beyond_c;
+    const int at_B = r + cf_abs(t16) <= t2;
+    const real_t M_d = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t N_d = cf_max(t17, CLOSEDFORM_C(0.0));
     const real_t ahead_d = cf_select(no_link_c, CLOSEDFORM_C(1.0), t1 * M_d + t11 * N_d);
-    const real_t t25 = ahead_d * r;
-    const real_t t26 = cf_sqrt(N_d * M_d);
-    const real_t beyond_d = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * t26);
-    const real_t t27 = t15 * beyond_d;
-    const real_t t28 = t15 * ahead_d;
-    const real_t t29 = r * beyond_d;
-    const int t30 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t31 = cf_rounded(single, one, t1 * t11);
-    const real_t inner_c = square_c - t31;
-    const real_t inner_d = square_d - t31;
-    const real_t t32 = cf_rounded(single, one, inner_c * inner_d);
-    const real_t t33 = cf_rounded(single, one, t21 * t26);
-    const real_t t34 = L0 * r;
-    const real_t t35 = cf_rounded(single, one, (t32 + t33) * t34);
-    const real_t t36 = r2 + cf_rounded(single, one, y * t15);
-    const real_t t37 = cf_rounded(single, one, inner_d * t21);
-    const real_t t38 = cf_rounded(single, one, inner_c * t26);
-    const real_t t39 = cf_rounded(single, one, t36 * (t37 - t38));
-    const real_t t40 = square_c * square_d * CLOSEDFORM_C(4.0) * (L2 * L2);
-    const real_t t41 = CLOSEDFORM_DETERMINED * t40;
-    const int t42 = cf_abs(t35 - t39) <= t41;
-    const real_t t43 = cf_status(single, invalid, unreachable, t30 | t42);
-    const real_t t44 = cf_rounded(single, one, t36 * (t37 + t38));
-    const real_t t45 = cf_rounded(single, one, (t32 - t33) * t34);
-    const int t46 = cf_abs(t44 - t45) <= t41;
-    const real_t t47 = cf_status(single, invalid, unreachable, t30 | t46);
-    const int t48 = cf_abs(-(t44 + t45)) <= t41;
-    const real_t t49 = cf_status(single, invalid, unreachable, t30 | t48);
-    const int t50 = cf_abs(t39 + t35) <= t41;
-    const real_t t51 = cf_status(single, invalid, unreachable, t30 | t50);
-    const real_t opposite[8] = { z, t20 - t22, t25 - t27, t25 + t27, t20 + t22, z, z, z };
-    const real_t adjacent[8] = { -x_2, t23 + t24, t28 + t29, t28 - t29, t23 - t24, x_2, x_2, x_2 };
+    const real_t t26 = ahead_d * r;
+    const real_t t27 = cf_sqrt(N_d * M_d);
+    const real_t beyond_d = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * t27);
+    const real_t t28 = t16 * beyond_d;
+    const real_t t29 = t16 * ahead_d;
+    const real_t t30 = r * beyond_d;
+    const int t31 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
+    const real_t t32 = cf_rounded(single, one, t1 * t11);
+    const real_t inner_c = square_c - t32;
+    const real_t inner_d = square_d - t32;
+    const real_t t33 = cf_rounded(single, one, inner_c * inner_d);
+    const real_t t34 = cf_rounded(single, one, t22 * t27);
+    const real_t t35 = L0 * r;
+    const real_t t36 = cf_rounded(single, one, (t33 + t34) * t35);
+    const real_t t37 = r2 + cf_rounded(single, one, y * t16);
+    const real_t t38 = cf_rounded(single, one, inner_d * t22);
+    const real_t t39 = cf_rounded(single, one, inner_c * t27);
+    const real_t t40 = cf_rounded(single, one, t37 * (t38 - t39));
+    const real_t t41 = square_c * square_d * CLOSEDFORM_C(4.0) * (L2 * L2);
+    const real_t t42 = cf_sqrt(square_c);
+    const real_t t43 = cf_max(cf_max(CLOSEDFORM_C(0.0), t12 - t42), t42 - t1);
+    const real_t t44 = cf_sqrt(square_d);
+    const real_t t45 = cf_max(cf_max(CLOSEDFORM_C(0.0), t12 - t44), t44 - t1);
+    const real_t t46 = CLOSEDFORM_DETERMINED * t41 * (t2 + (t43 + t45));
+    const int t47 = cf_abs(t36 - t40) * t2 <= t46;
+    const real_t t48 = cf_status(single, invalid, unreachable, t31 | t47);
+    const real_t t49 = cf_rounded(single, one, t37 * (t38 + t39));
+    const real_t t50 = cf_rounded(single, one, (t33 - t34) * t35);
+    const int t51 = cf_abs(t49 - t50) * t2 <= t46;
+    const real_t t52 = cf_status(single, invalid, unreachable, t31 | t51);
+    const int t53 = cf_abs(-(t49 + t50)) * t2 <= t46;
+    const real_t t54 = cf_status(single, invalid, unreachable, t31 | t53);
+    const int t55 = cf_abs(t40 + t36) * t2 <= t46;
+    const real_t t56 = cf_status(single, invalid, unreachable, t31 | t55);
+    const real_t opposite[8] = { z, t21 - t23, t26 - t28, t26 + t28, t21 + t23, z, z, z };
+    const real_t adjacent[8] = { -x_2, t24 + t25, t29 + t30, t29 - t30, t24 - t25, x_2, x_2, x_2 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -1385,54 +1390,54 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
         angles[5] = cf_atan2(opposite[5], adjacent[5]);
     }
-    const real_t t52 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t53 = cf_wrap_cut(t52) + t19;
-    const real_t t54 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1]);
-    const real_t t55 = cf_wrap_cut(t54) + t19;
-    const real_t t56 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[2]);
-    const real_t t57 = cf_wrap_cut(t56) + t19;
-    const real_t t58 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3]);
-    const real_t t59 = cf_wrap_cut(t58) + t19;
-    const real_t t60 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[4]);
-    const real_t t61 = cf_wrap_cut(t60) + t19;
-    const real_t t62 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[5]);
-    const real_t t63 = cf_wrap_cut(-t62) + t19;
-    const real_t t64 = cf_wrap_cut(-t60) + t19;
-    const real_t t65 = cf_wrap_cut(-t58) + t19;
-    const real_t t66 = cf_wrap_cut(-t56) + t19;
-    const real_t t67 = cf_wrap_cut(-t54) + t19;
-    q[0] = t53;
-    q[1] = t55;
-    q[2] = t57;
-    q[3] = t53;
-    q[4] = t55;
-    q[5] = t59;
-    q[6] = t53;
-    q[7] = t61;
-    q[8] = t57;
-    q[9] = t53;
-    q[10] = t61;
-    q[11] = t59;
-    q[12] = t63;
-    q[13] = t64;
-    q[14] = t65;
-    q[15] = t63;
-    q[16] = t64;
-    q[17] = t66;
-    q[18] = t63;
-    q[19] = t67;
-    q[20] = t65;
-    q[21] = t63;
-    q[22] = t67;
-    q[23] = t66;
-    status[0] = t43;
-    status[1] = t47;
-    status[2] = t49;
-    status[3] = t51;
-    status[4] = t51;
-    status[5] = t49;
-    status[6] = t47;
-    status[7] = t43;
+    const real_t t57 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t58 = cf_wrap_cut(t57) + t20;
+    const real_t t59 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1]);
+    const real_t t60 = cf_wrap_cut(t59) + t20;
+    const real_t t61 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t62 = cf_wrap_cut(t61) + t20;
+    const real_t t63 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3]);
+    const real_t t64 = cf_wrap_cut(t63) + t20;
+    const real_t t65 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[4]);
+    const real_t t66 = cf_wrap_cut(t65) + t20;
+    const real_t t67 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[5]);
+    const real_t t68 = cf_wrap_cut(-t67) + t20;
+    const real_t t69 = cf_wrap_cut(-t65) + t20;
+    const real_t t70 = cf_wrap_cut(-t63) + t20;
+    const real_t t71 = cf_wrap_cut(-t61) + t20;
+    const real_t t72 = cf_wrap_cut(-t59) + t20;
+    q[0] = t58;
+    q[1] = t60;
+    q[2] = t62;
+    q[3] = t58;
+    q[4] = t60;
+    q[5] = t64;
+    q[6] = t58;
+    q[7] = t66;
+    q[8] = t62;
+    q[9] = t58;
+    q[10] = t66;
+    q[11] = t64;
+    q[12] = t68;
+    q[13] = t69;
+    q[14] = t70;
+    q[15] = t68;
+    q[16] = t69;
+    q[17] = t71;
+    q[18] = t68;
+    q[19] = t72;
+    q[20] = t70;
+    q[21] = t68;
+    q[22] = t72;
+    q[23] = t71;
+    status[0] = t48;
+    status[1] = t52;
+    status[2] = t54;
+    status[3] = t56;
+    status[4] = t56;
+    status[5] = t54;
+    status[6] = t52;
+    status[7] = t48;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1444,7 +1449,7 @@ void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
     hybrid_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_max(cf_abs(params->L2), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_7) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
@@ -1465,7 +1470,7 @@ void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
 CF_INLINE cf_word hybrid_five_bar_ik_excess(const real_t dimensions,
     const real_t *x, size_t x_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_7);
 }
 
 CF_RARE void hybrid_five_bar_ik_other_sizes(size_t n, const real_t dimensions,

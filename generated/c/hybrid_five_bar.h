@@ -14,7 +14,7 @@
  *   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
  *   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
  *   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
- *   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
+ *   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
  *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  *
@@ -309,7 +309,9 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  *   L1 = 0.
  * - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
  *   less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
- *   the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+ *   the lengths. The length by which the answer misses a target just outside of the workspace
+ *   counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last
+ *   two entries.
  * - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
  *   the loop still closes.
  */

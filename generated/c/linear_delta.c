@@ -15,7 +15,7 @@
  *   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
  *   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
  *   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
- *   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
+ *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
 #include "linear_delta.h"
@@ -2167,34 +2167,37 @@ CF_INLINE void linear_delta_ik_kernel(const int single, const real_t one,
     const real_t t25 = slide_2_plus_minus_plus + t18;
     const real_t slide_1_minus_plus_plus = z + root_1;
     const real_t t26 = slide_1_minus_plus_plus + t18;
+    const real_t t27 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
     const real_t A_33 = z - slide_3;
-    const real_t t27 = cf_rounded(single, one, A_22 * A_33);
+    const real_t t28 = cf_rounded(single, one, A_22 * A_33);
     const real_t A_23 = z - slide_2;
-    const real_t t28 = cf_rounded(single, one, A_32 * A_23);
-    const real_t t29 = cf_rounded(single, one, A_21 * A_33);
-    const real_t t30 = cf_rounded(single, one, A_21 * A_23);
-    const real_t t31 = cf_rounded(single, one, A_11 * (t27 - t28)) - cf_rounded(single, one, y * (t29 - t30));
-    const real_t t32 = cf_rounded(single, one, A_21 * A_32) - cf_rounded(single, one, A_21 * A_22);
-    const real_t t33 = cf_rounded(single, one, (z - slide_1) * t32);
-    const real_t t34 = CLOSEDFORM_DETERMINED * (l * l * l);
-    const int t35 = cf_abs(t31 + t33) <= t34;
+    const real_t t29 = cf_rounded(single, one, A_32 * A_23);
+    const real_t t30 = cf_rounded(single, one, A_21 * A_33);
+    const real_t t31 = cf_rounded(single, one, A_21 * A_23);
+    const real_t t32 = cf_rounded(single, one, A_11 * (t28 - t29)) - cf_rounded(single, one, y * (t30 - t31));
+    const real_t t33 = cf_rounded(single, one, A_21 * A_32) - cf_rounded(single, one, A_21 * A_22);
+    const real_t t34 = cf_rounded(single, one, (z - slide_1) * t33);
+    const real_t t35 = cf_max(CLOSEDFORM_C(0.0), -t2) + cf_max(CLOSEDFORM_C(0.0), -t13);
+    const real_t t36 = t27 + (t35 + cf_max(CLOSEDFORM_C(0.0), -t16));
+    const real_t t37 = CLOSEDFORM_DETERMINED * (l * l * l) * t36;
+    const int t38 = t27 * cf_abs(t32 + t34) <= t37;
     const real_t A_33_plus_plus_minus = z - slide_3_plus_plus_minus;
-    const real_t t36 = cf_rounded(single, one, A_22 * A_33_plus_plus_minus);
-    const real_t t37 = cf_rounded(single, one, A_21 * A_33_plus_plus_minus);
-    const real_t t38 = cf_rounded(single, one, A_11 * (t28 - t36)) - cf_rounded(single, one, y * (t30 - t37));
-    const int t39 = cf_abs(t33 - t38) <= t34;
+    const real_t t39 = cf_rounded(single, one, A_22 * A_33_plus_plus_minus);
+    const real_t t40 = cf_rounded(single, one, A_21 * A_33_plus_plus_minus);
+    const real_t t41 = cf_rounded(single, one, A_11 * (t29 - t39)) - cf_rounded(single, one, y * (t31 - t40));
+    const int t42 = t27 * cf_abs(t34 - t41) <= t37;
     const real_t A_23_plus_minus_plus = z - slide_2_plus_minus_plus;
-    const real_t t40 = cf_rounded(single, one, A_32 * A_23_plus_minus_plus);
-    const real_t t41 = cf_rounded(single, one, A_21 * A_23_plus_minus_plus);
-    const real_t t42 = cf_rounded(single, one, A_11 * (t27 - t40)) - cf_rounded(single, one, y * (t29 - t41));
-    const int t43 = cf_abs(t33 + t42) <= t34;
-    const real_t t44 = cf_rounded(single, one, A_11 * (t36 - t40)) - cf_rounded(single, one, y * (t37 - t41));
-    const int t45 = cf_abs(t33 + t44) <= t34;
-    const real_t t46 = cf_rounded(single, one, (z - slide_1_minus_plus_plus) * t32);
-    const int t47 = cf_abs(t31 + t46) <= t34;
-    const int t48 = cf_abs(t38 - t46) <= t34;
-    const int t49 = cf_abs(t42 + t46) <= t34;
-    const int t50 = cf_abs(t44 + t46) <= t34;
+    const real_t t43 = cf_rounded(single, one, A_32 * A_23_plus_minus_plus);
+    const real_t t44 = cf_rounded(single, one, A_21 * A_23_plus_minus_plus);
+    const real_t t45 = cf_rounded(single, one, A_11 * (t28 - t43)) - cf_rounded(single, one, y * (t30 - t44));
+    const int t46 = t27 * cf_abs(t34 + t45) <= t37;
+    const real_t t47 = cf_rounded(single, one, A_11 * (t39 - t43)) - cf_rounded(single, one, y * (t40 - t44));
+    const int t48 = t27 * cf_abs(t34 + t47) <= t37;
+    const real_t t49 = cf_rounded(single, one, (z - slide_1_minus_plus_plus) * t33);
+    const int t50 = t27 * cf_abs(t32 + t49) <= t37;
+    const int t51 = t27 * cf_abs(t41 - t49) <= t37;
+    const int t52 = t27 * cf_abs(t45 + t49) <= t37;
+    const int t53 = t27 * cf_abs(t47 + t49) <= t37;
     q[0] = t19;
     q[1] = t21;
     q[2] = t23;
@@ -2219,14 +2222,14 @@ CF_INLINE void linear_delta_ik_kernel(const int single, const real_t one,
     q[21] = t26;
     q[22] = t25;
     q[23] = t24;
-    status[0] = cf_status(single, invalid, unreachable, t35);
-    status[1] = cf_status(single, invalid, unreachable, t39);
-    status[2] = cf_status(single, invalid, unreachable, t43);
-    status[3] = cf_status(single, invalid, unreachable, t45);
-    status[4] = cf_status(single, invalid, unreachable, t47);
-    status[5] = cf_status(single, invalid, unreachable, t48);
-    status[6] = cf_status(single, invalid, unreachable, t49);
-    status[7] = cf_status(single, invalid, unreachable, t50);
+    status[0] = cf_status(single, invalid, unreachable, t38);
+    status[1] = cf_status(single, invalid, unreachable, t42);
+    status[2] = cf_status(single, invalid, unreachable, t46);
+    status[3] = cf_status(single, invalid, unreachable, t48);
+    status[4] = cf_status(single, invalid, unreachable, t50);
+    status[5] = cf_status(single, invalid, unreachable, t51);
+    status[6] = cf_status(single, invalid, unreachable, t52);
+    status[7] = cf_status(single, invalid, unreachable, t53);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2239,7 +2242,7 @@ void linear_delta_ik(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2263,7 +2266,7 @@ void linear_delta_ik(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_ik_excess(const real_t dimensions,
     const real_t *x, size_t x_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_3);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_ik_other_sizes(size_t n, const real_t dimensions,

@@ -15,7 +15,7 @@
  *   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
  *   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
  *   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
- *   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
+ *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -299,7 +299,9 @@ void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
  *   which the hand is turned.
  */

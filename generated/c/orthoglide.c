@@ -27,7 +27,7 @@
  *   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
  *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
- *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
+ *   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
  */
 #include "orthoglide.h"
@@ -2907,33 +2907,34 @@ CF_INLINE void orthoglide_ik_kernel(const int single, const real_t one,
     const int t6 = cf_nought(L) == 0;
     const int t7 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) == 0;
     const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= L) & t7);
-    const real_t t8 = (L + cf_abs(x_2) + cf_abs(y) + cf_abs(z)) * CLOSEDFORM_C(0.5);
-    const real_t t9 = -(CLOSEDFORM_FEASIBILITY * t8);
-    const real_t t10 = cf_rounded(single, one, x_2 * x_2);
-    const real_t aside_2 = cf_sqrt(t2 + t10);
-    const real_t t11 = L - aside_2;
-    const real_t t12 = L + aside_2;
-    const int t13 = (t9 <= t3) & (t9 <= t4) & (t9 <= t11) & (t9 <= t12);
-    const real_t aside_3 = cf_sqrt(t1 + t10);
-    const real_t t14 = L - aside_3;
-    const real_t t15 = L + aside_3;
-    const int unreachable = !(t13 & (t9 <= t14) & (t9 <= t15));
-    const real_t t16 = cf_poison(single, invalid | unreachable);
-    const real_t t17 = slide_1 + t16;
-    const real_t t18 = cf_max(t11, CLOSEDFORM_C(0.0)) * cf_max(t12, CLOSEDFORM_C(0.0));
-    const real_t root_2 = cf_sqrt(t18);
+    const real_t size = L + cf_abs(x_2) + cf_abs(y) + cf_abs(z);
+    const real_t t8 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t9 = cf_rounded(single, one, x_2 * x_2);
+    const real_t aside_2 = cf_sqrt(t2 + t9);
+    const real_t t10 = L - aside_2;
+    const real_t t11 = L + aside_2;
+    const int t12 = (-t8 <= t3) & (-t8 <= t4) & (-t8 <= t10) & (-t8 <= t11);
+    const real_t aside_3 = cf_sqrt(t1 + t9);
+    const real_t t13 = L - aside_3;
+    const real_t t14 = L + aside_3;
+    const int unreachable = !(t12 & (-t8 <= t13) & (-t8 <= t14));
+    const real_t t15 = cf_poison(single, invalid | unreachable);
+    const real_t t16 = slide_1 + t15;
+    const real_t t17 = cf_max(t10, CLOSEDFORM_C(0.0)) * cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t root_2 = cf_sqrt(t17);
     const real_t slide_2 = y - root_2;
-    const real_t t19 = slide_2 + t16;
-    const real_t t20 = cf_max(t14, CLOSEDFORM_C(0.0)) * cf_max(t15, CLOSEDFORM_C(0.0));
-    const real_t root_3 = cf_sqrt(t20);
+    const real_t t18 = slide_2 + t15;
+    const real_t t19 = cf_max(t13, CLOSEDFORM_C(0.0)) * cf_max(t14, CLOSEDFORM_C(0.0));
+    const real_t root_3 = cf_sqrt(t19);
     const real_t slide_3 = z - root_3;
-    const real_t t21 = slide_3 + t16;
+    const real_t t20 = slide_3 + t15;
     const real_t slide_3_plus_plus_minus = z + root_3;
-    const real_t t22 = slide_3_plus_plus_minus + t16;
+    const real_t t21 = slide_3_plus_plus_minus + t15;
     const real_t slide_2_plus_minus_plus = y + root_2;
-    const real_t t23 = slide_2_plus_minus_plus + t16;
+    const real_t t22 = slide_2_plus_minus_plus + t15;
     const real_t slide_1_minus_plus_plus = x_2 + root_1;
-    const real_t t24 = slide_1_minus_plus_plus + t16;
+    const real_t t23 = slide_1_minus_plus_plus + t15;
+    const real_t t24 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
     const real_t A_11 = x_2 - slide_1;
     const real_t t25 = slide_2 * slide_3;
     const real_t t26 = z * slide_1;
@@ -2941,66 +2942,68 @@ CF_INLINE void orthoglide_ik_kernel(const int single, const real_t one,
     const real_t t28 = y * slide_1;
     const real_t t29 = cf_rounded(single, one, slide_3 * t28);
     const real_t Delta = cf_rounded(single, one, A_11 * t25) + t27 + t29;
-    const real_t t30 = CLOSEDFORM_DETERMINED * (L * L * L);
-    const int t31 = cf_abs(Delta) <= t30;
-    const real_t t32 = slide_2 * slide_3_plus_plus_minus;
-    const real_t t33 = cf_rounded(single, one, slide_3_plus_plus_minus * t28);
-    const real_t Delta_plus_plus_minus = t27 + cf_rounded(single, one, A_11 * t32) + t33;
-    const int t34 = cf_abs(Delta_plus_plus_minus) <= t30;
-    const real_t t35 = slide_3 * slide_2_plus_minus_plus;
-    const real_t t36 = cf_rounded(single, one, slide_2_plus_minus_plus * t26);
-    const real_t Delta_plus_minus_plus = t29 + cf_rounded(single, one, A_11 * t35) + t36;
-    const int t37 = cf_abs(Delta_plus_minus_plus) <= t30;
-    const real_t t38 = slide_3_plus_plus_minus * slide_2_plus_minus_plus;
-    const real_t Delta_plus_minus_minus = t33 + t36 + cf_rounded(single, one, A_11 * t38);
-    const int t39 = cf_abs(Delta_plus_minus_minus) <= t30;
+    const real_t t30 = cf_max(CLOSEDFORM_C(0.0), -t3) + cf_max(CLOSEDFORM_C(0.0), -t10);
+    const real_t t31 = t24 + (t30 + cf_max(CLOSEDFORM_C(0.0), -t13));
+    const real_t t32 = CLOSEDFORM_DETERMINED * (L * L * L) * t31;
+    const int t33 = t24 * cf_abs(Delta) <= t32;
+    const real_t t34 = slide_2 * slide_3_plus_plus_minus;
+    const real_t t35 = cf_rounded(single, one, slide_3_plus_plus_minus * t28);
+    const real_t Delta_plus_plus_minus = t27 + cf_rounded(single, one, A_11 * t34) + t35;
+    const int t36 = t24 * cf_abs(Delta_plus_plus_minus) <= t32;
+    const real_t t37 = slide_3 * slide_2_plus_minus_plus;
+    const real_t t38 = cf_rounded(single, one, slide_2_plus_minus_plus * t26);
+    const real_t Delta_plus_minus_plus = t29 + cf_rounded(single, one, A_11 * t37) + t38;
+    const int t39 = t24 * cf_abs(Delta_plus_minus_plus) <= t32;
+    const real_t t40 = slide_3_plus_plus_minus * slide_2_plus_minus_plus;
+    const real_t Delta_plus_minus_minus = t35 + t38 + cf_rounded(single, one, A_11 * t40);
+    const int t41 = t24 * cf_abs(Delta_plus_minus_minus) <= t32;
     const real_t A_11_minus_plus_plus = x_2 - slide_1_minus_plus_plus;
-    const real_t t40 = cf_rounded(single, one, A_11_minus_plus_plus * t25);
-    const real_t t41 = z * slide_1_minus_plus_plus;
-    const real_t t42 = cf_rounded(single, one, slide_2 * t41);
-    const real_t t43 = y * slide_1_minus_plus_plus;
-    const real_t t44 = cf_rounded(single, one, slide_3 * t43);
-    const int t45 = cf_abs(t40 + t42 + t44) <= t30;
-    const real_t t46 = cf_rounded(single, one, A_11_minus_plus_plus * t32);
-    const real_t t47 = cf_rounded(single, one, slide_3_plus_plus_minus * t43);
-    const int t48 = cf_abs(t42 + t46 + t47) <= t30;
-    const real_t t49 = cf_rounded(single, one, A_11_minus_plus_plus * t35);
-    const real_t t50 = cf_rounded(single, one, slide_2_plus_minus_plus * t41);
-    const int t51 = cf_abs(t44 + t49 + t50) <= t30;
-    const real_t t52 = cf_rounded(single, one, A_11_minus_plus_plus * t38);
-    const int t53 = cf_abs(t47 + t50 + t52) <= t30;
-    q[0] = t17;
-    q[1] = t19;
-    q[2] = t21;
-    q[3] = t17;
-    q[4] = t19;
-    q[5] = t22;
-    q[6] = t17;
-    q[7] = t23;
-    q[8] = t21;
-    q[9] = t17;
-    q[10] = t23;
-    q[11] = t22;
-    q[12] = t24;
-    q[13] = t19;
-    q[14] = t21;
-    q[15] = t24;
-    q[16] = t19;
-    q[17] = t22;
-    q[18] = t24;
-    q[19] = t23;
-    q[20] = t21;
-    q[21] = t24;
-    q[22] = t23;
-    q[23] = t22;
-    status[0] = cf_status(single, invalid, unreachable, t31);
-    status[1] = cf_status(single, invalid, unreachable, t34);
-    status[2] = cf_status(single, invalid, unreachable, t37);
-    status[3] = cf_status(single, invalid, unreachable, t39);
-    status[4] = cf_status(single, invalid, unreachable, t45);
-    status[5] = cf_status(single, invalid, unreachable, t48);
-    status[6] = cf_status(single, invalid, unreachable, t51);
-    status[7] = cf_status(single, invalid, unreachable, t53);
+    const real_t t42 = cf_rounded(single, one, A_11_minus_plus_plus * t25);
+    const real_t t43 = z * slide_1_minus_plus_plus;
+    const real_t t44 = cf_rounded(single, one, slide_2 * t43);
+    const real_t t45 = y * slide_1_minus_plus_plus;
+    const real_t t46 = cf_rounded(single, one, slide_3 * t45);
+    const int t47 = t24 * cf_abs(t42 + t44 + t46) <= t32;
+    const real_t t48 = cf_rounded(single, one, A_11_minus_plus_plus * t34);
+    const real_t t49 = cf_rounded(single, one, slide_3_plus_plus_minus * t45);
+    const int t50 = t24 * cf_abs(t44 + t48 + t49) <= t32;
+    const real_t t51 = cf_rounded(single, one, A_11_minus_plus_plus * t37);
+    const real_t t52 = cf_rounded(single, one, slide_2_plus_minus_plus * t43);
+    const int t53 = t24 * cf_abs(t46 + t51 + t52) <= t32;
+    const real_t t54 = cf_rounded(single, one, A_11_minus_plus_plus * t40);
+    const int t55 = t24 * cf_abs(t49 + t52 + t54) <= t32;
+    q[0] = t16;
+    q[1] = t18;
+    q[2] = t20;
+    q[3] = t16;
+    q[4] = t18;
+    q[5] = t21;
+    q[6] = t16;
+    q[7] = t22;
+    q[8] = t20;
+    q[9] = t16;
+    q[10] = t22;
+    q[11] = t21;
+    q[12] = t23;
+    q[13] = t18;
+    q[14] = t20;
+    q[15] = t23;
+    q[16] = t18;
+    q[17] = t21;
+    q[18] = t23;
+    q[19] = t22;
+    q[20] = t20;
+    q[21] = t23;
+    q[22] = t22;
+    q[23] = t21;
+    status[0] = cf_status(single, invalid, unreachable, t33);
+    status[1] = cf_status(single, invalid, unreachable, t36);
+    status[2] = cf_status(single, invalid, unreachable, t39);
+    status[3] = cf_status(single, invalid, unreachable, t41);
+    status[4] = cf_status(single, invalid, unreachable, t47);
+    status[5] = cf_status(single, invalid, unreachable, t50);
+    status[6] = cf_status(single, invalid, unreachable, t53);
+    status[7] = cf_status(single, invalid, unreachable, t55);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -3013,7 +3016,7 @@ void orthoglide_ik(const orthoglide_params *params, const real_t x[3],
     orthoglide_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(x[0])), cf_max(cf_abs(x[1]), cf_abs(x[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
@@ -3035,7 +3038,7 @@ void orthoglide_ik(const orthoglide_params *params, const real_t x[3],
 CF_INLINE cf_word orthoglide_ik_excess(const real_t dimensions,
     const real_t *x, size_t x_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_3);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void orthoglide_ik_other_sizes(size_t n, const real_t dimensions,

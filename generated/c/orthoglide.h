@@ -27,7 +27,7 @@
  *   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
  *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
- *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
+ *   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -309,7 +309,9 @@ void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
  *   which the hand is turned.
  */

@@ -10,7 +10,7 @@
  *   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
  *   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
  *   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
- *   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
+ *   ik: 42 compare and select, 20 add, 2 atan2, 2 divide, 19 multiply, 2 sqrt
  *   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
  */
 #include "slider_crank.h"
@@ -779,7 +779,7 @@ CF_INLINE void slider_crank_ik_kernel(const int single, const real_t one,
     const real_t R_1 = cf_sqrt(t1);
     const real_t t2 = r + l;
     const real_t size = cf_abs(e) + cf_abs(x_2) + t2;
-    const real_t t3 = CLOSEDFORM_VANISHING * size;
+    const real_t t3 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
     const int t4 = (R_1 <= t3) | (r <= t3);
     const real_t t5 = t2 - R_1;
     const real_t t6 = r - l;
@@ -805,12 +805,13 @@ CF_INLINE void slider_crank_ik_kernel(const int single, const real_t one,
     const real_t radius_1 = cf_select(t4, CLOSEDFORM_C(1.0), R_1 * (t8 + t10));
     const real_t share_1 = r / cf_nonzero(single, radius_1);
     const real_t A = x_2 - cf_rounded(single, one, cosine_1 * share_1);
-    const real_t t21 = l * CLOSEDFORM_DETERMINED;
-    const int t22 = cf_abs(A) <= t21;
-    const real_t t23 = cf_status(single, invalid, unreachable, t4 | t22);
-    const real_t t24 = cf_rounded(single, one, cosine_1_minus * share_1);
-    const int t25 = cf_abs(x_2 - t24) <= t21;
-    const real_t t26 = cf_status(single, invalid, unreachable, t4 | t25);
+    const real_t t21 = cf_min(cf_min(cf_min(CLOSEDFORM_C(0.0), t5), t9), t7);
+    const real_t t22 = l * CLOSEDFORM_DETERMINED * (t3 - t21);
+    const int t23 = t3 * cf_abs(A) <= t22;
+    const real_t t24 = cf_status(single, invalid, unreachable, t4 | t23);
+    const real_t t25 = cf_rounded(single, one, cosine_1_minus * share_1);
+    const int t26 = t3 * cf_abs(x_2 - t25) <= t22;
+    const real_t t27 = cf_status(single, invalid, unreachable, t4 | t26);
     const real_t opposite[2] = { cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13), cf_select(t4, CLOSEDFORM_C(0.0), t12 - t13) };
     const real_t adjacent[2] = { cosine_1, cosine_1_minus };
     real_t angles[2];
@@ -822,8 +823,8 @@ CF_INLINE void slider_crank_ik_kernel(const int single, const real_t one,
     }
     q[0] = cf_wrap_cut(-angles[0]) + t20;
     q[1] = cf_wrap_cut(-angles[1]) + t20;
-    status[0] = t23;
-    status[1] = t26;
+    status[0] = t24;
+    status[1] = t27;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -10,8 +10,8 @@
  *   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
  *   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
  *   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
- *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
- *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
+ *   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
+ *   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
@@ -245,7 +245,9 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  */
 void spherical_five_bar_ik(const spherical_five_bar_params *params,
     const real_t x[3], real_t q[8], uint8_t status[4]);

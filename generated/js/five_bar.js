@@ -12,7 +12,7 @@
 //   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
 //   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
 //   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
-//   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+//   ik: 78 compare and select, 47 add, 4 atan2, 3 divide, 46 multiply, 4 sqrt
 //   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 
 /**
@@ -1221,22 +1221,22 @@ function _ik(v, o) {
     const A_22 = y + t36 * share_2;
     const A_12 = y + t15 * share_1;
     const A_21 = wu_2 - cosine_2 * share_2;
-    const t48 = _runtime.DETERMINED * (L3 * L4);
-    const t49 = t47 || Math.abs(A_11 * A_22 - A_12 * A_21) <= t48;
+    const t48 = Math.min(Math.min(Math.min(0.0, t8), t10), t6);
+    const t49 = Math.min(Math.min(Math.min(0.0, t27), t26), t23);
+    const t50 = _runtime.DETERMINED * (L3 * L4) * (t4 - (t48 + t49));
+    const t51 = t4 * Math.abs(A_11 * A_22 - A_12 * A_21) <= t50;
+    const t52 = invalid ? 3 : unreachable ? 1 : t47 || t51 ? 2 : 0;
     const A_22_plus_minus = y + t41 * share_2;
     const A_21_plus_minus = wu_2 - cosine_2_plus_minus * share_2;
     const Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus;
-    const t50 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_plus_minus) <= t48 ? 2 :
-        0;
+    const t53 = t47 || t4 * Math.abs(Delta_plus_minus) <= t50;
     const A_11_minus_plus = x - cosine_1_minus_plus * share_1;
     const A_12_minus_plus = y + t44 * share_1;
     const Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus;
-    const t51 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_plus) <= t48 ? 2 :
-        0;
+    const t54 = t47 || t4 * Math.abs(Delta_minus_plus) <= t50;
     const Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus *
         A_12_minus_plus;
-    const t52 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_minus) <= t48 ? 2 :
-        0;
+    const t55 = t47 || t4 * Math.abs(Delta_minus_minus) <= t50;
     o[0] = t29;
     o[1] = t40;
     o[2] = t29;
@@ -1245,10 +1245,10 @@ function _ik(v, o) {
     o[5] = t40;
     o[6] = t46;
     o[7] = t43;
-    o[8] = invalid ? 3 : unreachable ? 1 : t49 ? 2 : 0;
-    o[9] = t50;
-    o[10] = t51;
-    o[11] = t52;
+    o[8] = t52;
+    o[9] = invalid ? 3 : unreachable ? 1 : t53 ? 2 : 0;
+    o[10] = invalid ? 3 : unreachable ? 1 : t54 ? 2 : 0;
+    o[11] = invalid ? 3 : unreachable ? 1 : t55 ? 2 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -1280,7 +1280,9 @@ const _IK = _runtime.kernel({
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
- *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target is
+ *   just outside of the workspace, the length by which the answer misses it counts as a
+ *   rounding error too.
  *
  * @param {ArrayLike<number>} x 2 numbers. x, y in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -9,7 +9,7 @@
 //   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 //   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 //   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
-//   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
+//   ik: 44 compare and select, 25 add, 2 atan2, 2 divide, 28 multiply, 1 sincos, 2 sqrt
 //   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 
 /**
@@ -826,14 +826,15 @@ function _ik(v, o) {
     const t23 = -Math.atan2(t22, cosine_1_minus);
     const share_1 = L2 / (t4 ? 1.0 : R_1 * (t8 + t10));
     const A = t1 * (wv_1 + t14 * share_1) - wv_1 * (wu_1 - cosine_1 * share_1);
-    const t24 = _runtime.DETERMINED * (L3 * size);
-    const t25 = invalid ? 3 : unreachable ? 1 : t4 || Math.abs(A) <= t24 ? 2 : 0;
+    const t24 = Math.min(Math.min(Math.min(0.0, t7), t9), t5);
+    const t25 = _runtime.DETERMINED * (L3 * size) * (t3 - t24);
+    const t26 = invalid ? 3 : unreachable ? 1 : t4 || t3 * Math.abs(A) <= t25 ? 2 : 0;
     const A_minus = t1 * (wv_1 + t22 * share_1) - wv_1 * (wu_1 - cosine_1_minus * share_1);
-    const t26 = invalid ? 3 : unreachable ? 1 : t4 || Math.abs(A_minus) <= t24 ? 2 : 0;
+    const t27 = invalid ? 3 : unreachable ? 1 : t4 || t3 * Math.abs(A_minus) <= t25 ? 2 : 0;
     o[0] = (t17 <= -Math.PI ? Math.PI : t17) + t21;
     o[1] = (t23 <= -Math.PI ? Math.PI : t23) + t21;
-    o[2] = t25;
-    o[3] = t26;
+    o[2] = t26;
+    o[3] = t27;
 }
 
 const _IK = _runtime.kernel({

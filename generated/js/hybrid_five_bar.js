@@ -13,7 +13,7 @@
 //   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
 //   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
 //   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
-//   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
+//   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
 //   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 //   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 
@@ -1109,107 +1109,114 @@ function _ik(v, o) {
     const t10 = t9 - square_c;
     const t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13;
     const t12 = L1 - L2;
-    const t13 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * Math.abs(t12)));
-    const t14 = t12 * t12;
-    const t15 = square_c - t14;
-    const t16 = y - L0;
-    const square_d = r2 + t16 * t16;
-    const t17 = t9 - square_d;
-    const t18 = square_d - t14;
-    const t19 = -t8 <= t10 && -t13 <= t15 && -t8 <= t17 && -t13 <= t18;
-    const unreachable = !t19;
-    const t20 = invalid || unreachable ? NaN : 0;
-    const t21 = (t3 <= -Math.PI ? Math.PI : t3) + t20;
+    const t13 = Math.abs(t12);
+    const t14 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * t13));
+    const t15 = t12 * t12;
+    const t16 = square_c - t15;
+    const t17 = y - L0;
+    const square_d = r2 + t17 * t17;
+    const t18 = t9 - square_d;
+    const t19 = square_d - t15;
+    const t20 = -t8 <= t10 && -t14 <= t16 && -t8 <= t18 && -t14 <= t19;
+    const unreachable = !t20;
+    const t21 = invalid || unreachable ? NaN : 0;
+    const t22 = (t3 <= -Math.PI ? Math.PI : t3) + t21;
     const at_A = r + Math.abs(y) <= t2;
     const no_link_c = L1 * L2 <= t9 * _runtime.VANISHING;
-    const M_c = Math.max(t15, 0.0);
+    const M_c = Math.max(t16, 0.0);
     const N_c = Math.max(t10, 0.0);
     const ahead_c = no_link_c ? 1.0 : t1 * M_c + N_c * t12;
-    const t22 = ahead_c * r;
-    const t23 = Math.sqrt(N_c * M_c);
-    const beyond_c = no_link_c ? 0.0 : t7 * t23;
-    const t24 = y * beyond_c;
-    const t25 = y * ahead_c;
-    const t26 = r * beyond_c;
-    const t27 = at_A ? 0.0 : Math.atan2(t22 - t24, t25 + t26);
-    const t28 = (t27 <= -Math.PI ? Math.PI : t27) + t20;
-    const at_B = r + Math.abs(t16) <= t2;
-    const M_d = Math.max(t18, 0.0);
-    const N_d = Math.max(t17, 0.0);
+    const t23 = ahead_c * r;
+    const t24 = Math.sqrt(N_c * M_c);
+    const beyond_c = no_link_c ? 0.0 : t7 * t24;
+    const t25 = y * beyond_c;
+    const t26 = y * ahead_c;
+    const t27 = r * beyond_c;
+    const t28 = at_A ? 0.0 : Math.atan2(t23 - t25, t26 + t27);
+    const t29 = (t28 <= -Math.PI ? Math.PI : t28) + t21;
+    const at_B = r + Math.abs(t17) <= t2;
+    const M_d = Math.max(t19, 0.0);
+    const N_d = Math.max(t18, 0.0);
     const ahead_d = no_link_c ? 1.0 : t1 * M_d + t12 * N_d;
-    const t29 = ahead_d * r;
-    const t30 = Math.sqrt(N_d * M_d);
-    const beyond_d = no_link_c ? 0.0 : t7 * t30;
-    const t31 = t16 * beyond_d;
-    const t32 = t16 * ahead_d;
-    const t33 = r * beyond_d;
-    const t34 = at_B ? 0.0 : Math.atan2(t29 - t31, t32 + t33);
-    const t35 = (t34 <= -Math.PI ? Math.PI : t34) + t20;
-    const t36 = at_B ? 0.0 : Math.atan2(t29 + t31, t32 - t33);
-    const t37 = (t36 <= -Math.PI ? Math.PI : t36) + t20;
-    const t38 = at_A ? 0.0 : Math.atan2(t22 + t24, t25 - t26);
-    const t39 = (t38 <= -Math.PI ? Math.PI : t38) + t20;
-    const t40 = -(on_axis ? 0.0 : Math.atan2(z, x));
-    const t41 = (t40 <= -Math.PI ? Math.PI : t40) + t20;
-    const t42 = -t38;
-    const t43 = (t42 <= -Math.PI ? Math.PI : t42) + t20;
-    const t44 = -t36;
-    const t45 = (t44 <= -Math.PI ? Math.PI : t44) + t20;
-    const t46 = -t34;
-    const t47 = (t46 <= -Math.PI ? Math.PI : t46) + t20;
-    const t48 = -t27;
-    const t49 = (t48 <= -Math.PI ? Math.PI : t48) + t20;
-    const t50 = on_axis || at_A || at_B || L1 <= t1 * _runtime.VANISHING;
-    const t51 = t1 * t12;
-    const inner_c = square_c - t51;
-    const inner_d = square_d - t51;
-    const t52 = inner_c * inner_d;
-    const t53 = t23 * t30;
-    const t54 = L0 * r;
-    const t55 = (t52 + t53) * t54;
-    const t56 = r2 + y * t16;
-    const t57 = inner_d * t23;
-    const t58 = inner_c * t30;
-    const t59 = t56 * (t57 - t58);
-    const t60 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
-    const t61 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t55 - t59) <= t60 ? 2 : 0;
-    const t62 = t56 * (t57 + t58);
-    const t63 = (t52 - t53) * t54;
-    const t64 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t62 - t63) <= t60 ? 2 : 0;
-    const t65 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(-(t62 + t63)) <= t60 ? 2 : 0;
-    const t66 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t59 + t55) <= t60 ? 2 : 0;
-    o[0] = t21;
-    o[1] = t28;
-    o[2] = t35;
-    o[3] = t21;
-    o[4] = t28;
-    o[5] = t37;
-    o[6] = t21;
-    o[7] = t39;
-    o[8] = t35;
-    o[9] = t21;
-    o[10] = t39;
-    o[11] = t37;
-    o[12] = t41;
-    o[13] = t43;
-    o[14] = t45;
-    o[15] = t41;
-    o[16] = t43;
-    o[17] = t47;
-    o[18] = t41;
-    o[19] = t49;
-    o[20] = t45;
-    o[21] = t41;
-    o[22] = t49;
-    o[23] = t47;
-    o[24] = t61;
-    o[25] = t64;
-    o[26] = t65;
-    o[27] = t66;
-    o[28] = t66;
-    o[29] = t65;
-    o[30] = t64;
-    o[31] = t61;
+    const t30 = ahead_d * r;
+    const t31 = Math.sqrt(N_d * M_d);
+    const beyond_d = no_link_c ? 0.0 : t7 * t31;
+    const t32 = t17 * beyond_d;
+    const t33 = t17 * ahead_d;
+    const t34 = r * beyond_d;
+    const t35 = at_B ? 0.0 : Math.atan2(t30 - t32, t33 + t34);
+    const t36 = (t35 <= -Math.PI ? Math.PI : t35) + t21;
+    const t37 = at_B ? 0.0 : Math.atan2(t30 + t32, t33 - t34);
+    const t38 = (t37 <= -Math.PI ? Math.PI : t37) + t21;
+    const t39 = at_A ? 0.0 : Math.atan2(t23 + t25, t26 - t27);
+    const t40 = (t39 <= -Math.PI ? Math.PI : t39) + t21;
+    const t41 = -(on_axis ? 0.0 : Math.atan2(z, x));
+    const t42 = (t41 <= -Math.PI ? Math.PI : t41) + t21;
+    const t43 = -t39;
+    const t44 = (t43 <= -Math.PI ? Math.PI : t43) + t21;
+    const t45 = -t37;
+    const t46 = (t45 <= -Math.PI ? Math.PI : t45) + t21;
+    const t47 = -t35;
+    const t48 = (t47 <= -Math.PI ? Math.PI : t47) + t21;
+    const t49 = -t28;
+    const t50 = (t49 <= -Math.PI ? Math.PI : t49) + t21;
+    const t51 = on_axis || at_A || at_B || L1 <= t1 * _runtime.VANISHING;
+    const t52 = t1 * t12;
+    const inner_c = square_c - t52;
+    const inner_d = square_d - t52;
+    const t53 = inner_c * inner_d;
+    const t54 = t24 * t31;
+    const t55 = L0 * r;
+    const t56 = (t53 + t54) * t55;
+    const t57 = r2 + y * t17;
+    const t58 = inner_d * t24;
+    const t59 = inner_c * t31;
+    const t60 = t57 * (t58 - t59);
+    const t61 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
+    const t62 = Math.sqrt(square_c);
+    const t63 = Math.sqrt(square_d);
+    const t64 = Math.max(Math.max(0.0, t13 - t62), t62 - t1) + Math.max(Math.max(0.0, t13 -
+        t63), t63 - t1);
+    const t65 = t61 * (t2 + t64);
+    const t66 = invalid ? 3 : unreachable ? 1 : t51 || Math.abs(t56 - t60) * t2 <= t65 ? 2 : 0;
+    const t67 = t57 * (t58 + t59);
+    const t68 = (t53 - t54) * t55;
+    const t69 = invalid ? 3 : unreachable ? 1 : t51 || Math.abs(t67 - t68) * t2 <= t65 ? 2 : 0;
+    const t70 = invalid ? 3 : unreachable ? 1 : t51 || Math.abs(-(t67 + t68)) * t2 <= t65 ? 2 :
+        0;
+    const t71 = invalid ? 3 : unreachable ? 1 : t51 || Math.abs(t60 + t56) * t2 <= t65 ? 2 : 0;
+    o[0] = t22;
+    o[1] = t29;
+    o[2] = t36;
+    o[3] = t22;
+    o[4] = t29;
+    o[5] = t38;
+    o[6] = t22;
+    o[7] = t40;
+    o[8] = t36;
+    o[9] = t22;
+    o[10] = t40;
+    o[11] = t38;
+    o[12] = t42;
+    o[13] = t44;
+    o[14] = t46;
+    o[15] = t42;
+    o[16] = t44;
+    o[17] = t48;
+    o[18] = t42;
+    o[19] = t50;
+    o[20] = t46;
+    o[21] = t42;
+    o[22] = t50;
+    o[23] = t48;
+    o[24] = t66;
+    o[25] = t69;
+    o[26] = t70;
+    o[27] = t71;
+    o[28] = t71;
+    o[29] = t70;
+    o[30] = t69;
+    o[31] = t66;
 }
 
 const _IK = _runtime.kernel({
@@ -1228,8 +1235,8 @@ const _IK = _runtime.kernel({
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
         degrees: [],
-        least: 2.5849394142282115e-26,
-        most: 9.353610478917779e+49,
+        least: 1.0587911840678754e-22,
+        most: 5.575186299632656e+42,
     },
 });
 
@@ -1249,7 +1256,9 @@ const _IK = _runtime.kernel({
  *   L1 = 0.
  * - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
  *   less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
- *   the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+ *   the lengths. The length by which the answer misses a target just outside of the workspace
+ *   counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last
+ *   two entries.
  * - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
  *   the loop still closes.
  *

@@ -14,7 +14,7 @@
 //   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
 //   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
 //   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
-//   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
+//   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
 /**
@@ -1632,34 +1632,36 @@ function _ik(v, o) {
     const t18 = slide_2_plus_minus_plus + t13;
     const slide_1_minus_plus_plus = z + root_1;
     const t19 = slide_1_minus_plus_plus + t13;
+    const t20 = size * _runtime.VANISHING;
     const A_33 = z - slide_3;
-    const t20 = A_22 * A_33;
+    const t21 = A_22 * A_33;
     const A_23 = z - slide_2;
-    const t21 = A_32 * A_23;
-    const t22 = A_21 * A_33;
-    const t23 = A_21 * A_23;
-    const t24 = A_11 * (t20 - t21) - y * (t22 - t23);
-    const t25 = A_21 * A_32 - A_21 * A_22;
-    const t26 = (z - slide_1) * t25;
-    const t27 = _runtime.DETERMINED * (l * l * l);
-    const t28 = invalid ? 3 : unreachable ? 1 : Math.abs(t24 + t26) <= t27 ? 2 : 0;
+    const t22 = A_32 * A_23;
+    const t23 = A_21 * A_33;
+    const t24 = A_21 * A_23;
+    const t25 = A_11 * (t21 - t22) - y * (t23 - t24);
+    const t26 = A_21 * A_32 - A_21 * A_22;
+    const t27 = (z - slide_1) * t26;
+    const t28 = Math.max(0.0, -t1) + Math.max(0.0, -t8) + Math.max(0.0, -t10);
+    const t29 = _runtime.DETERMINED * (l * l * l) * (t20 + t28);
+    const t30 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t25 + t27) <= t29 ? 2 : 0;
     const A_33_plus_plus_minus = z - slide_3_plus_plus_minus;
-    const t29 = A_22 * A_33_plus_plus_minus;
-    const t30 = A_21 * A_33_plus_plus_minus;
-    const t31 = A_11 * (t21 - t29) - y * (t23 - t30);
-    const t32 = invalid ? 3 : unreachable ? 1 : Math.abs(t26 - t31) <= t27 ? 2 : 0;
+    const t31 = A_22 * A_33_plus_plus_minus;
+    const t32 = A_21 * A_33_plus_plus_minus;
+    const t33 = A_11 * (t22 - t31) - y * (t24 - t32);
+    const t34 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t27 - t33) <= t29 ? 2 : 0;
     const A_23_plus_minus_plus = z - slide_2_plus_minus_plus;
-    const t33 = A_32 * A_23_plus_minus_plus;
-    const t34 = A_21 * A_23_plus_minus_plus;
-    const t35 = A_11 * (t20 - t33) - y * (t22 - t34);
-    const t36 = invalid ? 3 : unreachable ? 1 : Math.abs(t26 + t35) <= t27 ? 2 : 0;
-    const t37 = A_11 * (t29 - t33) - y * (t30 - t34);
-    const t38 = invalid ? 3 : unreachable ? 1 : Math.abs(t26 + t37) <= t27 ? 2 : 0;
-    const t39 = (z - slide_1_minus_plus_plus) * t25;
-    const t40 = invalid ? 3 : unreachable ? 1 : Math.abs(t24 + t39) <= t27 ? 2 : 0;
-    const t41 = invalid ? 3 : unreachable ? 1 : Math.abs(t31 - t39) <= t27 ? 2 : 0;
-    const t42 = invalid ? 3 : unreachable ? 1 : Math.abs(t35 + t39) <= t27 ? 2 : 0;
-    const t43 = invalid ? 3 : unreachable ? 1 : Math.abs(t37 + t39) <= t27 ? 2 : 0;
+    const t35 = A_32 * A_23_plus_minus_plus;
+    const t36 = A_21 * A_23_plus_minus_plus;
+    const t37 = A_11 * (t21 - t35) - y * (t23 - t36);
+    const t38 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t27 + t37) <= t29 ? 2 : 0;
+    const t39 = A_11 * (t31 - t35) - y * (t32 - t36);
+    const t40 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t27 + t39) <= t29 ? 2 : 0;
+    const t41 = (z - slide_1_minus_plus_plus) * t26;
+    const t42 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t25 + t41) <= t29 ? 2 : 0;
+    const t43 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t33 - t41) <= t29 ? 2 : 0;
+    const t44 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t37 + t41) <= t29 ? 2 : 0;
+    const t45 = invalid ? 3 : unreachable ? 1 : t20 * Math.abs(t39 + t41) <= t29 ? 2 : 0;
     o[0] = t14;
     o[1] = t15;
     o[2] = t16;
@@ -1684,14 +1686,14 @@ function _ik(v, o) {
     o[21] = t19;
     o[22] = t18;
     o[23] = t17;
-    o[24] = t28;
-    o[25] = t32;
-    o[26] = t36;
-    o[27] = t38;
-    o[28] = t40;
-    o[29] = t41;
-    o[30] = t42;
-    o[31] = t43;
+    o[24] = t30;
+    o[25] = t34;
+    o[26] = t38;
+    o[27] = t40;
+    o[28] = t42;
+    o[29] = t43;
+    o[30] = t44;
+    o[31] = t45;
 }
 
 const _IK = _runtime.kernel({
@@ -1710,8 +1712,8 @@ const _IK = _runtime.kernel({
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
         degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [23, 1]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
     },
 });
 
@@ -1722,7 +1724,9 @@ const _IK = _runtime.kernel({
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
  *   which the hand is turned.
  *

@@ -26,7 +26,7 @@
 //   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
 //   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 //     sqrt
-//   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
+//   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
 //   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 
 /**
@@ -2011,94 +2011,96 @@ function _ik(v, o) {
     const slide_1 = x - root_1;
     const t5 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
     const invalid = !(Number.isFinite(L) && 0.0 <= L && t5);
-    const t6 = (L + Math.abs(x) + Math.abs(y) + Math.abs(z)) * 0.5;
-    const t7 = -(_runtime.FEASIBILITY * t6);
-    const t8 = x * x;
-    const aside_2 = Math.sqrt(t2 + t8);
-    const t9 = L - aside_2;
-    const t10 = L + aside_2;
-    const t11 = t7 <= t3 && t7 <= t4 && t7 <= t9 && t7 <= t10;
-    const aside_3 = Math.sqrt(t1 + t8);
-    const t12 = L - aside_3;
-    const t13 = L + aside_3;
-    const unreachable = !(t11 && t7 <= t12 && t7 <= t13);
-    const t14 = invalid || unreachable ? NaN : 0;
-    const t15 = slide_1 + t14;
-    const root_2 = Math.sqrt(Math.max(t9, 0.0) * Math.max(t10, 0.0));
+    const size = L + Math.abs(x) + Math.abs(y) + Math.abs(z);
+    const t6 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t7 = x * x;
+    const aside_2 = Math.sqrt(t2 + t7);
+    const t8 = L - aside_2;
+    const t9 = L + aside_2;
+    const aside_3 = Math.sqrt(t1 + t7);
+    const t10 = L - aside_3;
+    const t11 = t6 <= t3 && t6 <= t4 && t6 <= t8 && t6 <= t9 && t6 <= t10;
+    const t12 = L + aside_3;
+    const unreachable = !(t11 && t6 <= t12);
+    const t13 = invalid || unreachable ? NaN : 0;
+    const t14 = slide_1 + t13;
+    const root_2 = Math.sqrt(Math.max(t8, 0.0) * Math.max(t9, 0.0));
     const slide_2 = y - root_2;
-    const t16 = slide_2 + t14;
-    const root_3 = Math.sqrt(Math.max(t12, 0.0) * Math.max(t13, 0.0));
+    const t15 = slide_2 + t13;
+    const root_3 = Math.sqrt(Math.max(t10, 0.0) * Math.max(t12, 0.0));
     const slide_3 = z - root_3;
-    const t17 = slide_3 + t14;
+    const t16 = slide_3 + t13;
     const slide_3_plus_plus_minus = z + root_3;
-    const t18 = slide_3_plus_plus_minus + t14;
+    const t17 = slide_3_plus_plus_minus + t13;
     const slide_2_plus_minus_plus = y + root_2;
-    const t19 = slide_2_plus_minus_plus + t14;
+    const t18 = slide_2_plus_minus_plus + t13;
     const slide_1_minus_plus_plus = x + root_1;
-    const t20 = slide_1_minus_plus_plus + t14;
+    const t19 = slide_1_minus_plus_plus + t13;
+    const t20 = size * _runtime.VANISHING;
     const A_11 = x - slide_1;
     const t21 = slide_2 * slide_3;
     const t22 = z * slide_1;
     const t23 = slide_2 * t22;
     const t24 = y * slide_1;
     const t25 = slide_3 * t24;
-    const t26 = _runtime.DETERMINED * (L * L * L);
-    const t27 = invalid ? 3 : unreachable ? 1 : Math.abs(A_11 * t21 + t23 + t25) <= t26 ? 2 : 0;
-    const t28 = slide_2 * slide_3_plus_plus_minus;
-    const t29 = slide_3_plus_plus_minus * t24;
-    const t30 = invalid ? 3 : unreachable ? 1 : Math.abs(t23 + A_11 * t28 + t29) <= t26 ? 2 : 0;
-    const t31 = slide_3 * slide_2_plus_minus_plus;
-    const t32 = slide_2_plus_minus_plus * t22;
-    const t33 = invalid ? 3 : unreachable ? 1 : Math.abs(t25 + A_11 * t31 + t32) <= t26 ? 2 : 0;
-    const t34 = slide_3_plus_plus_minus * slide_2_plus_minus_plus;
-    const t35 = invalid ? 3 : unreachable ? 1 : Math.abs(t29 + t32 + A_11 * t34) <= t26 ? 2 : 0;
+    const t26 = Math.max(0.0, -t3) + Math.max(0.0, -t8) + Math.max(0.0, -t10);
+    const t27 = _runtime.DETERMINED * (L * L * L) * (t20 + t26);
+    const t28 = t20 * Math.abs(A_11 * t21 + t23 + t25) <= t27;
+    const t29 = slide_2 * slide_3_plus_plus_minus;
+    const t30 = slide_3_plus_plus_minus * t24;
+    const t31 = t20 * Math.abs(t23 + A_11 * t29 + t30) <= t27;
+    const t32 = slide_3 * slide_2_plus_minus_plus;
+    const t33 = slide_2_plus_minus_plus * t22;
+    const t34 = t20 * Math.abs(t25 + A_11 * t32 + t33) <= t27;
+    const t35 = slide_3_plus_plus_minus * slide_2_plus_minus_plus;
+    const t36 = t20 * Math.abs(t30 + t33 + A_11 * t35) <= t27;
     const A_11_minus_plus_plus = x - slide_1_minus_plus_plus;
-    const t36 = z * slide_1_minus_plus_plus;
-    const t37 = slide_2 * t36;
-    const t38 = y * slide_1_minus_plus_plus;
-    const t39 = slide_3 * t38;
-    const t40 = Math.abs(A_11_minus_plus_plus * t21 + t37 + t39);
-    const t41 = invalid ? 3 : unreachable ? 1 : t40 <= t26 ? 2 : 0;
-    const t42 = slide_3_plus_plus_minus * t38;
-    const t43 = Math.abs(t37 + A_11_minus_plus_plus * t28 + t42);
-    const t44 = invalid ? 3 : unreachable ? 1 : t43 <= t26 ? 2 : 0;
-    const t45 = slide_2_plus_minus_plus * t36;
-    const t46 = Math.abs(t39 + A_11_minus_plus_plus * t31 + t45);
-    const t47 = invalid ? 3 : unreachable ? 1 : t46 <= t26 ? 2 : 0;
-    const t48 = Math.abs(t42 + t45 + A_11_minus_plus_plus * t34);
-    const t49 = invalid ? 3 : unreachable ? 1 : t48 <= t26 ? 2 : 0;
-    o[0] = t15;
-    o[1] = t16;
-    o[2] = t17;
-    o[3] = t15;
-    o[4] = t16;
-    o[5] = t18;
-    o[6] = t15;
-    o[7] = t19;
-    o[8] = t17;
-    o[9] = t15;
-    o[10] = t19;
-    o[11] = t18;
-    o[12] = t20;
-    o[13] = t16;
-    o[14] = t17;
-    o[15] = t20;
-    o[16] = t16;
-    o[17] = t18;
-    o[18] = t20;
-    o[19] = t19;
-    o[20] = t17;
-    o[21] = t20;
-    o[22] = t19;
-    o[23] = t18;
-    o[24] = t27;
-    o[25] = t30;
-    o[26] = t33;
-    o[27] = t35;
-    o[28] = t41;
-    o[29] = t44;
-    o[30] = t47;
-    o[31] = t49;
+    const t37 = z * slide_1_minus_plus_plus;
+    const t38 = slide_2 * t37;
+    const t39 = y * slide_1_minus_plus_plus;
+    const t40 = slide_3 * t39;
+    const t41 = Math.abs(A_11_minus_plus_plus * t21 + t38 + t40);
+    const t42 = invalid ? 3 : unreachable ? 1 : t20 * t41 <= t27 ? 2 : 0;
+    const t43 = slide_3_plus_plus_minus * t39;
+    const t44 = Math.abs(t38 + A_11_minus_plus_plus * t29 + t43);
+    const t45 = invalid ? 3 : unreachable ? 1 : t20 * t44 <= t27 ? 2 : 0;
+    const t46 = slide_2_plus_minus_plus * t37;
+    const t47 = Math.abs(t40 + A_11_minus_plus_plus * t32 + t46);
+    const t48 = invalid ? 3 : unreachable ? 1 : t20 * t47 <= t27 ? 2 : 0;
+    const t49 = Math.abs(t43 + t46 + A_11_minus_plus_plus * t35);
+    const t50 = invalid ? 3 : unreachable ? 1 : t20 * t49 <= t27 ? 2 : 0;
+    o[0] = t14;
+    o[1] = t15;
+    o[2] = t16;
+    o[3] = t14;
+    o[4] = t15;
+    o[5] = t17;
+    o[6] = t14;
+    o[7] = t18;
+    o[8] = t16;
+    o[9] = t14;
+    o[10] = t18;
+    o[11] = t17;
+    o[12] = t19;
+    o[13] = t15;
+    o[14] = t16;
+    o[15] = t19;
+    o[16] = t15;
+    o[17] = t17;
+    o[18] = t19;
+    o[19] = t18;
+    o[20] = t16;
+    o[21] = t19;
+    o[22] = t18;
+    o[23] = t17;
+    o[24] = invalid ? 3 : unreachable ? 1 : t28 ? 2 : 0;
+    o[25] = invalid ? 3 : unreachable ? 1 : t31 ? 2 : 0;
+    o[26] = invalid ? 3 : unreachable ? 1 : t34 ? 2 : 0;
+    o[27] = invalid ? 3 : unreachable ? 1 : t36 ? 2 : 0;
+    o[28] = t42;
+    o[29] = t45;
+    o[30] = t48;
+    o[31] = t50;
 }
 
 const _IK = _runtime.kernel({
@@ -2117,8 +2119,8 @@ const _IK = _runtime.kernel({
     size: {
         lengths: [0, 1, 2, 3],
         degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [23, 1]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
     },
 });
 
@@ -2129,7 +2131,9 @@ const _IK = _runtime.kernel({
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
  *   which the hand is turned.
  *

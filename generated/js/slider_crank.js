@@ -9,7 +9,7 @@
 //   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 //   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 //   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
-//   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
+//   ik: 42 compare and select, 20 add, 2 atan2, 2 divide, 19 multiply, 2 sqrt
 //   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
 
 /**
@@ -663,14 +663,15 @@ function _ik(v, o) {
     const t20 = Math.atan2(t3 ? 0.0 : t11 - t12, cosine_1_minus);
     const t21 = -t20;
     const share_1 = r / (t3 ? 1.0 : R_1 * (t7 + t9));
-    const t22 = l * _runtime.DETERMINED;
-    const t23 = t3 || Math.abs(x - cosine_1 * share_1) <= t22;
-    const t24 = Math.abs(x - cosine_1_minus * share_1) <= t22;
-    const t25 = invalid ? 3 : unreachable ? 1 : t3 || t24 ? 2 : 0;
+    const t22 = Math.min(Math.min(Math.min(0.0, t4), t8), t6);
+    const t23 = l * _runtime.DETERMINED * (t2 - t22);
+    const t24 = t3 || t2 * Math.abs(x - cosine_1 * share_1) <= t23;
+    const t25 = t2 * Math.abs(x - cosine_1_minus * share_1) <= t23;
+    const t26 = invalid ? 3 : unreachable ? 1 : t3 || t25 ? 2 : 0;
     o[0] = (t15 <= -Math.PI ? Math.PI : t15) + t19;
     o[1] = (t21 <= -Math.PI ? Math.PI : t21) + t19;
-    o[2] = invalid ? 3 : unreachable ? 1 : t23 ? 2 : 0;
-    o[3] = t25;
+    o[2] = invalid ? 3 : unreachable ? 1 : t24 ? 2 : 0;
+    o[3] = t26;
 }
 
 const _IK = _runtime.kernel({

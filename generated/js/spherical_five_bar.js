@@ -9,8 +9,8 @@
 //   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
 //   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
 //   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
-//   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
-//   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
+//   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
+//   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 
 /**
  * Spherical five-bar linkage.
@@ -1592,106 +1592,111 @@ function _ik(v, o) {
     const t25 = t24 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t26 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
     const invalid = !(t25 && t26);
-    const t27 = r * 0.5;
-    const t28 = _runtime.FEASIBILITY * t27;
-    const t29 = Math.abs(r - strut_0) <= t28 && -t28 <= t7 && -t28 <= t8;
-    const t30 = r * 2.384185791015625e-07;
-    const t31 = _runtime.FEASIBILITY * (t27 + r * r_1 / (2.0 * (t30 + fore_1)));
-    const t32 = t29 && -t31 <= t10 && -t31 <= t14 && -t31 <= t11;
-    const t33 = Math.abs(s_beta2_half);
-    const r_2 = t33 * t5;
-    const t34 = r * c_alpha2;
-    const t35 = c_gamma * t34;
-    const t36 = px_0 - t35;
-    const t37 = s_gamma * t34;
-    const t38 = py_0 - t37;
-    const aside_2 = c_gamma * t36 + s_gamma * t38;
-    const t39 = r_2 - aside_2;
-    const t40 = r_2 + aside_2;
-    const fore_2 = Math.sqrt(Math.max(t39, 0.0) * Math.max(t40, 0.0));
-    const t41 = _runtime.FEASIBILITY * (t27 + r * r_2 / (2.0 * (t30 + fore_2)));
+    const t27 = _runtime.FEASIBILITY * (r * 0.5);
+    const t28 = Math.abs(r - strut_0) <= t27 && -t27 <= t7 && -t27 <= t8;
+    const t29 = r * 2.384185791015625e-07;
+    const lost_1 = Math.max(1.0, r_1 / (t29 + fore_1));
+    const t30 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5));
+    const t31 = t28 && t30 <= t10 && t30 <= t14 && t30 <= t11;
+    const t32 = Math.abs(s_beta2_half);
+    const r_2 = t32 * t5;
+    const t33 = r * c_alpha2;
+    const t34 = c_gamma * t33;
+    const t35 = px_0 - t34;
+    const t36 = s_gamma * t33;
+    const t37 = py_0 - t36;
+    const aside_2 = c_gamma * t35 + s_gamma * t37;
+    const t38 = r_2 - aside_2;
+    const t39 = r_2 + aside_2;
+    const fore_2 = Math.sqrt(Math.max(t38, 0.0) * Math.max(t39, 0.0));
+    const lost_2 = Math.max(1.0, r_2 / (t29 + fore_2));
+    const t40 = -(_runtime.FEASIBILITY * (r * lost_2 * 0.5));
     const l_2 = r * Math.abs(s_alpha2);
-    const t42 = l_2 + fore_2;
-    const t43 = s_gamma * t36 - c_gamma * t38;
-    const R_2 = Math.sqrt(t2 + t43 * t43);
-    const t44 = t42 - R_2;
-    const t45 = t32 && -t28 <= t39 && -t28 <= t40 && -t41 <= t44;
-    const t46 = l_2 - fore_2;
-    const t47 = R_2 + t46;
-    const t48 = R_2 - t46;
-    const unreachable = !(t45 && -t41 <= t47 && -t41 <= t48);
-    const t49 = invalid || unreachable ? NaN : 0;
-    const t50 = (t22 <= -Math.PI ? Math.PI : t22) + t49;
+    const t41 = l_2 + fore_2;
+    const t42 = s_gamma * t35 - c_gamma * t37;
+    const R_2 = Math.sqrt(t2 + t42 * t42);
+    const t43 = t41 - R_2;
+    const t44 = t31 && -t27 <= t38 && -t27 <= t39 && t40 <= t43;
+    const t45 = l_2 - fore_2;
+    const t46 = R_2 + t45;
+    const t47 = R_2 - t45;
+    const unreachable = !(t44 && t40 <= t46 && t40 <= t47);
+    const t48 = invalid || unreachable ? NaN : 0;
+    const t49 = (t22 <= -Math.PI ? Math.PI : t22) + t48;
     const met_2 = R_2 <= t1;
     const no_crank_2 = l_2 <= t1;
-    const t51 = met_2 || no_crank_2;
-    const t52 = Math.max(t44, 0.0) * Math.max(t48, 0.0);
-    const t53 = (R_2 + t42) * Math.max(t47, 0.0);
-    const t54 = t52 - t53;
-    const t55 = pz_0 * t54;
-    const beyond_2 = 2.0 * Math.sqrt(t52 * t53);
-    const t56 = t43 * beyond_2;
-    const t57 = t51 ? 0.0 : t55 - t56;
-    const t58 = t43 * t54;
-    const t59 = pz_0 * beyond_2;
-    const cosine_2 = t51 ? 1.0 : t58 + t59;
-    const t60 = -Math.atan2(t57, cosine_2);
-    const t61 = (t60 <= -Math.PI ? Math.PI : t60) + t49;
-    const t62 = t51 ? 0.0 : t55 + t56;
-    const cosine_2_plus_minus = t51 ? 1.0 : t58 - t59;
-    const t63 = -Math.atan2(t62, cosine_2_plus_minus);
-    const t64 = (t63 <= -Math.PI ? Math.PI : t63) + t49;
-    const t65 = t3 ? 0.0 : t17 - t18;
+    const t50 = met_2 || no_crank_2;
+    const t51 = Math.max(t43, 0.0) * Math.max(t47, 0.0);
+    const t52 = (R_2 + t41) * Math.max(t46, 0.0);
+    const t53 = t51 - t52;
+    const t54 = pz_0 * t53;
+    const beyond_2 = 2.0 * Math.sqrt(t51 * t52);
+    const t55 = t42 * beyond_2;
+    const t56 = t50 ? 0.0 : t54 - t55;
+    const t57 = t42 * t53;
+    const t58 = pz_0 * beyond_2;
+    const cosine_2 = t50 ? 1.0 : t57 + t58;
+    const t59 = -Math.atan2(t56, cosine_2);
+    const t60 = (t59 <= -Math.PI ? Math.PI : t59) + t48;
+    const t61 = t50 ? 0.0 : t54 + t55;
+    const cosine_2_plus_minus = t50 ? 1.0 : t57 - t58;
+    const t62 = -Math.atan2(t61, cosine_2_plus_minus);
+    const t63 = (t62 <= -Math.PI ? Math.PI : t62) + t48;
+    const t64 = t3 ? 0.0 : t17 - t18;
     const cosine_1_minus_plus = t3 ? 1.0 : -(t21 + t20);
-    const t66 = -Math.atan2(t65, cosine_1_minus_plus);
-    const t67 = (t66 <= -Math.PI ? Math.PI : t66) + t49;
-    const t68 = t3 || met_2 || no_crank_2;
+    const t65 = -Math.atan2(t64, cosine_1_minus_plus);
+    const t66 = (t65 <= -Math.PI ? Math.PI : t65) + t48;
+    const t67 = t3 || met_2 || no_crank_2;
     const share_1 = l_1 / (t3 ? 1.0 : R_1 * (t12 + t15));
-    const t69 = cosine_1 * share_1;
-    const share_2 = l_2 / (t51 ? 1.0 : R_2 * (t52 + t53));
-    const A_23 = t57 * share_2;
+    const t68 = cosine_1 * share_1;
+    const share_2 = l_2 / (t50 ? 1.0 : R_2 * (t51 + t52));
+    const A_23 = t56 * share_2;
     const A_13 = t19 * share_1;
-    const t70 = c_gamma * share_2;
-    const t71 = t37 + cosine_2 * t70;
-    const t72 = t6 * A_23;
-    const t73 = s_gamma * share_2;
-    const t74 = t35 - cosine_2 * t73;
-    const t75 = px_0 * (t69 * A_23 - A_13 * t71) - py_0 * (t72 - A_13 * t74);
-    const t76 = t6 * t71;
-    const t77 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r);
-    const t78 = _runtime.DETERMINED * t77;
-    const t79 = Math.abs(t75 - pz_0 * (t76 - t69 * t74)) <= t78;
-    const t80 = invalid ? 3 : unreachable ? 1 : t68 || t79 ? 2 : 0;
-    const A_23_plus_minus = t62 * share_2;
-    const t81 = t37 + cosine_2_plus_minus * t70;
-    const t82 = t6 * A_23_plus_minus;
-    const t83 = t35 - cosine_2_plus_minus * t73;
-    const t84 = px_0 * (t69 * A_23_plus_minus - A_13 * t81) - py_0 * (t82 - A_13 * t83);
-    const t85 = t6 * t81;
-    const t86 = Math.abs(t84 - pz_0 * (t85 - t69 * t83)) <= t78;
-    const t87 = invalid ? 3 : unreachable ? 1 : t68 || t86 ? 2 : 0;
-    const t88 = cosine_1_minus_plus * share_1;
-    const A_13_minus_plus = t65 * share_1;
-    const t89 = px_0 * (A_23 * t88 - t71 * A_13_minus_plus) - py_0 * (t72 - t74 *
+    const t69 = c_gamma * share_2;
+    const t70 = t36 + cosine_2 * t69;
+    const t71 = t6 * A_23;
+    const t72 = s_gamma * share_2;
+    const t73 = t34 - cosine_2 * t72;
+    const t74 = px_0 * (t68 * A_23 - A_13 * t70) - py_0 * (t71 - A_13 * t73);
+    const t75 = t6 * t70;
+    const t76 = t1 * Math.abs(t74 - pz_0 * (t75 - t68 * t73));
+    const t77 = t4 * t32 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r);
+    const t78 = Math.min(Math.min(Math.min(0.0, t10), t14), t11);
+    const missed_1 = Math.max(0.0, Math.abs(aside_1) - r_1) - t78 / lost_1;
+    const t79 = Math.min(Math.min(Math.min(0.0, t43), t46), t47);
+    const missed_2 = Math.max(0.0, Math.abs(aside_2) - r_2) - t79 / lost_2;
+    const t80 = _runtime.DETERMINED * t77 * (t1 + (missed_1 + missed_2));
+    const t81 = invalid ? 3 : unreachable ? 1 : t67 || t76 <= t80 ? 2 : 0;
+    const A_23_plus_minus = t61 * share_2;
+    const t82 = t36 + cosine_2_plus_minus * t69;
+    const t83 = t6 * A_23_plus_minus;
+    const t84 = t34 - cosine_2_plus_minus * t72;
+    const t85 = px_0 * (t68 * A_23_plus_minus - A_13 * t82) - py_0 * (t83 - A_13 * t84);
+    const t86 = t6 * t82;
+    const t87 = t1 * Math.abs(t85 - pz_0 * (t86 - t68 * t84));
+    const t88 = invalid ? 3 : unreachable ? 1 : t67 || t87 <= t80 ? 2 : 0;
+    const t89 = cosine_1_minus_plus * share_1;
+    const A_13_minus_plus = t64 * share_1;
+    const t90 = px_0 * (A_23 * t89 - t70 * A_13_minus_plus) - py_0 * (t71 - t73 *
         A_13_minus_plus);
-    const t90 = Math.abs(t89 - pz_0 * (t76 - t74 * t88)) <= t78;
-    const t91 = invalid ? 3 : unreachable ? 1 : t68 || t90 ? 2 : 0;
-    const t92 = A_23_plus_minus * t88 - t81 * A_13_minus_plus;
-    const t93 = px_0 * t92 - py_0 * (t82 - t83 * A_13_minus_plus);
-    const t94 = Math.abs(t93 - pz_0 * (t85 - t83 * t88)) <= t78;
-    const t95 = invalid ? 3 : unreachable ? 1 : t68 || t94 ? 2 : 0;
-    o[0] = t50;
-    o[1] = t61;
-    o[2] = t50;
-    o[3] = t64;
-    o[4] = t67;
-    o[5] = t61;
-    o[6] = t67;
-    o[7] = t64;
-    o[8] = t80;
-    o[9] = t87;
-    o[10] = t91;
-    o[11] = t95;
+    const t91 = t1 * Math.abs(t90 - pz_0 * (t75 - t73 * t89));
+    const t92 = invalid ? 3 : unreachable ? 1 : t67 || t91 <= t80 ? 2 : 0;
+    const t93 = A_23_plus_minus * t89 - t82 * A_13_minus_plus;
+    const t94 = px_0 * t93 - py_0 * (t83 - t84 * A_13_minus_plus);
+    const t95 = t1 * Math.abs(t94 - pz_0 * (t86 - t84 * t89));
+    const t96 = invalid ? 3 : unreachable ? 1 : t67 || t95 <= t80 ? 2 : 0;
+    o[0] = t49;
+    o[1] = t60;
+    o[2] = t49;
+    o[3] = t63;
+    o[4] = t66;
+    o[5] = t60;
+    o[6] = t66;
+    o[7] = t63;
+    o[8] = t81;
+    o[9] = t88;
+    o[10] = t92;
+    o[11] = t96;
 }
 
 const _IK = _runtime.kernel({
@@ -1723,7 +1728,9 @@ const _IK = _runtime.kernel({
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+ *   target is just outside of the workspace, the length by which the answer misses it counts as
+ *   a rounding error too.
  *
  * @param {ArrayLike<number>} x 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1783,43 +1790,43 @@ function _workspace_contains(v, o) {
     const t3 = t2 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t4 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
     const strut_0 = Math.sqrt(x * x + y * y + z * z);
-    const t5 = r * 0.5;
-    const t6 = _runtime.FEASIBILITY * t5;
-    const t7 = r * 2.0;
-    const r_1 = Math.abs(s_beta1_half) * t7;
+    const t5 = _runtime.FEASIBILITY * (r * 0.5);
+    const t6 = r * 2.0;
+    const r_1 = Math.abs(s_beta1_half) * t6;
     const share_0 = strut_0 <= r * _runtime.VANISHING ? 1.0 : r / strut_0;
     const px_0 = x * share_0;
     const aside_1 = px_0 - r * c_alpha1;
-    const t8 = r_1 - aside_1;
-    const t9 = aside_1 + r_1;
-    const t10 = Math.abs(r - strut_0) <= t6 && -t6 <= t8 && -t6 <= t9;
-    const t11 = r * 2.384185791015625e-07;
-    const fore_1 = Math.sqrt(Math.max(t8, 0.0) * Math.max(t9, 0.0));
-    const t12 = _runtime.FEASIBILITY * (t5 + r * r_1 / (2.0 * (t11 + fore_1)));
+    const t7 = r_1 - aside_1;
+    const t8 = aside_1 + r_1;
+    const t9 = Math.abs(r - strut_0) <= t5 && -t5 <= t7 && -t5 <= t8;
+    const t10 = r * 2.384185791015625e-07;
+    const fore_1 = Math.sqrt(Math.max(t7, 0.0) * Math.max(t8, 0.0));
+    const t11 = r * Math.max(1.0, r_1 / (t10 + fore_1)) * 0.5;
+    const t12 = -(_runtime.FEASIBILITY * t11);
     const l_1 = r * Math.abs(s_alpha1);
     const py_0 = y * share_0;
     const pz_0 = z * share_0;
     const t13 = pz_0 * pz_0;
     const R_1 = Math.sqrt(py_0 * py_0 + t13);
     const t14 = l_1 - R_1;
-    const t15 = t10 && -t12 <= fore_1 + t14 && -t12 <= l_1 + R_1 - fore_1;
-    const r_2 = Math.abs(s_beta2_half) * t7;
+    const t15 = t9 && t12 <= fore_1 + t14 && t12 <= l_1 + R_1 - fore_1;
+    const r_2 = Math.abs(s_beta2_half) * t6;
     const t16 = r * c_alpha2;
     const t17 = px_0 - c_gamma * t16;
     const t18 = py_0 - s_gamma * t16;
     const aside_2 = c_gamma * t17 + s_gamma * t18;
     const t19 = r_2 - aside_2;
     const t20 = r_2 + aside_2;
-    const t21 = t15 && -t12 <= fore_1 - t14 && -t6 <= t19 && -t6 <= t20;
+    const t21 = t15 && t12 <= fore_1 - t14 && -t5 <= t19 && -t5 <= t20;
     const fore_2 = Math.sqrt(Math.max(t19, 0.0) * Math.max(t20, 0.0));
-    const t22 = _runtime.FEASIBILITY * (t5 + r * r_2 / (2.0 * (t11 + fore_2)));
+    const t22 = r * Math.max(1.0, r_2 / (t10 + fore_2)) * 0.5;
+    const t23 = -(_runtime.FEASIBILITY * t22);
     const l_2 = r * Math.abs(s_alpha2);
-    const t23 = s_gamma * t17 - c_gamma * t18;
-    const R_2 = Math.sqrt(t13 + t23 * t23);
-    const t24 = l_2 - fore_2;
-    const t25 = t21 && -t22 <= l_2 + fore_2 - R_2 && -t22 <= R_2 + t24;
-    const t26 = !(!(t3 && t4) || !(t25 && -t22 <= R_2 - t24));
-    o[0] = (t26) ? 1 : 0;
+    const t24 = s_gamma * t17 - c_gamma * t18;
+    const R_2 = Math.sqrt(t13 + t24 * t24);
+    const t25 = l_2 - fore_2;
+    const t26 = t21 && t23 <= l_2 + fore_2 - R_2 && t23 <= R_2 + t25;
+    o[0] = (!(!(t3 && t4) || !(t26 && t23 <= R_2 - t25))) ? 1 : 0;
 }
 
 const _WORKSPACE_CONTAINS = _runtime.kernel({

@@ -11,8 +11,8 @@
 #   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
 #   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
 #   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
-#   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
-#   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
+#   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -2142,7 +2142,6 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = c_alpha1 * t2 - s_alpha1 * t3
     t9 = l + t8
     t10 = l - t8
-    del t8
     fore_1 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
     t11 = t7 + fore_1
     t12 = fore_1 - t7
@@ -2169,256 +2168,265 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t25 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     invalid = np.logical_not(t24 & t25)
     del t24, t25
-    t26 = size * 0.5
-    t27 = -(_runtime.FEASIBILITY * t26)
-    t28 = l * size
-    t29 = size * 2.384185791015625e-07
-    del size
-    t30 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_1)))
+    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t27 = size * 2.384185791015625e-07
+    lost_1 = np.maximum(1.0, l / (t27 + fore_1))
     del fore_1
-    t31 = (t27 <= t9) & (t27 <= t10) & (-t30 <= t11) & (-t30 <= t15)
-    del t10, t11, t15, t9
-    t32 = f * s_alpha2 - (y + e * s_alpha2)
-    t33 = f * c_alpha2 - (x + e * c_alpha2)
-    t34 = c_alpha2 * t32 - s_alpha2 * t33
-    t35 = l + t34
-    t36 = l - t34
-    del t34
-    t37 = t31 & (-t30 <= t12) & (t27 <= t35) & (t27 <= t36)
-    del t12, t30, t31
-    fore_2 = np.sqrt(np.maximum(t35, 0.0) * np.maximum(t36, 0.0))
+    t28 = -(_runtime.FEASIBILITY * (size * lost_1 * 0.5))
+    t29 = (t26 <= t9) & (t26 <= t10) & (t28 <= t11) & (t28 <= t15)
+    del t10, t9
+    t30 = f * s_alpha2 - (y + e * s_alpha2)
+    t31 = f * c_alpha2 - (x + e * c_alpha2)
+    t32 = c_alpha2 * t30 - s_alpha2 * t31
+    t33 = l + t32
+    t34 = l - t32
+    t35 = t29 & (t28 <= t12) & (t26 <= t33) & (t26 <= t34)
+    del t28, t29
+    fore_2 = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t34, 0.0))
+    del t33, t34
+    lost_2 = np.maximum(1.0, l / (t27 + fore_2))
+    t36 = -(_runtime.FEASIBILITY * (size * lost_2 * 0.5))
+    t37 = s_alpha2 * t30 + c_alpha2 * t31
+    R_2 = np.sqrt(t1 + t37 * t37)
+    t38 = L - R_2
+    t39 = fore_2 + t38
+    t40 = L + R_2
+    t41 = t40 - fore_2
+    t42 = fore_2 - t38
+    del t38
+    t43 = t35 & (t36 <= t39) & (t36 <= t41) & (t36 <= t42)
     del t35, t36
-    t38 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_2)))
-    t39 = s_alpha2 * t32 + c_alpha2 * t33
-    R_2 = np.sqrt(t1 + t39 * t39)
-    t40 = L - R_2
-    t41 = fore_2 + t40
-    t42 = L + R_2
-    t43 = t42 - fore_2
-    t44 = fore_2 - t40
-    del t40
-    t45 = t37 & (-t38 <= t41) & (-t38 <= t43) & (-t38 <= t44)
-    del t37, t38
-    t46 = f * s_alpha3 - (y + e * s_alpha3)
-    t47 = f * c_alpha3 - (x + e * c_alpha3)
-    t48 = c_alpha3 * t46 - s_alpha3 * t47
-    t49 = l + t48
-    t50 = l - t48
-    del t48
-    fore_3 = np.sqrt(np.maximum(t49, 0.0) * np.maximum(t50, 0.0))
-    t51 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_3)))
-    del t26, t28, t29
-    t52 = s_alpha3 * t46 + c_alpha3 * t47
-    R_3 = np.sqrt(t1 + t52 * t52)
+    t44 = f * s_alpha3 - (y + e * s_alpha3)
+    t45 = f * c_alpha3 - (x + e * c_alpha3)
+    t46 = c_alpha3 * t44 - s_alpha3 * t45
+    t47 = l + t46
+    t48 = l - t46
+    fore_3 = np.sqrt(np.maximum(t47, 0.0) * np.maximum(t48, 0.0))
+    lost_3 = np.maximum(1.0, l / (t27 + fore_3))
+    del t27
+    t49 = -(_runtime.FEASIBILITY * (size * lost_3 * 0.5))
+    del size
+    t50 = s_alpha3 * t44 + c_alpha3 * t45
+    R_3 = np.sqrt(t1 + t50 * t50)
     del t1
-    t53 = L - R_3
-    t54 = fore_3 + t53
-    t55 = t45 & (t27 <= t49) & (t27 <= t50) & (-t51 <= t54)
-    del t27, t45, t49, t50
-    t56 = L + R_3
-    t57 = t56 - fore_3
-    t58 = fore_3 - t53
-    del t53
-    unreachable = np.logical_not(t55 & (-t51 <= t57) & (-t51 <= t58))
-    del t51, t55
-    t59 = _runtime.poison(invalid | unreachable)
-    t60 = t22 + t59
+    t51 = L - R_3
+    t52 = fore_3 + t51
+    t53 = t43 & (t26 <= t47) & (t26 <= t48) & (t49 <= t52)
+    del t26, t43, t47, t48
+    t54 = L + R_3
+    t55 = t54 - fore_3
+    t56 = fore_3 - t51
+    del t51
+    unreachable = np.logical_not(t53 & (t49 <= t55) & (t49 <= t56))
+    del t49, t53
+    t57 = _runtime.poison(invalid | unreachable)
+    t58 = t22 + t57
     del t22
     met_2 = R_2 <= t5
-    t61 = met_2 | no_crank_1
-    t62 = np.maximum(t41, 0.0) * np.maximum(t44, 0.0)
-    del t41, t44
-    t63 = (fore_2 + t42) * np.maximum(t43, 0.0)
-    del fore_2, t42, t43
-    t64 = t62 - t63
-    t65 = z * t64
-    beyond_2 = 2.0 * np.sqrt(t62 * t63)
-    t66 = t39 * beyond_2
-    sine_2 = _runtime.select(t61, 0.0, t65 + t66)
-    t67 = t39 * t64
-    del t39, t64
-    t68 = z * beyond_2
+    t59 = met_2 | no_crank_1
+    t60 = np.maximum(t39, 0.0) * np.maximum(t42, 0.0)
+    t61 = (fore_2 + t40) * np.maximum(t41, 0.0)
+    del fore_2, t40
+    t62 = t60 - t61
+    t63 = z * t62
+    beyond_2 = 2.0 * np.sqrt(t60 * t61)
+    t64 = t37 * beyond_2
+    sine_2 = _runtime.select(t59, 0.0, t63 + t64)
+    t65 = t37 * t62
+    del t37, t62
+    t66 = z * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t61, 1.0, t67 - t68)
-    t69 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
-    t70 = t69 + t59
-    del t69
+    cosine_2 = _runtime.select(t59, 1.0, t65 - t66)
+    t67 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
+    t68 = t67 + t57
+    del t67
     met_3 = R_3 <= t5
-    del t5
-    t71 = met_3 | no_crank_1
+    t69 = met_3 | no_crank_1
     del no_crank_1
-    t72 = np.maximum(t54, 0.0) * np.maximum(t58, 0.0)
-    del t54, t58
-    t73 = (fore_3 + t56) * np.maximum(t57, 0.0)
-    del fore_3, t56, t57
-    t74 = t72 - t73
-    t75 = z * t74
-    beyond_3 = 2.0 * np.sqrt(t72 * t73)
-    t76 = t52 * beyond_3
-    sine_3 = _runtime.select(t71, 0.0, t75 + t76)
-    t77 = t52 * t74
-    del t52, t74
-    t78 = z * beyond_3
+    t70 = np.maximum(t52, 0.0) * np.maximum(t56, 0.0)
+    t71 = (fore_3 + t54) * np.maximum(t55, 0.0)
+    del fore_3, t54
+    t72 = t70 - t71
+    t73 = z * t72
+    beyond_3 = 2.0 * np.sqrt(t70 * t71)
+    t74 = t50 * beyond_3
+    sine_3 = _runtime.select(t69, 0.0, t73 + t74)
+    t75 = t50 * t72
+    del t50, t72
+    t76 = z * beyond_3
     del beyond_3
-    cosine_3 = _runtime.select(t71, 1.0, t77 - t78)
-    t79 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
-    t80 = t79 + t59
-    del t79
-    sine_3_plus_plus_minus = _runtime.select(t71, 0.0, t75 - t76)
+    cosine_3 = _runtime.select(t69, 1.0, t75 - t76)
+    t77 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
+    t78 = t77 + t57
+    del t77
+    sine_3_plus_plus_minus = _runtime.select(t69, 0.0, t73 - t74)
+    del t73, t74
+    cosine_3_plus_plus_minus = _runtime.select(t69, 1.0, t75 + t76)
     del t75, t76
-    cosine_3_plus_plus_minus = _runtime.select(t71, 1.0, t77 + t78)
-    del t77, t78
-    t81 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
-    t82 = _runtime.wrap_cut(t81) + t59
-    del t81
-    sine_2_plus_minus_plus = _runtime.select(t61, 0.0, t65 - t66)
+    t79 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
+    t80 = _runtime.wrap_cut(t79) + t57
+    del t79
+    sine_2_plus_minus_plus = _runtime.select(t59, 0.0, t63 - t64)
+    del t63, t64
+    cosine_2_plus_minus_plus = _runtime.select(t59, 1.0, t65 + t66)
     del t65, t66
-    cosine_2_plus_minus_plus = _runtime.select(t61, 1.0, t67 + t68)
-    del t67, t68
-    t83 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
-    t84 = _runtime.wrap_cut(t83) + t59
-    del t83
+    t81 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
+    t82 = _runtime.wrap_cut(t81) + t57
+    del t81
     sine_1_minus_plus_plus = _runtime.select(t6, 0.0, t18 - t19)
     del t18, t19
     cosine_1_minus_plus_plus = _runtime.select(t6, 1.0, t20 + t21)
     del t20, t21
-    t85 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
-    t86 = _runtime.wrap_cut(t85) + t59
-    del t59, t85
-    t87 = t6 | met_2 | met_3
+    t83 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
+    t84 = _runtime.wrap_cut(t83) + t57
+    del t57, t83
+    t85 = t6 | met_2 | met_3
     del met_2, met_3
     share_1 = L / _runtime.select(t6, 1.0, R_1 * (t13 + t16))
     del R_1, t13, t16, t6
-    t88 = c_alpha1 * share_1
+    t86 = c_alpha1 * share_1
     del c_alpha1
-    t89 = t3 + cosine_1 * t88
-    share_2 = L / _runtime.select(t61, 1.0, R_2 * (t62 + t63))
-    del R_2, t61, t62, t63
-    t90 = s_alpha2 * share_2
+    t87 = t3 + cosine_1 * t86
+    share_2 = L / _runtime.select(t59, 1.0, R_2 * (t60 + t61))
+    del R_2, t59, t60, t61
+    t88 = s_alpha2 * share_2
     del s_alpha2
-    t91 = t32 + cosine_2 * t90
-    share_3 = L / _runtime.select(t71, 1.0, R_3 * (t72 + t73))
-    del R_3, t71, t72, t73
+    t89 = t30 + cosine_2 * t88
+    share_3 = L / _runtime.select(t69, 1.0, R_3 * (t70 + t71))
+    del R_3, t69, t70, t71
     A_33 = z + sine_3 * share_3
     del sine_3
     A_23 = z + sine_2 * share_2
     del sine_2
-    t92 = s_alpha3 * share_3
+    t90 = s_alpha3 * share_3
     del s_alpha3
-    t93 = t46 + cosine_3 * t92
-    t94 = t91 * A_33 - A_23 * t93
-    t95 = s_alpha1 * share_1
+    t91 = t44 + cosine_3 * t90
+    t92 = t89 * A_33 - A_23 * t91
+    t93 = s_alpha1 * share_1
     del s_alpha1
-    t96 = t2 + cosine_1 * t95
+    t94 = t2 + cosine_1 * t93
     del cosine_1
-    t97 = c_alpha2 * share_2
+    t95 = c_alpha2 * share_2
     del c_alpha2
-    t98 = t33 + cosine_2 * t97
+    t96 = t31 + cosine_2 * t95
     del cosine_2
-    t99 = c_alpha3 * share_3
+    t97 = c_alpha3 * share_3
     del c_alpha3
-    t100 = t47 + cosine_3 * t99
+    t98 = t45 + cosine_3 * t97
     del cosine_3
-    t101 = A_33 * t98 - A_23 * t100
+    t99 = A_33 * t96 - A_23 * t98
     A_13 = z + sine_1 * share_1
     del sine_1
-    t102 = t93 * t98 - t91 * t100
-    t103 = _runtime.DETERMINED * (l * l * l)
-    t104 = np.abs(t89 * t94 - t96 * t101 + A_13 * t102) <= t103
-    t105 = _runtime.status(invalid, unreachable, t87 | t104)
-    del t104
+    t100 = t91 * t96 - t89 * t98
+    t101 = t5 * np.abs(t87 * t92 - t94 * t99 + A_13 * t100)
+    t102 = np.minimum(np.minimum(np.minimum(0.0, t12), t11), t15)
+    del t11, t12, t15
+    missed_1 = np.maximum(0.0, np.abs(-t8) - l) - t102 / lost_1
+    del lost_1, t102, t8
+    t103 = np.minimum(np.minimum(np.minimum(0.0, t42), t39), t41)
+    del t39, t41, t42
+    missed_2 = np.maximum(0.0, np.abs(-t32) - l) - t103 / lost_2
+    del lost_2, t103, t32
+    t104 = np.minimum(np.minimum(np.minimum(0.0, t56), t52), t55)
+    del t52, t55, t56
+    missed_3 = np.maximum(0.0, np.abs(-t46) - l) - t104 / lost_3
+    del lost_3, t104, t46
+    t105 = _runtime.DETERMINED * (l * l * l) * (t5 + (missed_1 + missed_2 + missed_3))
+    del missed_1, missed_2, missed_3
+    t106 = _runtime.status(invalid, unreachable, t85 | (t101 <= t105))
+    del t101
     A_33_plus_plus_minus = z + sine_3_plus_plus_minus * share_3
     del share_3, sine_3_plus_plus_minus
-    t106 = t46 + cosine_3_plus_plus_minus * t92
-    del t46, t92
-    t107 = t91 * A_33_plus_plus_minus - A_23 * t106
-    t108 = t47 + cosine_3_plus_plus_minus * t99
-    del cosine_3_plus_plus_minus, t47, t99
-    t109 = t98 * A_33_plus_plus_minus - A_23 * t108
+    t107 = t44 + cosine_3_plus_plus_minus * t90
+    del t44, t90
+    t108 = t89 * A_33_plus_plus_minus - A_23 * t107
+    t109 = t45 + cosine_3_plus_plus_minus * t97
+    del cosine_3_plus_plus_minus, t45, t97
+    t110 = t96 * A_33_plus_plus_minus - A_23 * t109
     del A_23
-    t110 = t98 * t106 - t91 * t108
-    del t91, t98
-    t111 = np.abs(t89 * t107 - t96 * t109 + A_13 * t110)
-    t112 = _runtime.status(invalid, unreachable, t87 | (t111 <= t103))
-    del t111
-    t113 = t32 + cosine_2_plus_minus_plus * t90
-    del t32, t90
+    t111 = t96 * t107 - t89 * t109
+    del t89, t96
+    t112 = np.abs(t87 * t108 - t94 * t110 + A_13 * t111)
+    t113 = _runtime.status(invalid, unreachable, t85 | (t5 * t112 <= t105))
+    del t112
+    t114 = t30 + cosine_2_plus_minus_plus * t88
+    del t30, t88
     A_23_plus_minus_plus = z + sine_2_plus_minus_plus * share_2
     del share_2, sine_2_plus_minus_plus
-    t114 = A_33 * t113 - t93 * A_23_plus_minus_plus
-    t115 = t33 + cosine_2_plus_minus_plus * t97
-    del cosine_2_plus_minus_plus, t33, t97
-    t116 = A_33 * t115 - t100 * A_23_plus_minus_plus
+    t115 = A_33 * t114 - t91 * A_23_plus_minus_plus
+    t116 = t31 + cosine_2_plus_minus_plus * t95
+    del cosine_2_plus_minus_plus, t31, t95
+    t117 = A_33 * t116 - t98 * A_23_plus_minus_plus
     del A_33
-    t117 = t93 * t115 - t100 * t113
-    del t100, t93
-    t118 = np.abs(t89 * t114 - t96 * t116 + A_13 * t117)
-    t119 = _runtime.status(invalid, unreachable, t87 | (t118 <= t103))
-    del t118
-    t120 = A_33_plus_plus_minus * t113 - t106 * A_23_plus_minus_plus
-    t121 = A_33_plus_plus_minus * t115 - t108 * A_23_plus_minus_plus
+    t118 = t91 * t116 - t98 * t114
+    del t91, t98
+    t119 = np.abs(t87 * t115 - t94 * t117 + A_13 * t118)
+    t120 = _runtime.status(invalid, unreachable, t85 | (t5 * t119 <= t105))
+    del t119
+    t121 = A_33_plus_plus_minus * t114 - t107 * A_23_plus_minus_plus
+    t122 = A_33_plus_plus_minus * t116 - t109 * A_23_plus_minus_plus
     del A_23_plus_minus_plus, A_33_plus_plus_minus
-    t122 = t106 * t115 - t108 * t113
-    del t106, t108, t113, t115
-    t123 = np.abs(t89 * t120 - t96 * t121 + A_13 * t122)
-    del A_13, t89, t96
-    t124 = _runtime.status(invalid, unreachable, t87 | (t123 <= t103))
-    del t123
-    t125 = t3 + cosine_1_minus_plus_plus * t88
-    del t3, t88
-    t126 = t2 + cosine_1_minus_plus_plus * t95
-    del cosine_1_minus_plus_plus, t2, t95
+    t123 = t107 * t116 - t109 * t114
+    del t107, t109, t114, t116
+    t124 = np.abs(t87 * t121 - t94 * t122 + A_13 * t123)
+    del A_13, t87, t94
+    t125 = _runtime.status(invalid, unreachable, t85 | (t5 * t124 <= t105))
+    del t124
+    t126 = t3 + cosine_1_minus_plus_plus * t86
+    del t3, t86
+    t127 = t2 + cosine_1_minus_plus_plus * t93
+    del cosine_1_minus_plus_plus, t2, t93
     A_13_minus_plus_plus = z + sine_1_minus_plus_plus * share_1
     del share_1, sine_1_minus_plus_plus
-    Delta_minus_plus_plus = t94 * t125 - t101 * t126 + t102 * A_13_minus_plus_plus
-    del t101, t102, t94
-    t127 = t87 | (np.abs(Delta_minus_plus_plus) <= t103)
+    Delta_minus_plus_plus = t92 * t126 - t99 * t127 + t100 * A_13_minus_plus_plus
+    del t100, t92, t99
+    t128 = t85 | (t5 * np.abs(Delta_minus_plus_plus) <= t105)
     del Delta_minus_plus_plus
-    Delta_minus_plus_minus = t107 * t125 - t109 * t126 + t110 * A_13_minus_plus_plus
-    del t107, t109, t110
-    t128 = t87 | (np.abs(Delta_minus_plus_minus) <= t103)
+    Delta_minus_plus_minus = t108 * t126 - t110 * t127 + t111 * A_13_minus_plus_plus
+    del t108, t110, t111
+    t129 = t85 | (t5 * np.abs(Delta_minus_plus_minus) <= t105)
     del Delta_minus_plus_minus
-    Delta_minus_minus_plus = t114 * t125 - t116 * t126 + t117 * A_13_minus_plus_plus
-    del t114, t116, t117
-    t129 = t87 | (np.abs(Delta_minus_minus_plus) <= t103)
+    Delta_minus_minus_plus = t115 * t126 - t117 * t127 + t118 * A_13_minus_plus_plus
+    del t115, t117, t118
+    t130 = t85 | (t5 * np.abs(Delta_minus_minus_plus) <= t105)
     del Delta_minus_minus_plus
-    Delta_minus_minus_minus = t120 * t125 - t121 * t126 + t122 * A_13_minus_plus_plus
-    del A_13_minus_plus_plus, t120, t121, t122, t125, t126
-    t130 = t87 | (np.abs(Delta_minus_minus_minus) <= t103)
-    del Delta_minus_minus_minus, t103, t87
+    Delta_minus_minus_minus = t121 * t126 - t122 * t127 + t123 * A_13_minus_plus_plus
+    del A_13_minus_plus_plus, t121, t122, t123, t126, t127
+    t131 = t85 | (t5 * np.abs(Delta_minus_minus_minus) <= t105)
+    del Delta_minus_minus_minus, t105, t5, t85
     return (
-        t60,
-        t70,
+        t58,
+        t68,
+        t78,
+        t58,
+        t68,
         t80,
-        t60,
-        t70,
+        t58,
         t82,
-        t60,
-        t84,
-        t80,
-        t60,
-        t84,
+        t78,
+        t58,
         t82,
-        t86,
-        t70,
         t80,
-        t86,
-        t70,
-        t82,
-        t86,
         t84,
+        t68,
+        t78,
+        t84,
+        t68,
         t80,
-        t86,
         t84,
         t82,
-        t105,
-        t112,
-        t119,
-        t124,
-        _runtime.status(invalid, unreachable, t127),
+        t78,
+        t84,
+        t82,
+        t80,
+        t106,
+        t113,
+        t120,
+        t125,
         _runtime.status(invalid, unreachable, t128),
         _runtime.status(invalid, unreachable, t129),
         _runtime.status(invalid, unreachable, t130),
+        _runtime.status(invalid, unreachable, t131),
     )
 
 
@@ -2472,7 +2480,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       returned.
     - SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """
@@ -2489,45 +2499,46 @@ def _workspace_contains(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     del t1
     t3 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     size = f + e + L + l
-    t4 = size * 0.5
-    t5 = -(_runtime.FEASIBILITY * t4)
-    t6 = y + e * s_alpha1 - f * s_alpha1
-    t7 = x + e * c_alpha1 - f * c_alpha1
-    aside_1 = c_alpha1 * t6 - s_alpha1 * t7
-    t8 = l - aside_1
-    t9 = l + aside_1
+    t4 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t5 = y + e * s_alpha1 - f * s_alpha1
+    t6 = x + e * c_alpha1 - f * c_alpha1
+    aside_1 = c_alpha1 * t5 - s_alpha1 * t6
+    t7 = l - aside_1
+    t8 = l + aside_1
     del aside_1
-    t10 = l * size
-    t11 = size * 2.384185791015625e-07
-    del size
-    fore_1 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
-    t12 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_1)))
-    wu_1 = s_alpha1 * t6 + c_alpha1 * t7
-    del c_alpha1, s_alpha1, t6, t7
-    t13 = z * z
-    R_1 = np.sqrt(wu_1 * wu_1 + t13)
+    t9 = size * 2.384185791015625e-07
+    fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
+    t10 = size * np.maximum(1.0, l / (t9 + fore_1)) * 0.5
+    t11 = -(_runtime.FEASIBILITY * t10)
+    del t10
+    wu_1 = s_alpha1 * t5 + c_alpha1 * t6
+    del c_alpha1, s_alpha1, t5, t6
+    t12 = z * z
+    R_1 = np.sqrt(wu_1 * wu_1 + t12)
     del wu_1
-    t14 = L - R_1
-    t15 = (t5 <= t8) & (t5 <= t9) & (-t12 <= fore_1 + t14)
-    del t8, t9
-    t16 = t15 & (-t12 <= L + R_1 - fore_1) & (-t12 <= fore_1 - t14)
-    del R_1, fore_1, t12, t14, t15
-    t17 = y + e * s_alpha2 - f * s_alpha2
-    t18 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t17 - s_alpha2 * t18
-    t19 = l - aside_2
-    t20 = l + aside_2
+    t13 = L - R_1
+    t14 = (t4 <= t7) & (t4 <= t8) & (t11 <= fore_1 + t13)
+    del t7, t8
+    t15 = t14 & (t11 <= L + R_1 - fore_1) & (t11 <= fore_1 - t13)
+    del R_1, fore_1, t11, t13, t14
+    t16 = y + e * s_alpha2 - f * s_alpha2
+    t17 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t16 - s_alpha2 * t17
+    t18 = l - aside_2
+    t19 = l + aside_2
     del aside_2
-    fore_2 = np.sqrt(np.maximum(t19, 0.0) * np.maximum(t20, 0.0))
-    t21 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_2)))
-    wu_2 = s_alpha2 * t17 + c_alpha2 * t18
-    del c_alpha2, s_alpha2, t17, t18
-    R_2 = np.sqrt(t13 + wu_2 * wu_2)
+    fore_2 = np.sqrt(np.maximum(t18, 0.0) * np.maximum(t19, 0.0))
+    t20 = size * np.maximum(1.0, l / (t9 + fore_2)) * 0.5
+    t21 = -(_runtime.FEASIBILITY * t20)
+    del t20
+    wu_2 = s_alpha2 * t16 + c_alpha2 * t17
+    del c_alpha2, s_alpha2, t16, t17
+    R_2 = np.sqrt(t12 + wu_2 * wu_2)
     del wu_2
     t22 = L - R_2
-    t23 = t16 & (t5 <= t19) & (t5 <= t20) & (-t21 <= fore_2 + t22)
-    del t16, t19, t20
-    t24 = t23 & (-t21 <= L + R_2 - fore_2) & (-t21 <= fore_2 - t22)
+    t23 = t15 & (t4 <= t18) & (t4 <= t19) & (t21 <= fore_2 + t22)
+    del t15, t18, t19
+    t24 = t23 & (t21 <= L + R_2 - fore_2) & (t21 <= fore_2 - t22)
     del R_2, fore_2, t21, t22, t23
     t25 = y + e * s_alpha3 - f * s_alpha3
     t26 = x + e * c_alpha3 - f * c_alpha3
@@ -2536,19 +2547,21 @@ def _workspace_contains(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t28 = l + aside_3
     del aside_3
     fore_3 = np.sqrt(np.maximum(t27, 0.0) * np.maximum(t28, 0.0))
-    t29 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_3)))
-    del t10, t11, t4
+    t29 = size * np.maximum(1.0, l / (t9 + fore_3)) * 0.5
+    del size, t9
+    t30 = -(_runtime.FEASIBILITY * t29)
+    del t29
     wu_3 = s_alpha3 * t25 + c_alpha3 * t26
     del c_alpha3, s_alpha3, t25, t26
-    R_3 = np.sqrt(t13 + wu_3 * wu_3)
-    del t13, wu_3
-    t30 = L - R_3
-    t31 = t24 & (t5 <= t27) & (t5 <= t28) & (-t29 <= fore_3 + t30)
-    del t24, t27, t28, t5
-    t32 = t31 & (-t29 <= L + R_3 - fore_3) & (-t29 <= fore_3 - t30)
-    del R_3, fore_3, t29, t30, t31
-    failed = np.logical_not(t2 & t3) | np.logical_not(t32)
-    del t2, t3, t32
+    R_3 = np.sqrt(t12 + wu_3 * wu_3)
+    del t12, wu_3
+    t31 = L - R_3
+    t32 = t24 & (t4 <= t27) & (t4 <= t28) & (t30 <= fore_3 + t31)
+    del t24, t27, t28, t4
+    t33 = t32 & (t30 <= L + R_3 - fore_3) & (t30 <= fore_3 - t31)
+    del R_3, fore_3, t30, t31, t32
+    failed = np.logical_not(t2 & t3) | np.logical_not(t33)
+    del t2, t3, t33
     return (
         np.logical_not(failed),
     )

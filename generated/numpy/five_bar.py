@@ -12,7 +12,7 @@
 #   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
 #   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
 #   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
-#   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+#   ik: 78 compare and select, 47 add, 4 atan2, 3 divide, 46 multiply, 4 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
 
@@ -1233,7 +1233,6 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     del t1
     t23 = t3 - R_2
     t24 = (t22 <= t6) & (t22 <= t10) & (t22 <= t8) & (t22 <= t23)
-    del t10, t6, t8
     t25 = L2 - L4
     t26 = R_2 + t25
     t27 = R_2 - t25
@@ -1245,12 +1244,10 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     del t18
     met_2 = R_2 <= t4
     no_crank_2 = L2 <= t4
-    del t4
     t30 = met_2 | no_crank_2
     t31 = np.maximum(t23, 0.0) * np.maximum(t27, 0.0)
-    del t23, t27
     t32 = (R_2 + t3) * np.maximum(t26, 0.0)
-    del t26, t3
+    del t3
     t33 = t31 - t32
     t34 = y * t33
     beyond_2 = 2.0 * np.sqrt(t31 * t32)
@@ -1292,15 +1289,22 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     del t15
     A_21 = wu_2 - cosine_2 * share_2
     del cosine_2
-    t48 = _runtime.DETERMINED * (L3 * L4)
-    t49 = t47 | (np.abs(A_11 * A_22 - A_12 * A_21) <= t48)
+    t48 = np.minimum(np.minimum(np.minimum(0.0, t8), t10), t6)
+    del t10, t6, t8
+    t49 = np.minimum(np.minimum(np.minimum(0.0, t27), t26), t23)
+    del t23, t26, t27
+    t50 = _runtime.DETERMINED * (L3 * L4) * (t4 - (t48 + t49))
+    del t48, t49
+    t51 = t4 * np.abs(A_11 * A_22 - A_12 * A_21) <= t50
+    t52 = _runtime.status(invalid, unreachable, t47 | t51)
+    del t51
     A_22_plus_minus = y + t41 * share_2
     del t41
     A_21_plus_minus = wu_2 - cosine_2_plus_minus * share_2
     del cosine_2_plus_minus, share_2, wu_2
     Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus
     del A_11, A_12
-    t50 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_plus_minus) <= t48))
+    t53 = _runtime.status(invalid, unreachable, t47 | (t4 * np.abs(Delta_plus_minus) <= t50))
     del Delta_plus_minus
     A_11_minus_plus = x - cosine_1_minus_plus * share_1
     del cosine_1_minus_plus
@@ -1308,12 +1312,12 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     del share_1, t44
     Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus
     del A_21, A_22
-    t51 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_plus) <= t48))
+    t54 = _runtime.status(invalid, unreachable, t47 | (t4 * np.abs(Delta_minus_plus) <= t50))
     del Delta_minus_plus
     Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus * A_12_minus_plus
     del A_11_minus_plus, A_12_minus_plus, A_21_plus_minus, A_22_plus_minus
-    t52 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_minus) <= t48))
-    del Delta_minus_minus, t47, t48
+    t55 = t47 | (t4 * np.abs(Delta_minus_minus) <= t50)
+    del Delta_minus_minus, t4, t47, t50
     return (
         t29,
         t40,
@@ -1323,10 +1327,10 @@ def _ik(x, y, L0, L1, L2, L3, L4):
         t40,
         t46,
         t43,
-        _runtime.status(invalid, unreachable, t49),
-        t50,
-        t51,
         t52,
+        t53,
+        t54,
+        _runtime.status(invalid, unreachable, t55),
     )
 
 
@@ -1377,7 +1381,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
     - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
-      but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target
+      is just outside of the workspace, the length by which the answer misses it counts as a
+      rounding error too.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

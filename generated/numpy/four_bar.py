@@ -9,7 +9,7 @@
 #   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 #   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 #   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
-#   ik: 41 compare and select, 24 add, 2 atan2, 2 divide, 25 multiply, 1 sincos, 2 sqrt
+#   ik: 44 compare and select, 25 add, 2 atan2, 2 divide, 28 multiply, 1 sincos, 2 sqrt
 #   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
 """Planar four-bar linkage.
 
@@ -886,7 +886,6 @@ def _ik(psi, L1, L2, L3, L4):
     size = L1 + L4 + t2
     t3 = _runtime.VANISHING * size
     t4 = (R_1 <= t3) | (L2 <= t3)
-    del t3
     t5 = t2 - R_1
     t6 = L2 - L3
     t7 = R_1 - t6
@@ -913,7 +912,7 @@ def _ik(psi, L1, L2, L3, L4):
     del t19
     t20 = -(_runtime.FEASIBILITY * (size * 0.5))
     unreachable = np.logical_not((t20 <= t5) & (t20 <= t9) & (t20 <= t7))
-    del t20, t5, t7, t9
+    del t20
     t21 = _runtime.poison(invalid | unreachable)
     t22 = _runtime.select(t4, 0.0, t12 - t13)
     del t12, t13
@@ -924,19 +923,21 @@ def _ik(psi, L1, L2, L3, L4):
     del R_1, t10, t8
     A = t1 * (wv_1 + t14 * share_1) - wv_1 * (wu_1 - cosine_1 * share_1)
     del cosine_1, t14
-    t24 = _runtime.DETERMINED * (L3 * size)
-    del size
-    t25 = _runtime.status(invalid, unreachable, t4 | (np.abs(A) <= t24))
+    t24 = np.minimum(np.minimum(np.minimum(0.0, t7), t9), t5)
+    del t5, t7, t9
+    t25 = _runtime.DETERMINED * (L3 * size) * (t3 - t24)
+    del size, t24
+    t26 = _runtime.status(invalid, unreachable, t4 | (t3 * np.abs(A) <= t25))
     del A
     A_minus = t1 * (wv_1 + t22 * share_1) - wv_1 * (wu_1 - cosine_1_minus * share_1)
     del cosine_1_minus, share_1, t1, t22, wu_1, wv_1
-    t26 = _runtime.status(invalid, unreachable, t4 | (np.abs(A_minus) <= t24))
-    del A_minus, invalid, t24, t4, unreachable
+    t27 = _runtime.status(invalid, unreachable, t4 | (t3 * np.abs(A_minus) <= t25))
+    del A_minus, invalid, t25, t3, t4, unreachable
     return (
         t17 + t21,
         t23 + t21,
-        t25,
         t26,
+        t27,
     )
 
 

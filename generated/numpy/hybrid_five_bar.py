@@ -13,7 +13,7 @@
 #   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
 #   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
 #   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
-#   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
+#   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
@@ -1126,141 +1126,150 @@ def _ik(x, y, z, L0, L1, L2):
     t10 = t9 - square_c
     t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t12 = L1 - L2
-    t13 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * np.abs(t12)))
+    t13 = np.abs(t12)
+    t14 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * t13))
     del t11
-    t14 = t12 * t12
-    t15 = square_c - t14
-    t16 = y - L0
-    square_d = r2 + t16 * t16
-    t17 = t9 - square_d
-    t18 = square_d - t14
-    del t14
-    t19 = (-t8 <= t10) & (-t13 <= t15) & (-t8 <= t17) & (-t13 <= t18)
-    del t13, t8
-    unreachable = np.logical_not(t19)
-    del t19
-    t20 = _runtime.poison(invalid | unreachable)
-    t21 = _runtime.wrap_cut(t3) + t20
+    t15 = t12 * t12
+    t16 = square_c - t15
+    t17 = y - L0
+    square_d = r2 + t17 * t17
+    t18 = t9 - square_d
+    t19 = square_d - t15
+    del t15
+    t20 = (-t8 <= t10) & (-t14 <= t16) & (-t8 <= t18) & (-t14 <= t19)
+    del t14, t8
+    unreachable = np.logical_not(t20)
+    del t20
+    t21 = _runtime.poison(invalid | unreachable)
+    t22 = _runtime.wrap_cut(t3) + t21
     del t3
     at_A = r + np.abs(y) <= t2
     no_link_c = L1 * L2 <= t9 * _runtime.VANISHING
     del t9
-    M_c = np.maximum(t15, 0.0)
-    del t15
+    M_c = np.maximum(t16, 0.0)
+    del t16
     N_c = np.maximum(t10, 0.0)
     del t10
     ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t12)
-    t22 = ahead_c * r
-    t23 = np.sqrt(N_c * M_c)
+    t23 = ahead_c * r
+    t24 = np.sqrt(N_c * M_c)
     del M_c, N_c
-    beyond_c = _runtime.select(no_link_c, 0.0, t7 * t23)
-    t24 = y * beyond_c
-    t25 = y * ahead_c
+    beyond_c = _runtime.select(no_link_c, 0.0, t7 * t24)
+    t25 = y * beyond_c
+    t26 = y * ahead_c
     del ahead_c
-    t26 = r * beyond_c
+    t27 = r * beyond_c
     del beyond_c
-    t27 = _runtime.select(at_A, 0.0, np.arctan2(t22 - t24, t25 + t26))
-    t28 = _runtime.wrap_cut(t27) + t20
-    at_B = r + np.abs(t16) <= t2
-    del t2
-    M_d = np.maximum(t18, 0.0)
+    t28 = _runtime.select(at_A, 0.0, np.arctan2(t23 - t25, t26 + t27))
+    t29 = _runtime.wrap_cut(t28) + t21
+    at_B = r + np.abs(t17) <= t2
+    M_d = np.maximum(t19, 0.0)
+    del t19
+    N_d = np.maximum(t18, 0.0)
     del t18
-    N_d = np.maximum(t17, 0.0)
-    del t17
     ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t12 * N_d)
-    t29 = ahead_d * r
-    t30 = np.sqrt(N_d * M_d)
+    t30 = ahead_d * r
+    t31 = np.sqrt(N_d * M_d)
     del M_d, N_d
-    beyond_d = _runtime.select(no_link_c, 0.0, t7 * t30)
+    beyond_d = _runtime.select(no_link_c, 0.0, t7 * t31)
     del no_link_c, t7
-    t31 = t16 * beyond_d
-    t32 = t16 * ahead_d
+    t32 = t17 * beyond_d
+    t33 = t17 * ahead_d
     del ahead_d
-    t33 = r * beyond_d
+    t34 = r * beyond_d
     del beyond_d
-    t34 = _runtime.select(at_B, 0.0, np.arctan2(t29 - t31, t32 + t33))
-    t35 = _runtime.wrap_cut(t34) + t20
-    t36 = _runtime.select(at_B, 0.0, np.arctan2(t29 + t31, t32 - t33))
-    del t29, t31, t32, t33
-    t37 = _runtime.wrap_cut(t36) + t20
-    t38 = _runtime.select(at_A, 0.0, np.arctan2(t22 + t24, t25 - t26))
-    del t22, t24, t25, t26
-    t39 = _runtime.wrap_cut(t38) + t20
-    t40 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
-    t41 = _runtime.wrap_cut(-t40) + t20
-    del t40
-    t42 = _runtime.wrap_cut(-t38) + t20
-    del t38
-    t43 = _runtime.wrap_cut(-t36) + t20
-    del t36
-    t44 = _runtime.wrap_cut(-t34) + t20
-    del t34
-    t45 = _runtime.wrap_cut(-t27) + t20
-    del t20, t27
-    t46 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    t35 = _runtime.select(at_B, 0.0, np.arctan2(t30 - t32, t33 + t34))
+    t36 = _runtime.wrap_cut(t35) + t21
+    t37 = _runtime.select(at_B, 0.0, np.arctan2(t30 + t32, t33 - t34))
+    del t30, t32, t33, t34
+    t38 = _runtime.wrap_cut(t37) + t21
+    t39 = _runtime.select(at_A, 0.0, np.arctan2(t23 + t25, t26 - t27))
+    del t23, t25, t26, t27
+    t40 = _runtime.wrap_cut(t39) + t21
+    t41 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
+    t42 = _runtime.wrap_cut(-t41) + t21
+    del t41
+    t43 = _runtime.wrap_cut(-t39) + t21
+    del t39
+    t44 = _runtime.wrap_cut(-t37) + t21
+    del t37
+    t45 = _runtime.wrap_cut(-t35) + t21
+    del t35
+    t46 = _runtime.wrap_cut(-t28) + t21
+    del t21, t28
+    t47 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
     del at_A, at_B, on_axis
-    t47 = t1 * t12
-    del t1, t12
-    inner_c = square_c - t47
-    inner_d = square_d - t47
-    del t47
-    t48 = inner_c * inner_d
-    t49 = t23 * t30
-    t50 = L0 * r
+    t48 = t1 * t12
+    del t12
+    inner_c = square_c - t48
+    inner_d = square_d - t48
+    del t48
+    t49 = inner_c * inner_d
+    t50 = t24 * t31
+    t51 = L0 * r
     del r
-    t51 = (t48 + t49) * t50
-    t52 = r2 + y * t16
-    del r2, t16
-    t53 = inner_d * t23
-    del inner_d, t23
-    t54 = inner_c * t30
-    del inner_c, t30
-    t55 = t52 * (t53 - t54)
-    t56 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2))
-    del square_c, square_d
-    t57 = _runtime.status(invalid, unreachable, t46 | (np.abs(t51 - t55) <= t56))
-    t58 = t52 * (t53 + t54)
-    del t52, t53, t54
-    t59 = (t48 - t49) * t50
-    del t48, t49, t50
-    t60 = _runtime.status(invalid, unreachable, t46 | (np.abs(t58 - t59) <= t56))
-    t61 = _runtime.status(invalid, unreachable, t46 | (np.abs(-(t58 + t59)) <= t56))
-    del t58, t59
-    t62 = _runtime.status(invalid, unreachable, t46 | (np.abs(t55 + t51) <= t56))
-    del invalid, t46, t51, t55, t56, unreachable
+    t52 = (t49 + t50) * t51
+    t53 = r2 + y * t17
+    del r2, t17
+    t54 = inner_d * t24
+    del inner_d, t24
+    t55 = inner_c * t31
+    del inner_c, t31
+    t56 = t53 * (t54 - t55)
+    t57 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2))
+    t58 = np.sqrt(square_c)
+    del square_c
+    t59 = np.maximum(np.maximum(0.0, t13 - t58), t58 - t1)
+    del t58
+    t60 = np.sqrt(square_d)
+    del square_d
+    t61 = np.maximum(np.maximum(0.0, t13 - t60), t60 - t1)
+    del t1, t13, t60
+    t62 = t57 * (t2 + (t59 + t61))
+    del t57, t59, t61
+    t63 = _runtime.status(invalid, unreachable, t47 | (np.abs(t52 - t56) * t2 <= t62))
+    t64 = t53 * (t54 + t55)
+    del t53, t54, t55
+    t65 = (t49 - t50) * t51
+    del t49, t50, t51
+    t66 = _runtime.status(invalid, unreachable, t47 | (np.abs(t64 - t65) * t2 <= t62))
+    t67 = _runtime.status(invalid, unreachable, t47 | (np.abs(-(t64 + t65)) * t2 <= t62))
+    del t64, t65
+    t68 = _runtime.status(invalid, unreachable, t47 | (np.abs(t56 + t52) * t2 <= t62))
+    del invalid, t2, t47, t52, t56, t62, unreachable
     return (
-        t21,
-        t28,
-        t35,
-        t21,
-        t28,
-        t37,
-        t21,
-        t39,
-        t35,
-        t21,
-        t39,
-        t37,
-        t41,
+        t22,
+        t29,
+        t36,
+        t22,
+        t29,
+        t38,
+        t22,
+        t40,
+        t36,
+        t22,
+        t40,
+        t38,
         t42,
         t43,
-        t41,
+        t44,
         t42,
-        t44,
-        t41,
-        t45,
         t43,
-        t41,
         t45,
+        t42,
+        t46,
         t44,
-        t57,
-        t60,
-        t61,
-        t62,
-        t62,
-        t61,
-        t60,
-        t57,
+        t42,
+        t46,
+        t45,
+        t63,
+        t66,
+        t67,
+        t68,
+        t68,
+        t67,
+        t66,
+        t63,
     )
 
 
@@ -1271,7 +1280,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 1.0587911840678754e-22, 5.575186299632656e+42),
 )
 
 
@@ -1320,7 +1329,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       L1 = 0.
     - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
       less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
-      the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+      the lengths. The length by which the answer misses a target just outside of the workspace
+      counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last
+      two entries.
     - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
       the loop still closes.
     """

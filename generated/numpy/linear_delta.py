@@ -14,7 +14,7 @@
 #   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
 #   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
 #   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
-#   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
+#   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
@@ -1846,7 +1846,6 @@ def _ik(x, y, z, f, e, l):
     del t5
     size = f + e + l + np.abs(x) + np.abs(y) + np.abs(z)
     t6 = -(_runtime.FEASIBILITY * (size * 0.5))
-    del size
     A_21 = x - e * 0.5 + f * 0.5
     t7 = A_21 * A_21
     t8 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
@@ -1856,7 +1855,7 @@ def _ik(x, y, z, f, e, l):
     t10 = l + aside_2
     del aside_2
     t11 = (t6 <= t1) & (t6 <= t2) & (t6 <= t9) & (t6 <= t10)
-    del t1, t2
+    del t2
     A_32 = y - t8
     del t8
     aside_3 = np.sqrt(t7 + A_32 * A_32)
@@ -1869,11 +1868,11 @@ def _ik(x, y, z, f, e, l):
     t14 = _runtime.poison(invalid | unreachable)
     t15 = slide_1 + t14
     root_2 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
-    del t10, t9
+    del t10
     slide_2 = z - root_2
     t16 = slide_2 + t14
     root_3 = np.sqrt(np.maximum(t12, 0.0) * np.maximum(t13, 0.0))
-    del t12, t13
+    del t13
     slide_3 = z - root_3
     t17 = slide_3 + t14
     slide_3_plus_plus_minus = z + root_3
@@ -1886,54 +1885,59 @@ def _ik(x, y, z, f, e, l):
     del root_1
     t20 = slide_1_minus_plus_plus + t14
     del t14
+    t21 = size * _runtime.VANISHING
+    del size
     A_33 = z - slide_3
     del slide_3
-    t21 = A_22 * A_33
+    t22 = A_22 * A_33
     A_23 = z - slide_2
     del slide_2
-    t22 = A_32 * A_23
-    t23 = A_21 * A_33
+    t23 = A_32 * A_23
+    t24 = A_21 * A_33
     del A_33
-    t24 = A_21 * A_23
+    t25 = A_21 * A_23
     del A_23
-    t25 = A_11 * (t21 - t22) - y * (t23 - t24)
-    t26 = A_21 * A_32 - A_21 * A_22
-    t27 = (z - slide_1) * t26
+    t26 = A_11 * (t22 - t23) - y * (t24 - t25)
+    t27 = A_21 * A_32 - A_21 * A_22
+    t28 = (z - slide_1) * t27
     del slide_1
-    t28 = _runtime.DETERMINED * (l * l * l)
-    t29 = _runtime.status(invalid, unreachable, np.abs(t25 + t27) <= t28)
+    t29 = np.maximum(0.0, -t1) + np.maximum(0.0, -t9) + np.maximum(0.0, -t12)
+    del t1, t12, t9
+    t30 = _runtime.DETERMINED * (l * l * l) * (t21 + t29)
+    del t29
+    t31 = _runtime.status(invalid, unreachable, t21 * np.abs(t26 + t28) <= t30)
     A_33_plus_plus_minus = z - slide_3_plus_plus_minus
     del slide_3_plus_plus_minus
-    t30 = A_22 * A_33_plus_plus_minus
+    t32 = A_22 * A_33_plus_plus_minus
     del A_22
-    t31 = A_21 * A_33_plus_plus_minus
+    t33 = A_21 * A_33_plus_plus_minus
     del A_33_plus_plus_minus
-    t32 = A_11 * (t22 - t30) - y * (t24 - t31)
-    del t22, t24
-    t33 = _runtime.status(invalid, unreachable, np.abs(t27 - t32) <= t28)
+    t34 = A_11 * (t23 - t32) - y * (t25 - t33)
+    del t23, t25
+    t35 = _runtime.status(invalid, unreachable, t21 * np.abs(t28 - t34) <= t30)
     A_23_plus_minus_plus = z - slide_2_plus_minus_plus
     del slide_2_plus_minus_plus
-    t34 = A_32 * A_23_plus_minus_plus
+    t36 = A_32 * A_23_plus_minus_plus
     del A_32
-    t35 = A_21 * A_23_plus_minus_plus
+    t37 = A_21 * A_23_plus_minus_plus
     del A_21, A_23_plus_minus_plus
-    t36 = A_11 * (t21 - t34) - y * (t23 - t35)
-    del t21, t23
-    t37 = _runtime.status(invalid, unreachable, np.abs(t27 + t36) <= t28)
-    t38 = A_11 * (t30 - t34) - y * (t31 - t35)
-    del A_11, t30, t31, t34, t35
-    t39 = _runtime.status(invalid, unreachable, np.abs(t27 + t38) <= t28)
-    del t27
-    t40 = (z - slide_1_minus_plus_plus) * t26
-    del slide_1_minus_plus_plus, t26
-    t41 = _runtime.status(invalid, unreachable, np.abs(t25 + t40) <= t28)
-    del t25
-    t42 = _runtime.status(invalid, unreachable, np.abs(t32 - t40) <= t28)
-    del t32
-    t43 = _runtime.status(invalid, unreachable, np.abs(t36 + t40) <= t28)
-    del t36
-    t44 = _runtime.status(invalid, unreachable, np.abs(t38 + t40) <= t28)
-    del invalid, t28, t38, t40, unreachable
+    t38 = A_11 * (t22 - t36) - y * (t24 - t37)
+    del t22, t24
+    t39 = _runtime.status(invalid, unreachable, t21 * np.abs(t28 + t38) <= t30)
+    t40 = A_11 * (t32 - t36) - y * (t33 - t37)
+    del A_11, t32, t33, t36, t37
+    t41 = _runtime.status(invalid, unreachable, t21 * np.abs(t28 + t40) <= t30)
+    del t28
+    t42 = (z - slide_1_minus_plus_plus) * t27
+    del slide_1_minus_plus_plus, t27
+    t43 = _runtime.status(invalid, unreachable, t21 * np.abs(t26 + t42) <= t30)
+    del t26
+    t44 = _runtime.status(invalid, unreachable, t21 * np.abs(t34 - t42) <= t30)
+    del t34
+    t45 = _runtime.status(invalid, unreachable, t21 * np.abs(t38 + t42) <= t30)
+    del t38
+    t46 = _runtime.status(invalid, unreachable, t21 * np.abs(t40 + t42) <= t30)
+    del invalid, t21, t30, t40, t42, unreachable
     return (
         t15,
         t16,
@@ -1959,14 +1963,14 @@ def _ik(x, y, z, f, e, l):
         t20,
         t19,
         t18,
-        t29,
-        t33,
-        t37,
+        t31,
+        t35,
         t39,
         t41,
-        t42,
         t43,
         t44,
+        t45,
+        t46,
     )
 
 
@@ -1977,7 +1981,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2017,7 +2021,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """

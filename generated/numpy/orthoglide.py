@@ -26,7 +26,7 @@
 #   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
 #   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 #     sqrt
-#   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
+#   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
 
@@ -2344,44 +2344,45 @@ def _ik(x, y, z, L):
     t5 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t5)
     del t5
-    t6 = (L + np.abs(x) + np.abs(y) + np.abs(z)) * 0.5
-    t7 = -(_runtime.FEASIBILITY * t6)
-    del t6
-    t8 = x * x
-    aside_2 = np.sqrt(t2 + t8)
+    size = L + np.abs(x) + np.abs(y) + np.abs(z)
+    t6 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t7 = x * x
+    aside_2 = np.sqrt(t2 + t7)
     del t2
-    t9 = L - aside_2
-    t10 = L + aside_2
+    t8 = L - aside_2
+    t9 = L + aside_2
     del aside_2
-    t11 = (t7 <= t3) & (t7 <= t4) & (t7 <= t9) & (t7 <= t10)
-    del t3, t4
-    aside_3 = np.sqrt(t1 + t8)
-    del t1, t8
-    t12 = L - aside_3
-    t13 = L + aside_3
+    t10 = (t6 <= t3) & (t6 <= t4) & (t6 <= t8) & (t6 <= t9)
+    del t4
+    aside_3 = np.sqrt(t1 + t7)
+    del t1, t7
+    t11 = L - aside_3
+    t12 = L + aside_3
     del aside_3
-    unreachable = np.logical_not(t11 & (t7 <= t12) & (t7 <= t13))
-    del t11, t7
-    t14 = _runtime.poison(invalid | unreachable)
-    t15 = slide_1 + t14
-    root_2 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
-    del t10, t9
+    unreachable = np.logical_not(t10 & (t6 <= t11) & (t6 <= t12))
+    del t10, t6
+    t13 = _runtime.poison(invalid | unreachable)
+    t14 = slide_1 + t13
+    root_2 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
+    del t9
     slide_2 = y - root_2
-    t16 = slide_2 + t14
-    root_3 = np.sqrt(np.maximum(t12, 0.0) * np.maximum(t13, 0.0))
-    del t12, t13
+    t15 = slide_2 + t13
+    root_3 = np.sqrt(np.maximum(t11, 0.0) * np.maximum(t12, 0.0))
+    del t12
     slide_3 = z - root_3
-    t17 = slide_3 + t14
+    t16 = slide_3 + t13
     slide_3_plus_plus_minus = z + root_3
     del root_3
-    t18 = slide_3_plus_plus_minus + t14
+    t17 = slide_3_plus_plus_minus + t13
     slide_2_plus_minus_plus = y + root_2
     del root_2
-    t19 = slide_2_plus_minus_plus + t14
+    t18 = slide_2_plus_minus_plus + t13
     slide_1_minus_plus_plus = x + root_1
     del root_1
-    t20 = slide_1_minus_plus_plus + t14
-    del t14
+    t19 = slide_1_minus_plus_plus + t13
+    del t13
+    t20 = size * _runtime.VANISHING
+    del size
     A_11 = x - slide_1
     t21 = slide_2 * slide_3
     t22 = z * slide_1
@@ -2389,82 +2390,85 @@ def _ik(x, y, z, L):
     t24 = y * slide_1
     del slide_1
     t25 = slide_3 * t24
-    t26 = _runtime.DETERMINED * (L * L * L)
-    t27 = _runtime.status(invalid, unreachable, np.abs(A_11 * t21 + t23 + t25) <= t26)
-    t28 = slide_2 * slide_3_plus_plus_minus
-    t29 = slide_3_plus_plus_minus * t24
+    t26 = np.maximum(0.0, -t3) + np.maximum(0.0, -t8) + np.maximum(0.0, -t11)
+    del t11, t3, t8
+    t27 = _runtime.DETERMINED * (L * L * L) * (t20 + t26)
+    del t26
+    t28 = _runtime.status(invalid, unreachable, t20 * np.abs(A_11 * t21 + t23 + t25) <= t27)
+    t29 = slide_2 * slide_3_plus_plus_minus
+    t30 = slide_3_plus_plus_minus * t24
     del t24
-    t30 = _runtime.status(invalid, unreachable, np.abs(t23 + A_11 * t28 + t29) <= t26)
+    t31 = _runtime.status(invalid, unreachable, t20 * np.abs(t23 + A_11 * t29 + t30) <= t27)
     del t23
-    t31 = slide_3 * slide_2_plus_minus_plus
-    t32 = slide_2_plus_minus_plus * t22
+    t32 = slide_3 * slide_2_plus_minus_plus
+    t33 = slide_2_plus_minus_plus * t22
     del t22
-    t33 = _runtime.status(invalid, unreachable, np.abs(t25 + A_11 * t31 + t32) <= t26)
+    t34 = _runtime.status(invalid, unreachable, t20 * np.abs(t25 + A_11 * t32 + t33) <= t27)
     del t25
-    t34 = slide_3_plus_plus_minus * slide_2_plus_minus_plus
-    t35 = _runtime.status(invalid, unreachable, np.abs(t29 + t32 + A_11 * t34) <= t26)
-    del A_11, t29, t32
+    t35 = slide_3_plus_plus_minus * slide_2_plus_minus_plus
+    t36 = _runtime.status(invalid, unreachable, t20 * np.abs(t30 + t33 + A_11 * t35) <= t27)
+    del A_11, t30, t33
     A_11_minus_plus_plus = x - slide_1_minus_plus_plus
-    t36 = z * slide_1_minus_plus_plus
-    t37 = slide_2 * t36
+    t37 = z * slide_1_minus_plus_plus
+    t38 = slide_2 * t37
     del slide_2
-    t38 = y * slide_1_minus_plus_plus
+    t39 = y * slide_1_minus_plus_plus
     del slide_1_minus_plus_plus
-    t39 = slide_3 * t38
+    t40 = slide_3 * t39
     del slide_3
-    t40 = np.abs(A_11_minus_plus_plus * t21 + t37 + t39)
+    t41 = np.abs(A_11_minus_plus_plus * t21 + t38 + t40)
     del t21
-    t41 = _runtime.status(invalid, unreachable, t40 <= t26)
-    del t40
-    t42 = slide_3_plus_plus_minus * t38
-    del slide_3_plus_plus_minus, t38
-    t43 = np.abs(t37 + A_11_minus_plus_plus * t28 + t42)
-    del t28, t37
-    t44 = _runtime.status(invalid, unreachable, t43 <= t26)
-    del t43
-    t45 = slide_2_plus_minus_plus * t36
-    del slide_2_plus_minus_plus, t36
-    t46 = np.abs(t39 + A_11_minus_plus_plus * t31 + t45)
-    del t31, t39
-    t47 = _runtime.status(invalid, unreachable, t46 <= t26)
-    del t46
-    t48 = np.abs(t42 + t45 + A_11_minus_plus_plus * t34)
-    del A_11_minus_plus_plus, t34, t42, t45
-    t49 = _runtime.status(invalid, unreachable, t48 <= t26)
-    del invalid, t26, t48, unreachable
+    t42 = _runtime.status(invalid, unreachable, t20 * t41 <= t27)
+    del t41
+    t43 = slide_3_plus_plus_minus * t39
+    del slide_3_plus_plus_minus, t39
+    t44 = np.abs(t38 + A_11_minus_plus_plus * t29 + t43)
+    del t29, t38
+    t45 = _runtime.status(invalid, unreachable, t20 * t44 <= t27)
+    del t44
+    t46 = slide_2_plus_minus_plus * t37
+    del slide_2_plus_minus_plus, t37
+    t47 = np.abs(t40 + A_11_minus_plus_plus * t32 + t46)
+    del t32, t40
+    t48 = _runtime.status(invalid, unreachable, t20 * t47 <= t27)
+    del t47
+    t49 = np.abs(t43 + t46 + A_11_minus_plus_plus * t35)
+    del A_11_minus_plus_plus, t35, t43, t46
+    t50 = _runtime.status(invalid, unreachable, t20 * t49 <= t27)
+    del invalid, t20, t27, t49, unreachable
     return (
+        t14,
         t15,
         t16,
+        t14,
+        t15,
         t17,
+        t14,
+        t18,
+        t16,
+        t14,
+        t18,
+        t17,
+        t19,
         t15,
         t16,
-        t18,
+        t19,
         t15,
-        t19,
         t17,
-        t15,
         t19,
         t18,
-        t20,
         t16,
-        t17,
-        t20,
-        t16,
-        t18,
-        t20,
-        t19,
-        t17,
-        t20,
         t19,
         t18,
-        t27,
-        t30,
-        t33,
-        t35,
-        t41,
-        t44,
-        t47,
-        t49,
+        t17,
+        t28,
+        t31,
+        t34,
+        t36,
+        t42,
+        t45,
+        t48,
+        t50,
     )
 
 
@@ -2475,7 +2479,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L',),
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2515,7 +2519,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """

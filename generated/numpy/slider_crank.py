@@ -9,7 +9,7 @@
 #   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
-#   ik: 39 compare and select, 19 add, 2 atan2, 2 divide, 16 multiply, 2 sqrt
+#   ik: 42 compare and select, 20 add, 2 atan2, 2 divide, 19 multiply, 2 sqrt
 #   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
 """Slider-crank.
 
@@ -638,7 +638,6 @@ def _ik(x, r, l, e):
     size = np.abs(e) + np.abs(x) + t1
     t2 = _runtime.VANISHING * size
     t3 = (R_1 <= t2) | (r <= t2)
-    del t2
     t4 = t1 - R_1
     t5 = r - l
     t6 = R_1 - t5
@@ -665,7 +664,7 @@ def _ik(x, r, l, e):
     t18 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
     unreachable = np.logical_not((t18 <= t4) & (t18 <= t8) & (t18 <= t6))
-    del t18, t4, t6, t8
+    del t18
     t19 = _runtime.poison(invalid | unreachable)
     cosine_1_minus = _runtime.select(t3, 1.0, -(t14 + t13))
     del t13, t14
@@ -673,16 +672,21 @@ def _ik(x, r, l, e):
     del t11, t12
     share_1 = r / _runtime.select(t3, 1.0, R_1 * (t7 + t9))
     del R_1, t7, t9
-    t21 = l * _runtime.DETERMINED
-    t22 = _runtime.status(invalid, unreachable, t3 | (np.abs(x - cosine_1 * share_1) <= t21))
+    t21 = np.minimum(np.minimum(np.minimum(0.0, t4), t8), t6)
+    del t4, t6, t8
+    t22 = l * _runtime.DETERMINED * (t2 - t21)
+    del t21
+    t23 = t3 | (t2 * np.abs(x - cosine_1 * share_1) <= t22)
     del cosine_1
-    t23 = t3 | (np.abs(x - cosine_1_minus * share_1) <= t21)
-    del cosine_1_minus, share_1, t21, t3
+    t24 = t2 * np.abs(x - cosine_1_minus * share_1) <= t22
+    del cosine_1_minus, share_1, t2, t22
+    t25 = _runtime.status(invalid, unreachable, t3 | t24)
+    del t24, t3
     return (
         _runtime.wrap_cut(-t15) + t19,
         _runtime.wrap_cut(-t20) + t19,
-        t22,
         _runtime.status(invalid, unreachable, t23),
+        t25,
     )
 
 

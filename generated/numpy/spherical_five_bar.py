@@ -9,8 +9,8 @@
 #   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
 #   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
 #   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
-#   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
-#   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
+#   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -1872,7 +1872,6 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     aside_1 = px_0 - t6
     t7 = r_1 - aside_1
     t8 = aside_1 + r_1
-    del aside_1
     fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
     t9 = l_1 - R_1
     t10 = fore_1 + t9
@@ -1902,164 +1901,170 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t26 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     invalid = np.logical_not(t25 & t26)
     del t25, t26
-    t27 = r * 0.5
-    t28 = _runtime.FEASIBILITY * t27
-    t29 = (np.abs(r - strut_0) <= t28) & (-t28 <= t7) & (-t28 <= t8)
+    t27 = _runtime.FEASIBILITY * (r * 0.5)
+    t28 = (np.abs(r - strut_0) <= t27) & (-t27 <= t7) & (-t27 <= t8)
     del strut_0, t7, t8
-    t30 = r * 2.384185791015625e-07
-    t31 = _runtime.FEASIBILITY * (t27 + r * r_1 / (2.0 * (t30 + fore_1)))
+    t29 = r * 2.384185791015625e-07
+    lost_1 = np.maximum(1.0, r_1 / (t29 + fore_1))
     del fore_1
-    t32 = t29 & (-t31 <= t10) & (-t31 <= t14) & (-t31 <= t11)
-    del t10, t11, t14, t29, t31
-    t33 = np.abs(s_beta2_half)
+    t30 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5))
+    t31 = t28 & (t30 <= t10) & (t30 <= t14) & (t30 <= t11)
+    del t28, t30
+    t32 = np.abs(s_beta2_half)
     del s_beta2_half
-    r_2 = t33 * t5
+    r_2 = t32 * t5
     del t5
-    t34 = r * c_alpha2
+    t33 = r * c_alpha2
     del c_alpha2
-    t35 = c_gamma * t34
-    t36 = px_0 - t35
-    t37 = s_gamma * t34
-    del t34
-    t38 = py_0 - t37
-    aside_2 = c_gamma * t36 + s_gamma * t38
-    t39 = r_2 - aside_2
-    t40 = r_2 + aside_2
-    del aside_2
-    fore_2 = np.sqrt(np.maximum(t39, 0.0) * np.maximum(t40, 0.0))
-    t41 = _runtime.FEASIBILITY * (t27 + r * r_2 / (2.0 * (t30 + fore_2)))
-    del t27, t30
+    t34 = c_gamma * t33
+    t35 = px_0 - t34
+    t36 = s_gamma * t33
+    del t33
+    t37 = py_0 - t36
+    aside_2 = c_gamma * t35 + s_gamma * t37
+    t38 = r_2 - aside_2
+    t39 = r_2 + aside_2
+    fore_2 = np.sqrt(np.maximum(t38, 0.0) * np.maximum(t39, 0.0))
+    lost_2 = np.maximum(1.0, r_2 / (t29 + fore_2))
+    del t29
+    t40 = -(_runtime.FEASIBILITY * (r * lost_2 * 0.5))
     l_2 = r * np.abs(s_alpha2)
     del s_alpha2
-    t42 = l_2 + fore_2
-    t43 = s_gamma * t36 - c_gamma * t38
-    del t36, t38
-    R_2 = np.sqrt(t2 + t43 * t43)
+    t41 = l_2 + fore_2
+    t42 = s_gamma * t35 - c_gamma * t37
+    del t35, t37
+    R_2 = np.sqrt(t2 + t42 * t42)
     del t2
-    t44 = t42 - R_2
-    t45 = t32 & (-t28 <= t39) & (-t28 <= t40) & (-t41 <= t44)
-    del t28, t32, t39, t40
-    t46 = l_2 - fore_2
+    t43 = t41 - R_2
+    t44 = t31 & (-t27 <= t38) & (-t27 <= t39) & (t40 <= t43)
+    del t27, t31, t38, t39
+    t45 = l_2 - fore_2
     del fore_2
-    t47 = R_2 + t46
-    t48 = R_2 - t46
-    del t46
-    unreachable = np.logical_not(t45 & (-t41 <= t47) & (-t41 <= t48))
-    del t41, t45
-    t49 = _runtime.poison(invalid | unreachable)
-    t50 = t22 + t49
+    t46 = R_2 + t45
+    t47 = R_2 - t45
+    del t45
+    unreachable = np.logical_not(t44 & (t40 <= t46) & (t40 <= t47))
+    del t40, t44
+    t48 = _runtime.poison(invalid | unreachable)
+    t49 = t22 + t48
     del t22
     met_2 = R_2 <= t1
     no_crank_2 = l_2 <= t1
-    del t1
-    t51 = met_2 | no_crank_2
-    t52 = np.maximum(t44, 0.0) * np.maximum(t48, 0.0)
-    del t44, t48
-    t53 = (R_2 + t42) * np.maximum(t47, 0.0)
-    del t42, t47
-    t54 = t52 - t53
-    t55 = pz_0 * t54
-    beyond_2 = 2.0 * np.sqrt(t52 * t53)
-    t56 = t43 * beyond_2
-    t57 = _runtime.select(t51, 0.0, t55 - t56)
-    t58 = t43 * t54
-    del t43, t54
-    t59 = pz_0 * beyond_2
+    t50 = met_2 | no_crank_2
+    t51 = np.maximum(t43, 0.0) * np.maximum(t47, 0.0)
+    t52 = (R_2 + t41) * np.maximum(t46, 0.0)
+    del t41
+    t53 = t51 - t52
+    t54 = pz_0 * t53
+    beyond_2 = 2.0 * np.sqrt(t51 * t52)
+    t55 = t42 * beyond_2
+    t56 = _runtime.select(t50, 0.0, t54 - t55)
+    t57 = t42 * t53
+    del t42, t53
+    t58 = pz_0 * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t51, 1.0, t58 + t59)
-    t60 = _runtime.wrap_cut(-np.arctan2(t57, cosine_2))
-    t61 = t60 + t49
-    del t60
-    t62 = _runtime.select(t51, 0.0, t55 + t56)
-    del t55, t56
-    cosine_2_plus_minus = _runtime.select(t51, 1.0, t58 - t59)
-    del t58, t59
-    t63 = _runtime.wrap_cut(-np.arctan2(t62, cosine_2_plus_minus))
-    t64 = t63 + t49
-    del t63
-    t65 = _runtime.select(t3, 0.0, t17 - t18)
+    cosine_2 = _runtime.select(t50, 1.0, t57 + t58)
+    t59 = _runtime.wrap_cut(-np.arctan2(t56, cosine_2))
+    t60 = t59 + t48
+    del t59
+    t61 = _runtime.select(t50, 0.0, t54 + t55)
+    del t54, t55
+    cosine_2_plus_minus = _runtime.select(t50, 1.0, t57 - t58)
+    del t57, t58
+    t62 = _runtime.wrap_cut(-np.arctan2(t61, cosine_2_plus_minus))
+    t63 = t62 + t48
+    del t62
+    t64 = _runtime.select(t3, 0.0, t17 - t18)
     del t17, t18
     cosine_1_minus_plus = _runtime.select(t3, 1.0, -(t21 + t20))
     del t20, t21
-    t66 = _runtime.wrap_cut(-np.arctan2(t65, cosine_1_minus_plus))
-    t67 = t66 + t49
-    del t49, t66
-    t68 = t3 | met_2 | no_crank_2
+    t65 = _runtime.wrap_cut(-np.arctan2(t64, cosine_1_minus_plus))
+    t66 = t65 + t48
+    del t48, t65
+    t67 = t3 | met_2 | no_crank_2
     del met_2, no_crank_2
     share_1 = l_1 / _runtime.select(t3, 1.0, R_1 * (t12 + t15))
     del R_1, t12, t15, t3
-    t69 = cosine_1 * share_1
+    t68 = cosine_1 * share_1
     del cosine_1
-    share_2 = l_2 / _runtime.select(t51, 1.0, R_2 * (t52 + t53))
-    del R_2, t51, t52, t53
-    A_23 = t57 * share_2
-    del t57
+    share_2 = l_2 / _runtime.select(t50, 1.0, R_2 * (t51 + t52))
+    del R_2, t50, t51, t52
+    A_23 = t56 * share_2
+    del t56
     A_13 = t19 * share_1
     del t19
-    t70 = c_gamma * share_2
+    t69 = c_gamma * share_2
     del c_gamma
-    t71 = t37 + cosine_2 * t70
-    t72 = t6 * A_23
-    t73 = s_gamma * share_2
+    t70 = t36 + cosine_2 * t69
+    t71 = t6 * A_23
+    t72 = s_gamma * share_2
     del s_gamma
-    t74 = t35 - cosine_2 * t73
+    t73 = t34 - cosine_2 * t72
     del cosine_2
-    t75 = px_0 * (t69 * A_23 - A_13 * t71) - py_0 * (t72 - A_13 * t74)
-    t76 = t6 * t71
-    t77 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
-    del l_1, l_2, r_1, r_2, t33, t4
-    t78 = _runtime.DETERMINED * t77
-    del t77
-    t79 = np.abs(t75 - pz_0 * (t76 - t69 * t74)) <= t78
-    del t75
-    t80 = _runtime.status(invalid, unreachable, t68 | t79)
-    del t79
-    A_23_plus_minus = t62 * share_2
-    del share_2, t62
-    t81 = t37 + cosine_2_plus_minus * t70
-    del t37, t70
-    t82 = t6 * A_23_plus_minus
-    t83 = t35 - cosine_2_plus_minus * t73
-    del cosine_2_plus_minus, t35, t73
-    t84 = px_0 * (t69 * A_23_plus_minus - A_13 * t81) - py_0 * (t82 - A_13 * t83)
+    t74 = px_0 * (t68 * A_23 - A_13 * t70) - py_0 * (t71 - A_13 * t73)
+    t75 = t6 * t70
+    t76 = t4 * t32 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    del l_1, l_2, t32, t4
+    t77 = np.minimum(np.minimum(np.minimum(0.0, t10), t14), t11)
+    del t10, t11, t14
+    missed_1 = np.maximum(0.0, np.abs(aside_1) - r_1) - t77 / lost_1
+    del aside_1, lost_1, r_1, t77
+    t78 = np.minimum(np.minimum(np.minimum(0.0, t43), t46), t47)
+    del t43, t46, t47
+    missed_2 = np.maximum(0.0, np.abs(aside_2) - r_2) - t78 / lost_2
+    del aside_2, lost_2, r_2, t78
+    t79 = _runtime.DETERMINED * t76 * (t1 + (missed_1 + missed_2))
+    del missed_1, missed_2, t76
+    t80 = t1 * np.abs(t74 - pz_0 * (t75 - t68 * t73)) <= t79
+    del t74
+    t81 = _runtime.status(invalid, unreachable, t67 | t80)
+    del t80
+    A_23_plus_minus = t61 * share_2
+    del share_2, t61
+    t82 = t36 + cosine_2_plus_minus * t69
+    del t36, t69
+    t83 = t6 * A_23_plus_minus
+    t84 = t34 - cosine_2_plus_minus * t72
+    del cosine_2_plus_minus, t34, t72
+    t85 = px_0 * (t68 * A_23_plus_minus - A_13 * t82) - py_0 * (t83 - A_13 * t84)
     del A_13
-    t85 = t6 * t81
+    t86 = t6 * t82
     del t6
-    t86 = np.abs(t84 - pz_0 * (t85 - t69 * t83)) <= t78
-    del t69, t84
-    t87 = _runtime.status(invalid, unreachable, t68 | t86)
-    del t86
-    t88 = cosine_1_minus_plus * share_1
+    t87 = t1 * np.abs(t85 - pz_0 * (t86 - t68 * t84)) <= t79
+    del t68, t85
+    t88 = _runtime.status(invalid, unreachable, t67 | t87)
+    del t87
+    t89 = cosine_1_minus_plus * share_1
     del cosine_1_minus_plus
-    A_13_minus_plus = t65 * share_1
-    del share_1, t65
-    t89 = px_0 * (A_23 * t88 - t71 * A_13_minus_plus) - py_0 * (t72 - t74 * A_13_minus_plus)
-    del A_23, t71, t72
-    t90 = np.abs(t89 - pz_0 * (t76 - t74 * t88)) <= t78
-    del t74, t76, t89
-    t91 = _runtime.status(invalid, unreachable, t68 | t90)
-    del t90
-    t92 = A_23_plus_minus * t88 - t81 * A_13_minus_plus
-    del A_23_plus_minus, t81
-    t93 = px_0 * t92 - py_0 * (t82 - t83 * A_13_minus_plus)
-    del A_13_minus_plus, px_0, py_0, t82, t92
-    t94 = np.abs(t93 - pz_0 * (t85 - t83 * t88)) <= t78
-    del pz_0, t78, t83, t85, t88, t93
-    t95 = _runtime.status(invalid, unreachable, t68 | t94)
-    del invalid, t68, t94, unreachable
+    A_13_minus_plus = t64 * share_1
+    del share_1, t64
+    t90 = px_0 * (A_23 * t89 - t70 * A_13_minus_plus) - py_0 * (t71 - t73 * A_13_minus_plus)
+    del A_23, t70, t71
+    t91 = t1 * np.abs(t90 - pz_0 * (t75 - t73 * t89)) <= t79
+    del t73, t75, t90
+    t92 = _runtime.status(invalid, unreachable, t67 | t91)
+    del t91
+    t93 = A_23_plus_minus * t89 - t82 * A_13_minus_plus
+    del A_23_plus_minus, t82
+    t94 = px_0 * t93 - py_0 * (t83 - t84 * A_13_minus_plus)
+    del A_13_minus_plus, px_0, py_0, t83, t93
+    t95 = t1 * np.abs(t94 - pz_0 * (t86 - t84 * t89)) <= t79
+    del pz_0, t1, t79, t84, t86, t89, t94
+    t96 = _runtime.status(invalid, unreachable, t67 | t95)
+    del invalid, t67, t95, unreachable
     return (
-        t50,
-        t61,
-        t50,
-        t64,
-        t67,
-        t61,
-        t67,
-        t64,
-        t80,
-        t87,
-        t91,
-        t95,
+        t49,
+        t60,
+        t49,
+        t63,
+        t66,
+        t60,
+        t66,
+        t63,
+        t81,
+        t88,
+        t92,
+        t96,
     )
 
 
@@ -2110,7 +2115,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
     - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
+      target is just outside of the workspace, the length by which the answer misses it counts
+      as a rounding error too.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)
@@ -2131,25 +2138,26 @@ def _workspace_contains(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     del t2
     t4 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     strut_0 = np.sqrt(x * x + y * y + z * z)
-    t5 = r * 0.5
-    t6 = _runtime.FEASIBILITY * t5
-    t7 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t7
+    t5 = _runtime.FEASIBILITY * (r * 0.5)
+    t6 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t6
     del s_beta1_half
     share_0 = _runtime.select(strut_0 <= r * _runtime.VANISHING, 1.0, r / strut_0)
     px_0 = x * share_0
     aside_1 = px_0 - r * c_alpha1
     del c_alpha1
-    t8 = r_1 - aside_1
-    t9 = aside_1 + r_1
+    t7 = r_1 - aside_1
+    t8 = aside_1 + r_1
     del aside_1
-    t10 = (np.abs(r - strut_0) <= t6) & (-t6 <= t8) & (-t6 <= t9)
+    t9 = (np.abs(r - strut_0) <= t5) & (-t5 <= t7) & (-t5 <= t8)
     del strut_0
-    t11 = r * 2.384185791015625e-07
-    fore_1 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
-    del t8, t9
-    t12 = _runtime.FEASIBILITY * (t5 + r * r_1 / (2.0 * (t11 + fore_1)))
+    t10 = r * 2.384185791015625e-07
+    fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
+    del t7, t8
+    t11 = r * np.maximum(1.0, r_1 / (t10 + fore_1)) * 0.5
     del r_1
+    t12 = -(_runtime.FEASIBILITY * t11)
+    del t11
     l_1 = r * np.abs(s_alpha1)
     del s_alpha1
     py_0 = y * share_0
@@ -2159,10 +2167,10 @@ def _workspace_contains(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     del pz_0
     R_1 = np.sqrt(py_0 * py_0 + t13)
     t14 = l_1 - R_1
-    t15 = t10 & (-t12 <= fore_1 + t14) & (-t12 <= l_1 + R_1 - fore_1)
-    del R_1, l_1, t10
-    r_2 = np.abs(s_beta2_half) * t7
-    del s_beta2_half, t7
+    t15 = t9 & (t12 <= fore_1 + t14) & (t12 <= l_1 + R_1 - fore_1)
+    del R_1, l_1, t9
+    r_2 = np.abs(s_beta2_half) * t6
+    del s_beta2_half, t6
     t16 = r * c_alpha2
     del c_alpha2
     t17 = px_0 - c_gamma * t16
@@ -2173,23 +2181,25 @@ def _workspace_contains(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t19 = r_2 - aside_2
     t20 = r_2 + aside_2
     del aside_2
-    t21 = t15 & (-t12 <= fore_1 - t14) & (-t6 <= t19) & (-t6 <= t20)
-    del fore_1, t12, t14, t15, t6
+    t21 = t15 & (t12 <= fore_1 - t14) & (-t5 <= t19) & (-t5 <= t20)
+    del fore_1, t12, t14, t15, t5
     fore_2 = np.sqrt(np.maximum(t19, 0.0) * np.maximum(t20, 0.0))
     del t19, t20
-    t22 = _runtime.FEASIBILITY * (t5 + r * r_2 / (2.0 * (t11 + fore_2)))
-    del r_2, t11, t5
+    t22 = r * np.maximum(1.0, r_2 / (t10 + fore_2)) * 0.5
+    del r_2, t10
+    t23 = -(_runtime.FEASIBILITY * t22)
+    del t22
     l_2 = r * np.abs(s_alpha2)
     del s_alpha2
-    t23 = s_gamma * t17 - c_gamma * t18
+    t24 = s_gamma * t17 - c_gamma * t18
     del c_gamma, s_gamma, t17, t18
-    R_2 = np.sqrt(t13 + t23 * t23)
-    del t13, t23
-    t24 = l_2 - fore_2
-    t25 = t21 & (-t22 <= l_2 + fore_2 - R_2) & (-t22 <= R_2 + t24)
+    R_2 = np.sqrt(t13 + t24 * t24)
+    del t13, t24
+    t25 = l_2 - fore_2
+    t26 = t21 & (t23 <= l_2 + fore_2 - R_2) & (t23 <= R_2 + t25)
     del fore_2, l_2, t21
-    failed = np.logical_not(t3 & t4) | np.logical_not(t25 & (-t22 <= R_2 - t24))
-    del R_2, t22, t24, t25, t3, t4
+    failed = np.logical_not(t3 & t4) | np.logical_not(t26 & (t23 <= R_2 - t25))
+    del R_2, t23, t25, t26, t3, t4
     return (
         np.logical_not(failed),
     )

@@ -10,7 +10,7 @@
 #   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
 #   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
 #   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 67 compare and select, 206 add, 39 divide, 240 multiply, 2 sincos, 4 sqrt
+#   ik: 73 compare and select, 212 add, 39 divide, 250 multiply, 2 sincos, 4 sqrt
 #   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
@@ -1370,7 +1370,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t23, t24
     invalid = np.logical_not(t25)
     del t25
-    t26 = _runtime.FEASIBILITY * ((b + a + l + np.abs(z)) * 0.5)
+    size = b + a + l + np.abs(z)
+    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
     t27 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
     del t18
     t28 = b + px * 0.5
@@ -1378,9 +1379,9 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     aside_2 = t27 - t28
     del t27
     t29 = l - aside_2
-    t30 = (-t26 <= t21) & (-t26 <= t22) & (-t26 <= t29)
+    t30 = l + aside_2
+    t31 = (t26 <= t21) & (t26 <= t22) & (t26 <= t29) & (t26 <= t30)
     del t21, t22
-    t31 = l + aside_2
     t32 = t12 + t14
     del t12, t14
     t33 = 1.7320508075688772 * (h_12 + (t11 + t17)) * 0.5
@@ -1389,38 +1390,38 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t28, t33
     t34 = l - aside_3
     t35 = l + aside_3
-    t36 = t30 & (-t26 <= t31) & (-t26 <= t34) & (-t26 <= t35)
-    del t26, t30
-    unreachable = np.logical_not(t36)
-    del t36
-    t37 = _runtime.poison(invalid | unreachable)
-    t38 = slide_1 + t37
-    t39 = t10 * 0.5
+    unreachable = np.logical_not(t31 & (t26 <= t34) & (t26 <= t35))
+    del t26, t31
+    t36 = _runtime.poison(invalid | unreachable)
+    t37 = slide_1 + t36
+    t38 = t10 * 0.5
     R_32 = c_tilt_y * t13 + s_tilt_y * s
-    t40 = t5 * R_32 * 0.5
-    h_23 = t39 + t40
+    t39 = t5 * R_32 * 0.5
+    h_23 = t38 + t39
     m_2 = z + h_23
-    root_2 = np.sqrt(np.maximum(t29, 0.0) * np.maximum(t31, 0.0))
-    del t29, t31
+    root_2 = np.sqrt(np.maximum(t29, 0.0) * np.maximum(t30, 0.0))
+    del t29, t30
     slide_2 = m_2 - root_2
-    t41 = slide_2 + t37
-    h_33 = t39 - t40
-    del t39
+    t40 = slide_2 + t36
+    h_33 = t38 - t39
+    del t38
     m_3 = z + h_33
     root_3 = np.sqrt(np.maximum(t34, 0.0) * np.maximum(t35, 0.0))
     del t34, t35
     slide_3 = m_3 - root_3
-    t42 = slide_3 + t37
+    t41 = slide_3 + t36
     slide_3_plus_plus_minus = m_3 + root_3
     del root_3
-    t43 = slide_3_plus_plus_minus + t37
+    t42 = slide_3_plus_plus_minus + t36
     slide_2_plus_minus_plus = m_2 + root_2
     del root_2
-    t44 = slide_2_plus_minus_plus + t37
+    t43 = slide_2_plus_minus_plus + t36
     slide_1_minus_plus_plus = m_1 + root_1
     del root_1
-    t45 = slide_1_minus_plus_plus + t37
-    del t37
+    t44 = slide_1_minus_plus_plus + t36
+    del t36
+    t45 = size * _runtime.VANISHING
+    del size
     least = a * a * (l * l * l)
     t46 = least * delta
     del delta
@@ -1445,7 +1446,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t52, t56
     t58 = t54 * 0.25 - 1.7320508075688772 * t57 / 3.0
     t59 = t49 - 1.7320508075688772 * (t51 - t53) * 0.5 - t58
-    t60 = aside_3 * (t40 - twist_tilt_y * t59)
+    t60 = aside_3 * (t39 - twist_tilt_y * t59)
     t61 = t5 * t9 * 0.5
     t62 = a * R_32
     del R_32
@@ -1487,7 +1488,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t86 = t79 - t84 * t85
     t87 = t67 * t86
     t88 = twist_tilt_y * aside_2 * t78
-    del aside_2, t78
+    del t78
     t89 = t15 + twist_tilt_y * t83
     del t15, t83
     t90 = t88 + t85 * t89
@@ -1495,7 +1496,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t91 = t69 - 1.7320508075688772 * (t71 + t72) * 0.5 + t76
     del t69, t71, t72, t76
     t92 = aside_3 * (t91 - twist_tilt_x * t59)
-    del aside_3, t59, t91
+    del t59, t91
     t93 = t80 + t82 + twist_tilt_x * t64
     del t64, t80, t82
     t94 = t92 - t93 * t66
@@ -1514,8 +1515,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t102 = t99 - t100 * t101
     t103 = t67 * t102
     t104 = z * t102
-    t105 = t20 * (t40 + t50 * t9 - t97 * twist_tilt_y)
-    del t20, t40, t50, t9, t97
+    t105 = t20 * (t39 + t50 * t9 - t97 * twist_tilt_y)
+    del t39, t50, t9, t97
     t106 = h_11 - t62 * twist_tilt_y
     del h_11, t62, twist_tilt_y
     t107 = t105 - t106 * t101
@@ -1531,164 +1532,168 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t114
     t116 = np.minimum(t46, t6 * np.abs(-(t115 + slide_1 * t95)))
     del t115
-    t117 = _runtime.DETERMINED * (t6 * least)
-    del least
-    t118 = _runtime.status(invalid, unreachable, t116 <= t117)
+    t117 = np.maximum(0.0, np.abs(t20) - l) + np.maximum(0.0, np.abs(-aside_2) - l)
+    del aside_2, t20
+    t118 = t45 + (t117 + np.maximum(0.0, np.abs(-aside_3) - l))
+    del aside_3, t117
+    t119 = _runtime.DETERMINED * (t6 * least) * t118
+    del least, t118
+    t120 = _runtime.status(invalid, unreachable, t45 * t116 <= t119)
     del t116
-    t119 = m_3 - slide_3_plus_plus_minus
+    t121 = m_3 - slide_3_plus_plus_minus
     del m_3
-    t120 = t60 + t65 * t119
+    t122 = t60 + t65 * t121
     del t60, t65
-    t121 = t86 * t120
-    t122 = t92 - t93 * t119
-    del t119, t92, t93
-    t123 = t90 * t122
-    t124 = t10 * t121 - z * t121 + (t10 * t123 - z * t123)
-    t125 = t102 * t120
-    t126 = t107 * t122
-    t127 = h_23 * t125 + t104 * t120 + (h_23 * t126 + t109 * t122)
-    t128 = t113 - t124 - t127 - slide_3_plus_plus_minus * t111
+    t123 = t86 * t122
+    t124 = t92 - t93 * t121
+    del t121, t92, t93
+    t125 = t90 * t124
+    t126 = t10 * t123 - z * t123 + (t10 * t125 - z * t125)
+    t127 = t102 * t122
+    t128 = t107 * t124
+    t129 = h_23 * t127 + t104 * t122 + (h_23 * t128 + t109 * t124)
+    t130 = t113 - t126 - t129 - slide_3_plus_plus_minus * t111
     del t111, t113
-    t129 = t128 + slide_2 * t125 + slide_3_plus_plus_minus * t112
-    del t112, t128
-    t130 = t129 + slide_2 * t126 - slide_1 * t121 - slide_1 * t123
-    del t129
-    t131 = _runtime.status(invalid, unreachable, np.minimum(t46, t6 * np.abs(t130)) <= t117)
-    del t130
-    t132 = m_2 - slide_2_plus_minus_plus
+    t131 = t130 + slide_2 * t127 + slide_3_plus_plus_minus * t112
+    del t112, t130
+    t132 = t131 + slide_2 * t128 - slide_1 * t123 - slide_1 * t125
+    del t131
+    t133 = t45 * np.minimum(t46, t6 * np.abs(t132)) <= t119
+    del t132
+    t134 = m_2 - slide_2_plus_minus_plus
     del m_2
-    t133 = t79 - t84 * t132
+    t135 = t79 - t84 * t134
     del t79, t84
-    t134 = t67 * t133
-    t135 = t88 + t89 * t132
-    del t132, t88, t89
-    t136 = t94 * t135
-    t137 = t10 * t134 - z * t134 + (t10 * t136 - z * t136)
-    t138 = t102 * t135
+    t136 = t67 * t135
+    t137 = t88 + t89 * t134
+    del t134, t88, t89
+    t138 = t94 * t137
+    t139 = t10 * t136 - z * t136 + (t10 * t138 - z * t138)
+    t140 = t102 * t137
     del t102
-    t139 = t107 * t133
+    t141 = t107 * t135
     del t107
-    t140 = h_33 * t138 + t104 * t135 - (h_33 * t139 + t109 * t133)
+    t142 = h_33 * t140 + t104 * t137 - (h_33 * t141 + t109 * t135)
     del t104, t109
-    t141 = t110 + t137 - t140 + slide_3 * t138 - slide_2_plus_minus_plus * t103
+    t143 = t110 + t139 - t142 + slide_3 * t140 - slide_2_plus_minus_plus * t103
     del t103, t110
-    t142 = t141 - slide_3 * t139 - slide_2_plus_minus_plus * t108
-    del t108, t141
-    t143 = np.abs(t142 + slide_1 * t134 + slide_1 * t136)
-    del t142
-    t144 = _runtime.status(invalid, unreachable, np.minimum(t46, t6 * t143) <= t117)
-    del t143
-    t145 = t120 * t133
-    t146 = t122 * t135
-    t147 = t10 * t145 - z * t145 + (t10 * t146 - z * t146)
+    t144 = t143 - slide_3 * t141 - slide_2_plus_minus_plus * t108
+    del t108, t143
+    t145 = np.abs(t144 + slide_1 * t136 + slide_1 * t138)
+    del t144
+    t146 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t145) <= t119)
+    del t145
+    t147 = t122 * t135
+    t148 = t124 * t137
+    t149 = t10 * t147 - z * t147 + (t10 * t148 - z * t148)
     del t10
-    t148 = t127 - t140 + t147 + slide_3_plus_plus_minus * t138
-    del t127, t138, t140
-    t149 = t148 - slide_2_plus_minus_plus * t125 - slide_3_plus_plus_minus * t139
-    del t125, t139, t148
-    t150 = t149 - slide_2_plus_minus_plus * t126 + slide_1 * t145
-    del t126, t149
-    t151 = np.minimum(t46, t6 * np.abs(t150 + slide_1 * t146))
-    del slide_1, t150
-    t152 = _runtime.status(invalid, unreachable, t151 <= t117)
-    del t151
-    t153 = m_1 - slide_1_minus_plus_plus
+    t150 = t129 - t142 + t149 + slide_3_plus_plus_minus * t140
+    del t129, t140, t142
+    t151 = t150 - slide_2_plus_minus_plus * t127 - slide_3_plus_plus_minus * t141
+    del t127, t141, t150
+    t152 = t151 - slide_2_plus_minus_plus * t128 + slide_1 * t147
+    del t128, t151
+    t153 = np.minimum(t46, t6 * np.abs(t152 + slide_1 * t148))
+    del slide_1, t152
+    t154 = _runtime.status(invalid, unreachable, t45 * t153 <= t119)
+    del t153
+    t155 = m_1 - slide_1_minus_plus_plus
     del m_1
-    t154 = t99 - t100 * t153
+    t156 = t99 - t100 * t155
     del t100, t99
-    t155 = t67 * t154
-    t156 = z * t154
-    A_13_minus_plus_plus = t105 - t106 * t153
-    del t105, t106, t153
-    t157 = t94 * A_13_minus_plus_plus
-    t158 = z * A_13_minus_plus_plus
-    t159 = h_23 * t155 + t67 * t156 + (h_23 * t157 + t94 * t158)
+    t157 = t67 * t156
+    t158 = z * t156
+    A_13_minus_plus_plus = t105 - t106 * t155
+    del t105, t106, t155
+    t159 = t94 * A_13_minus_plus_plus
+    t160 = z * A_13_minus_plus_plus
+    t161 = h_23 * t157 + t67 * t158 + (h_23 * t159 + t94 * t160)
     del t67, t94
-    t160 = t90 * t154
-    t161 = t86 * A_13_minus_plus_plus
-    t162 = h_33 * t160 + t90 * t156 - (h_33 * t161 + t86 * t158)
+    t162 = t90 * t156
+    t163 = t86 * A_13_minus_plus_plus
+    t164 = h_33 * t162 + t90 * t158 - (h_33 * t163 + t86 * t160)
     del t86, t90
-    t163 = t96 + t159 - t162 + slide_3 * t160 - slide_2 * t155
+    t165 = t96 + t161 - t164 + slide_3 * t162 - slide_2 * t157
     del t96
-    t164 = t163 - slide_3 * t161 - slide_2 * t157 + slide_1_minus_plus_plus * t87
-    del t163, t87
-    t165 = t6 * np.abs(t164 + slide_1_minus_plus_plus * t95)
-    del t164, t95
-    t166 = _runtime.status(invalid, unreachable, np.minimum(t46, t165) <= t117)
-    del t165
-    t167 = t120 * t154
-    t168 = t122 * A_13_minus_plus_plus
-    t169 = h_23 * t167 + t120 * t156 + (h_23 * t168 + t122 * t158)
-    del h_23, t120, t122
-    t170 = t124 - t162 + t169 + slide_3_plus_plus_minus * t160
-    del t124, t160, t162
-    t171 = t170 - slide_2 * t167 - slide_3_plus_plus_minus * t161
-    del t161, t170
-    t172 = t171 - slide_2 * t168 + slide_1_minus_plus_plus * t121
-    del slide_2, t121, t171
-    t173 = np.abs(t172 + slide_1_minus_plus_plus * t123)
-    del t123, t172
-    t174 = _runtime.status(invalid, unreachable, np.minimum(t46, t6 * t173) <= t117)
-    del t173
-    t175 = t135 * t154
-    del t154
-    t176 = t133 * A_13_minus_plus_plus
+    t166 = t165 - slide_3 * t163 - slide_2 * t159 + slide_1_minus_plus_plus * t87
+    del t165, t87
+    t167 = t6 * np.abs(t166 + slide_1_minus_plus_plus * t95)
+    del t166, t95
+    t168 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t167) <= t119)
+    del t167
+    t169 = t122 * t156
+    t170 = t124 * A_13_minus_plus_plus
+    t171 = h_23 * t169 + t122 * t158 + (h_23 * t170 + t124 * t160)
+    del h_23, t122, t124
+    t172 = t126 - t164 + t171 + slide_3_plus_plus_minus * t162
+    del t126, t162, t164
+    t173 = t172 - slide_2 * t169 - slide_3_plus_plus_minus * t163
+    del t163, t172
+    t174 = t173 - slide_2 * t170 + slide_1_minus_plus_plus * t123
+    del slide_2, t123, t173
+    t175 = np.abs(t174 + slide_1_minus_plus_plus * t125)
+    del t125, t174
+    t176 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t175) <= t119)
+    del t175
+    t177 = t137 * t156
+    del t156
+    t178 = t135 * A_13_minus_plus_plus
     del A_13_minus_plus_plus
-    t177 = h_33 * t175 + t135 * t156 - (h_33 * t176 + t133 * t158)
-    del h_33, t133, t135, t156, t158
-    t178 = t137 + t159 - t177 + slide_3 * t175 - slide_2_plus_minus_plus * t155
-    del t137, t155, t159
-    t179 = t178 - slide_3 * t176 - slide_2_plus_minus_plus * t157
-    del slide_3, t157, t178
-    Delta_minus_minus_plus = t179 + slide_1_minus_plus_plus * t134 + slide_1_minus_plus_plus * t136
-    del t134, t136, t179
-    t180 = np.minimum(t46, t6 * np.abs(Delta_minus_minus_plus))
+    t179 = h_33 * t177 + t137 * t158 - (h_33 * t178 + t135 * t160)
+    del h_33, t135, t137, t158, t160
+    t180 = t139 + t161 - t179 + slide_3 * t177 - slide_2_plus_minus_plus * t157
+    del t139, t157, t161
+    t181 = t180 - slide_3 * t178 - slide_2_plus_minus_plus * t159
+    del slide_3, t159, t180
+    Delta_minus_minus_plus = t181 + slide_1_minus_plus_plus * t136 + slide_1_minus_plus_plus * t138
+    del t136, t138, t181
+    t182 = np.minimum(t46, t6 * np.abs(Delta_minus_minus_plus))
     del Delta_minus_minus_plus
-    t181 = _runtime.status(invalid, unreachable, t180 <= t117)
-    del t180
-    t182 = t147 + t169 - t177 + slide_3_plus_plus_minus * t175
-    del t147, t169, t175, t177
-    t183 = t182 - slide_2_plus_minus_plus * t167 - slide_3_plus_plus_minus * t176
-    del slide_3_plus_plus_minus, t167, t176, t182
-    t184 = t183 - slide_2_plus_minus_plus * t168 + slide_1_minus_plus_plus * t145
-    del slide_2_plus_minus_plus, t145, t168, t183
-    t185 = np.abs(t184 + slide_1_minus_plus_plus * t146)
-    del slide_1_minus_plus_plus, t146, t184
-    t186 = _runtime.status(invalid, unreachable, np.minimum(t46, t6 * t185) <= t117)
-    del invalid, t117, t185, t46, t6, unreachable
+    t183 = _runtime.status(invalid, unreachable, t45 * t182 <= t119)
+    del t182
+    t184 = t149 + t171 - t179 + slide_3_plus_plus_minus * t177
+    del t149, t171, t177, t179
+    t185 = t184 - slide_2_plus_minus_plus * t169 - slide_3_plus_plus_minus * t178
+    del slide_3_plus_plus_minus, t169, t178, t184
+    t186 = t185 - slide_2_plus_minus_plus * t170 + slide_1_minus_plus_plus * t147
+    del slide_2_plus_minus_plus, t147, t170, t185
+    t187 = np.abs(t186 + slide_1_minus_plus_plus * t148)
+    del slide_1_minus_plus_plus, t148, t186
+    t188 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t187) <= t119)
+    del t119, t187, t45, t46, t6
     return (
-        t38,
+        t37,
+        t40,
         t41,
+        t37,
+        t40,
         t42,
-        t38,
-        t41,
+        t37,
         t43,
-        t38,
-        t44,
-        t42,
-        t38,
-        t44,
-        t43,
-        t45,
         t41,
-        t42,
-        t45,
-        t41,
+        t37,
         t43,
-        t45,
-        t44,
         t42,
-        t45,
+        t44,
+        t40,
+        t41,
+        t44,
+        t40,
+        t42,
         t44,
         t43,
-        t118,
-        t131,
-        t144,
-        t152,
-        t166,
-        t174,
-        t181,
-        t186,
+        t41,
+        t44,
+        t43,
+        t42,
+        t120,
+        _runtime.status(invalid, unreachable, t133),
+        t146,
+        t154,
+        t168,
+        t176,
+        t183,
+        t188,
     )
 
 
@@ -1699,7 +1704,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('b', 'a', 'l'),
-    size=_runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((0, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 1.0587911840678754e-22, 5.575186299632656e+42),
 )
 
 

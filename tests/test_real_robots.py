@@ -29,7 +29,7 @@ def test_every_file_has_a_row_and_a_source() -> None:
     assert all(robot.source.startswith("https://") for robot in ROBOTS.values())
 
 
-@pytest.mark.parametrize("name", ["cobra600", "crx10ia", "cr5", "iiwa14"])
+@pytest.mark.parametrize("name", ["cobra600", "crx10ia", "cr5", "iiwa14", "x7s_right"])
 def test_a_row_comes_out_again(name: str) -> None:
     """All but the times: structure, number of proved branches and lemmas."""
     if shutil.which("cc") is None:

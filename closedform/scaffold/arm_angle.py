@@ -8,10 +8,10 @@ import sympy as sp
 
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles
-from closedform.scaffold.maker import followed, heading, norm, times
+from closedform.scaffold.maker import followed, times
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
-from closedform.scaffold.wrists import ELBOW, is_normal
+from closedform.scaffold.wrists import is_normal
 
 NAME = "arm_angle"
 SIDES = "{+1: 'front', -1: 'back'}"
@@ -47,7 +47,9 @@ class ArmAngleMaker(SubproblemMaker):
         self.add(f"to_wrist = {source(e)} + rotation('z', {source(elbow.turn)}) * {source(u)}")
         self.add(f"given = arm_angle(ik, R_shoulder, to_wrist[:2, 0]{sense})")
         self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
-        pair = self._elbow(elbow, e, u)
+        pair, turn = f"pair{elbow.number}", self.elbow(elbow, e, u)
+        if turn != pair:
+            self.add(f"{pair} = {turn}.known_as(ik.program, '_{pair}')")
         self.vector("to_wrist", f"{source(e)} + turned({pair}) * {source(u)}")
         because = f"because={{{self.unknowns[elbow.number]}: 1}}"
         arguments = f"given, R_shoulder, to_wrist[:2, 0], p, {because}{sense}"
@@ -59,25 +61,6 @@ class ArmAngleMaker(SubproblemMaker):
         ends = found.joints[4:]
         self.normal_wrist(ends, self.without_tool(found.tool[:3, :3], "left2"))
         return "spherical shoulder, elbow and spherical wrist, with the arm angle given"
-
-    def _elbow(self, joint: Single, e: sp.Matrix, u: sp.Matrix) -> str:
-        """Solve the elbow between the links ``e`` and ``u`` by the distance; returns its pair."""
-        lengths = [norm(w[:2, 0]) for w in (e, u)]
-        self.require(
-            0 not in lengths,
-            f"its shoulder or its wrist is on axis {joint.number}",
-            "An elbow needs two links.",
-        )
-        links = [self.length_of(f"link{k}", w) for k, w in enumerate(lengths, 1)]
-        between = sp.Matrix([e.dot(u), e[0] * u[1] - e[1] * u[0]])
-        offset = heading(between)
-        x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
-        pair = f"pair{joint.number}"
-        self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), p_norm, {ELBOW}", pair, 2)
-        turn = self.less(pair, between)
-        if turn != pair:
-            self.add(f"{pair} = {turn}.known_as(ik.program, '_{pair}')")
-        return pair
 
     def require_right_angles(self, joints: Sequence[Single]) -> None:
         numbers = [j.number for j in joints]

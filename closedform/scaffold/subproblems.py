@@ -10,9 +10,8 @@ The other joints are solved one after another, each by an equation that holds no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import sympy as sp
 
@@ -23,7 +22,7 @@ from closedform.scaffold.maker import Solved, Z, followed, heading, norm, point,
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
-from closedform.scaffold.wrists import SIDE, WristMaker, is_normal
+from closedform.scaffold.wrists import ELBOW, SIDE, WristMaker, is_normal
 
 
 @dataclass
@@ -323,30 +322,77 @@ class SubproblemMaker(WristMaker):
     def _meeting_first(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = two.shift, three.shift, point("p")
         e, g = (two.end.T * t).applyfunc(sp.simplify), one.end * Z
+        links = (e[:2, 0], u[:2, 0])
+        flat = sp.simplify(e[2] + u[2]) == 0 and sp.zeros(2, 1) not in links
+        normal = flat and is_normal((one, two))
         self.add("p_norm = ik.let('p_norm', sqrt(p.dot(p)))")
-        far = sp.Symbol("p_norm")
-        c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
         sides = turning(g, p)
         to_end = f"{source(t)} + {times(two.end, f'(turned({{}}) * {source(u)})')}"
         self.add(f"reach = ik.let('reach', {source(norm(sp.Matrix(sides)))})")
-        self.within_reach(to_end.format("pair"), g[2] * p[2], "reach")
-        scale = "(p_norm + ik.size/2**44)/2"
-        third = self._by_distance(three, e, u, c, scale=scale, toward="seen_across")
+
+        def goal(pair: str) -> str:
+            if normal:
+                return self._two_turns(two, to_end.format(pair), p[2])
+            self.within_reach(to_end.format(pair), g[2] * p[2], "reach")
+            return "seen_across"
+
+        third, factor = (
+            (self.elbow(three, e, u, goal), "1")
+            if flat
+            else (self._by_distance(three, e, u, goal("pair")), "2*ik.size")
+        )
         self.vector("to_end", to_end.format(third))
         v = point("to_end")
         seen = norm(g[:2, 0]) * sp.sqrt(v[0] ** 2 + v[1] ** 2)
-        self.add(f"link = LinksAtHeight({source(seen)}, 0, {source(p[2] - g[2] * v[2])})")
+        link, other = ("LinkAtHeight", "") if normal else ("LinksAtHeight", " 0,")
+        self.add(f"link = {link}({source(seen)},{other} {source(p[2] - g[2] * v[2])})")
         first = self._turn(one, (*sides, v[2] - g[2] * p[2]), "link")
         self.vector("to_target", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
-            f"{{{self.unknowns[three.number]}: 2*ik.size, "
+            f"{{{self.unknowns[three.number]}: {factor}, "
             f"{self.unknowns[one.number]}: to_target[2] + to_end[2]}}"
         )
-        second = self._rotate(two, "to_end", "to_target", because)
+        compared = f", compared={first}.tangent" * normal
+        second = self._rotate(two, "to_end", "to_target", because, more=compared)
         return Solved(
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
+
+    def _two_turns(self, two: Single, to_end: str, along: sp.Expr) -> str:
+        """Name the goal that two turns at right angles bring the point of an elbow to the target.
+
+        The point stays in the plane through the second axis that is normal to that of the elbow.
+        """
+        axis = (two.end * Z).applyfunc(sp.simplify)
+        seen = times(rotation("z", -heading(Z.cross(axis))), f"({to_end})")
+        self.add(f"two_turns = TwoTurns(lambda pair: {seen}, along={source(along)}, across=reach)")
+        return "two_turns"
+
+    def elbow(
+        self, joint: Single, e: sp.Matrix, u: sp.Matrix, goal: Callable[[str], str] | None = None
+    ) -> str:
+        """Solve the elbow between the links ``e`` and ``u`` by the distance; returns its pair.
+
+        ``goal`` names what later joints need of a pair, as it is written.
+        """
+        e, u = e[:2, 0], u[:2, 0]
+        lengths = [norm(e), norm(u)]
+        self.require(
+            0 not in lengths,
+            f"its shoulder or its wrist is on axis {joint.number}",
+            "An elbow needs two links.",
+        )
+        links = [self.length_of(f"link{k}", w) for k, w in enumerate(lengths, 1)]
+        between = sp.Matrix([e.dot(u), e[0] * u[1] - e[1] * u[0]])
+        offset = heading(between)
+        x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
+        pair, turn = f"pair{joint.number}", self.less("{}", between)
+        more = f", toward={goal(turn.format('pair'))}" if goal else ""
+        self.solve("law_of_cosines", f"{x}, ({', '.join(links)}), p_norm, {ELBOW}{more}", pair, 2)
+        self.levers.append(f"{pair}.s")
+        self.solved_as[joint.number] = (x, pair, offset)
+        return turn.format(pair)
 
     def _meeting_last(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = one.shift, three.shift, point("p")
@@ -467,16 +513,17 @@ class SubproblemMaker(WristMaker):
         self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
         return pair
 
-    def _by_distance(
-        self, joint: Single, e: Any, u: Any, c: Any, *, scale: str, toward: str = ""
-    ) -> str:
+    def _by_distance(self, joint: Single, e: sp.Matrix, u: sp.Matrix, toward: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
         a, b = map(sp.simplify, turning(u, e))
+        far = sp.Symbol("p_norm")
+        c = (far**2 - sp.simplify(e.dot(e) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
         self.require(
             (a, b) != (0, 0),
             f"the distance of its wrist does not depend on joint {joint.number}",
             "An elbow needs an axis beside the line of its ends.",
         )
+        scale = "(p_norm + ik.size/2**44)/2"
         return self._turn(joint, (a, b, c), toward, scale=scale, by_size=True)
 
 

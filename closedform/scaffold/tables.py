@@ -49,8 +49,8 @@ CHAIN = (
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (
-    "Links", "LinksAndObliqueWrist", "LinksAndWrist", "LinksAtHeight", "LinksPastTurn", "OnCircle",
-    "Pair",
+    "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist", "LinksAtHeight",
+    "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",

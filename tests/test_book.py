@@ -157,6 +157,7 @@ def test_a_symbol_without_a_meaning_is_found() -> None:
         (r"\det J_{xy}", ["J_{xy}"]),
         (r"|\text{A} - \text{B}|", []),
         (r"r_{\mathrm{S}}^2", [r"r_{\mathrm{S}}"]),
+        (r"(\varphi, \beta)_{\text{crossed}}", [r"\varphi", r"\beta"]),
         (r"\mathbf p = \mathbf c + \overrightarrow{CP}",
          [r"\mathbf{p}", r"\mathbf{c}", r"\overrightarrow{CP}"]),
     ],

@@ -20,6 +20,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.hand import check_order, check_plain, in_space, square
 from closedform.lemmas.leg_by_leg import (
+    MISSED,
     SIGN,
     Choice,
     LegByLeg,
@@ -29,8 +30,8 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.lemmas.loop import NEAR
-from closedform.lemmas.modes import NO_MODE, export
 from closedform.lemmas.missed import MOVED, SHARE, loosened
+from closedform.lemmas.modes import NO_MODE, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
@@ -348,7 +349,13 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
         "because the first leg also moves the point c.  B is singular if a joint moves the near "
         "end of its rod at right angles to it (serial).  A is singular if both centres are in "
         f"line with the hand, which is where {MEET} (parallel).",
-        {"A": sp.Matrix.vstack(*(s.T for s in spans)), "B": rates},
+        {
+            "A": sp.Matrix.vstack(*(s.T for s in spans)),
+            "B": rates,
+            "J": "A^{-1} B",
+            r"\Delta": r"\det A",
+            r"\det J": r"\frac{\det B}{\det A}",
+        },
         proves="A and B are half of the derivatives, and the adjugate of A gives J with A*J = B.",
         equal=[
             (A, 2 * sp.Matrix.vstack(*(s.T for s in spans))),
@@ -357,6 +364,7 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
         ],
         uses=[loop],
     )
+    d.explain({"J": "derivative of p with respect to q", r"\Delta": "the determinant of A"})
     found = _rates(m, at.spans)
     B_at = sp.Matrix(2, 2, [e if e == 0 else v.let(f"B_{n // 2 + 1}{n % 2 + 1}", e)
                             for n, e in enumerate(found)])  # fmt: skip
@@ -408,14 +416,16 @@ def _inverse(m: OnRod, loop: Step) -> None:
     solved.solve(2, second, m.end(m.hand - named, m.hand) - second.base)
     other = m.to_hand * solved.found[1].rod
     volume = g.let("Delta", named[0] * other[1] - named[1] * other[0])
-    g.determined(sp.Abs(volume), solved.lengths(m.legs) * m.stretch, MEET, name=r"|\det A|")
+    scale = solved.lengths(m.legs) * m.stretch
+    missed, size = solved.missed * m.stretch, solved.size
+    g.determined(sp.Abs(volume), scale, MEET, name=r"|\det A|", missed=missed, size=size)
     d.step(
         "Inverse: one leg after the other",
         "The first leg has to reach the hand with its rod.  Then the point c is known, and the "
         "second leg has to reach it with its own rod.  "
         f"{solved.on_modes}Near a parallel singularity rounded joints do not determine the hand.  "
         "The status is SINGULAR if the determinant of A is less than 2^-10 of the product of the "
-        "radii of both circles.",
+        f"radii of both circles.  {MISSED}",
         {},
         uses=[loop],
     )

@@ -133,7 +133,8 @@ def is_name(text: str) -> bool:
 
 def names_in(text: str) -> list[str]:
     """The symbols of a formula, in canonical form and without their powers."""
-    plain = re.sub(r"(?<![,{])\\(?:text|operatorname)\{[^{}]*\}|\\(?:begin|end)\{\w+\}", " ", text)
+    plain = re.sub(r"(?<=\))_\{\\text\{[^{}]*\}\}", " ", text)  # the index of a whole expression
+    plain = re.sub(r"(?<![,{])\\(?:text|operatorname)\{[^{}]*\}|\\(?:begin|end)\{\w+\}", " ", plain)
     found = (m[0] for m in NAME.finditer(plain))
     return [without_power(canonical(n)) for n in found if n not in COMMANDS]
 

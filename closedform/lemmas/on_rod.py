@@ -48,6 +48,7 @@ def on_rod(
     first: Crank | Slide,
     second: Crank | Slide | Stretch,
     at: Sequence[Any],
+    *,
     modes: Choice = SIGN,
 ) -> None:
     """Derive and export a mechanism in a plane whose hand is a point of the rod of a leg.

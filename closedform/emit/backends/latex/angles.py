@@ -30,7 +30,7 @@ from closedform.model.functions import (
 )
 from closedform.model.lemma import Lemma
 
-QUARTERS = {(0, 1): 0, (1, 0): sp.pi / 2, (0, -1): sp.pi, (-1, 0): -sp.pi / 2}
+QUARTERS = {(0, 1): sp.S.Zero, (1, 0): sp.pi / 2, (0, -1): sp.pi, (-1, 0): -sp.pi / 2}
 """The angles whose sine and cosine are whole numbers."""
 
 
@@ -298,7 +298,7 @@ class _InAngles:
         """The angle of a vector: without a common length, as a sum of angles if it is one."""
         y, x = self._shorter(y, x)
         if (y, x) in QUARTERS:
-            return sp.sympify(QUARTERS[y, x])
+            return QUARTERS[y, x]
         found = turned(y, x)
         return sp.atan2(y, x, evaluate=False) if found is None else found
 

@@ -1,7 +1,7 @@
-"""Arms from tables where two of the things that make a posture singular happen at once.
+"""Arms from tables where two or three things that make a posture singular happen at once.
 
-There a rounding turns the first joint by a multiple of it, and the next one, which is at the end of
-its range too, would seem to be out of reach.
+There a rounding turns the first joint by a multiple of it, and the next ones, which are at the end
+of their range too, would seem to be out of reach.
 """
 
 import itertools
@@ -39,6 +39,8 @@ FACTORED = (
     *OBLIQUE,
 )
 """Structures whose singular set has a factor for each joint that can reach the end of its range."""
+THREE = ("axes 1, 2 and 3 parallel, 5 and 6 meet", "oblique wrist, three parallel axes")
+"""Those with three factors that vanish together, where a tilt limits the wrist."""
 FRANKA = "spherical shoulder, axes 6 and 5 meet, with t7 given"
 OK, SINGULAR = 0, 2
 BASES, AROUND = 4, 400
@@ -62,20 +64,31 @@ def check(robot: ModuleType, q: np.ndarray, *given: np.ndarray) -> None:
     assert miss[ok].max() < 1e-12 * SIZE
 
 
-@pytest.mark.parametrize("structure", FACTORED)
-def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_path: Path) -> None:
+def check_common_zeros(structure: str, tmp_path: Path, together: int) -> int:
+    """Check postures near zeros of as many factors of the singular set; the sets that have any."""
     d, serial = arm(TABLES[structure])
     serial.export(d)
     solved(d, serial, propose(serial).source)
     robot, rng, tried = printed(d, tmp_path), np.random.default_rng(2), 0
-    for pair in itertools.combinations(range(len(robot.SINGULARITIES)), 2):
+    for some in itertools.combinations(range(len(robot.SINGULARITIES)), together):
         starts = rng.uniform(-np.pi, np.pi, (3 * BASES, 6))
-        found = [newton(lambda q: robot.singularities(q)[list(pair)], q) for q in starts]  # noqa: B023
+        found = [newton(lambda q: robot.singularities(q)[list(some)], q) for q in starts]  # noqa: B023
         bases = [q for q in found if q is not None][:BASES]
         if bases:
             tried += 1
             check(robot, around(np.array(bases), rng))
-    assert tried >= 1
+    return tried
+
+
+@pytest.mark.parametrize("structure", FACTORED)
+def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_path: Path) -> None:
+    assert check_common_zeros(structure, tmp_path, together=2) >= 1
+
+
+@pytest.mark.parametrize("structure", THREE)
+def test_no_posture_is_lost_where_three_factors_vanish(structure: str, tmp_path: Path) -> None:
+    """A tangent turn, a straight elbow, and a wrist at the limit of its tilt."""
+    assert check_common_zeros(structure, tmp_path, together=3) == 1
 
 
 def test_no_posture_is_lost_where_an_elbow_with_an_offset_is_stretched_and_axis_6_is_passed(

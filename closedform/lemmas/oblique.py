@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import sympy as sp
 
-from closedform.lemmas.tangent import LAST, Links, Offset, Turn, Within
+from closedform.lemmas.tangent import LAST, ROUNDING, Links, Offset, Turn, Within
 from closedform.model.functions import real, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
@@ -43,7 +44,7 @@ class LinksAndObliqueWrist(Links):
         best = _Wrist(self, turn)
         for k in range(2, 2 * STEPS + 2, 2):
             tilted = best.moved(turn.renamed(best.turn.least(best.tilt), f"{turn.name}_{k}"))
-            near = tilted.turn.least(tilted.reach)
+            near = tilted.closer()
             other = tilted.moved(turn.renamed(near, f"{turn.name}_{k + 1}"))
             best = best.better_of(other, f"{turn.name}_{k}b")
         return best.turn.pair
@@ -70,7 +71,10 @@ class _Wrist:
 
     @cached_property
     def miss(self) -> sp.Symbol:
-        return self.turn.let("missed", self.tilt.miss + self.reach.miss)
+        """How far the rest is out of reach; the middle joint changes by the root of a tilt."""
+        let, size = self.turn.let, self.turn.chain.size
+        steeper = let("steeper", sp.Max(0, self.tilt.miss - 2 * ROUNDING * size))
+        return let("missed", sp.sqrt(size * steeper) + self.reach.miss)
 
     def along(
         self, name: str, value: Callable[[Pair], sp.Matrix]
@@ -116,48 +120,103 @@ class _Wrist:
         rate = (turn.let("dtilted", size * dz), zero)
         return Within(point, rate, rate[0] ** 2, zero, turn.let("most", size * reach))
 
+    def closer(self) -> Pair:
+        """The smallest turn to within reach of the links, if the middle joint follows it.
+
+        At the limit of the tilt a tiny turn moves the middle joint by its root.  So this is a step
+        along the curve of both; to its second order, the turn is that part of it.
+        """
+        half, middle = self.turn.half_to(self.reach), self._middle
+        return self.turn.by_half(self.turn.let("part", half * (middle.part - middle.curve * half)))
+
     @cached_property
     def reach(self) -> Within:
-        """The end of the links, where the wrist has the tilt that is nearest to the wanted one."""
+        """The end of the links, where the wrist has the tilt that is nearest to the wanted one.
+
+        Its rate is that along the curve of the turn and the middle joint.
+        """
         let, goal = self.turn.let, self.goal
         (qx, qy, *_), (dqx, dqy, *_) = self.along("q", goal.q)
         (ox, oy, *_), (dox, doy, *_) = self.along("o", goal.offset)
         (us, uc), spin = self._lift
         ex, ey = let("ex", uc * ox - us * oy), let("ey", us * ox + uc * oy)
-        dx = let("dx", dqx - uc * dox + us * doy + spin * ey)
-        dy = let("dy", dqy - us * dox - uc * doy - spin * ex)
+        part = self._middle.part
+        dx = let("dx", part * (dqx - uc * dox + us * doy) + spin * ey)
+        dy = let("dy", part * (dqy - us * dox - uc * doy) - spin * ex)
         least, most = let("fold", sp.Abs(goal.l1 - goal.l2)), let("full", goal.l1 + goal.l2)
         bend = let("bends", dx**2 + dy**2)
         return Within((let("x", qx - ex), let("y", qy - ey)), (dx, dy), bend, least, most)
 
     @cached_property
-    def _lift(self) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
-        """Sine and cosine of the first turn of the wrist, and its rate."""
+    def _middle(self) -> _Middle:
+        """The middle joint of the wrist that follows from the turn, and how both change."""
         let, w = self.turn.let, self.goal.last
-        (ax, ay, az), (dax, day, daz) = self.axis
+        (*_, az), (*_, daz) = self.axis
         B, dB = self.onward
         a, b = let("a", w[0] * B[2, 1] - w[1] * B[2, 0]), let("b", w[0] * B[2, 0] + w[1] * B[2, 1])
-        c = let("right", az - B[2, 2] * w[2])
         h = let("h", sp.sqrt(a**2 + b**2))
-        rest = let("rest", sp.sqrt(sp.Max(0, (h - c) * (h + c))))
-        held = let("held", sp.Max(-h, sp.Min(c, h)))
+        below, above = self._margins(h, az)
+        rest = let("rest", sp.sqrt(below) * sp.sqrt(above))
+        held = let("held", (above - below) / 2)
         side = self.goal.sense * real(f"sigma_{label(self.goal.middle)}")
         whole = let("square_h", sp.Max(h**2, LAST**2))
         s2 = let("s2", (a * held + side * b * rest) / whole)
         c2 = let("c2", (b * held - side * a * rest) / whole)
         v = sp.Matrix([c2 * w[0] - s2 * w[1], s2 * w[0] + c2 * w[1], w[2]])
-        across = sp.Matrix([-v[1], v[0], 0])
+        moved, turned = dB * v, B * sp.Matrix([-v[1], v[0], 0])
+        tilted = let("tilt_rate", daz - moved[2])
+        slant = let("slant", sp.Max(rest, LAST))
+        square = let("steepness", slant**2 + tilted**2)
+        steep = let("steep", sp.sqrt(square))
+        part, by = let("along", slant / steep), let("by", -side * tilted / steep)
+        dx, dy = (let(f"dlast{n}", part * moved[i] + by * turned[i]) for i, n in enumerate("xy"))
         x, y, _ = B * v
-        moved, turned = dB * v, B * across
-        by = let("by", -side * (daz - moved[2]) / sp.Max(rest, LAST))
-        x, y = let("lastx", x), let("lasty", y)
-        dx, dy = let("dlastx", moved[0] + by * turned[0]), let("dlasty", moved[1] + by * turned[1])
+        last = (let("lastx", x), let("lasty", y)), (dx, dy)
+        return _Middle(last, part, let("curve", held * tilted / square))
+
+    def _margins(self, h: sp.Expr, az: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """How far the tilt is from its largest value, and from its smallest.
+
+        Where the outer axes are nearly aligned, the axis across says it more accurately.
+        """
+        let, w, sense = self.turn.let, self.goal.last, self.goal.sense
+        (ax, ay, _), _ = self.axis
+        B, dB = self.onward
+        c = let("right", az - B[2, 2] * w[2])
+        margins = h - c, h + c
+        if dB.is_zero_matrix and sp.simplify(B[2, 2] - sense * w[2]) == 0:
+            size = sp.Abs(az)
+            near = let("near", (ax**2 + ay**2) / (1 + size) + (size - sense * az))
+            margins = (near, 2 * h - near)[::sense]
+        below, above = (
+            let(f"{n}_most", sp.Max(0, sp.Min(margin, 2 * h)))
+            for n, margin in zip(("below", "above"), margins, strict=True)
+        )
+        return below, above
+
+    @cached_property
+    def _lift(self) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+        """Sine and cosine of the first turn of the wrist, and its rate."""
+        let, (ax, ay, _), (dax, day, _) = self.turn.let, *self.axis
+        ((x, y), (dx, dy)), part = self._middle.last, self._middle.part
         seen = let("seen", sp.Max(ax**2 + ay**2, LAST**2))
         there = let("there", sp.Max(x**2 + y**2, LAST**2))
-        spin = let("spin", (ax * day - ay * dax) / seen - (x * dy - y * dx) / there)
+        spin = let("spin", part * (ax * day - ay * dax) / seen - (x * dy - y * dx) / there)
         both = let("both", sp.sqrt(seen) * sp.sqrt(there))
         us, uc = let("us", (ay * x - ax * y) / both), let("uc", (ax * x + ay * y) / both)
         return (us, uc), spin
+
+
+class _Middle(NamedTuple):
+    """A step along the curve of a turn and of the middle joint of a wrist, which follows from it.
+
+    ``last`` is across the first axis of the wrist, with its rate along the curve.  The turn has a
+    ``part`` in a step, less ``curve`` times half the square of the step.
+    """
+
+    last: tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]
+    part: sp.Expr
+    curve: sp.Expr
 
 
 @dataclass(frozen=True)
@@ -215,9 +274,7 @@ class LinksPastTurn(Links):
         v, _ = Offset((qx, qy), r, e).leaving(chain, wanted, side, f"past_{turn.name}")
         vs, vc = let("vs", v.s), let("vc", v.c)
         sine, cosine = let("dots", vs * ex - vc * ey), let("dotc", e + vc * ex + vs * ey)
-        half = let("half", sine / sp.Max(cosine, LAST * e) / spin)
-        total = let("total", 1 + half**2)
-        found = turn.by(let("by_s", 2 * half / total), let("by_c", (1 - half**2) / total))
+        found = turn.by_half(let("half", sine / sp.Max(cosine, LAST * e) / spin))
         still = sp.Or(sp.Eq(wanted, here), sp.Eq(e, 0), sp.Eq(spin, 0))
         s, c = (
             sp.Piecewise((now, still), (then, True))

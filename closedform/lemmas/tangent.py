@@ -118,8 +118,20 @@ class Turn:
         )
         return self.pair + Pair(s, c)
 
+    def by_half(self, half: sp.Expr) -> Pair:
+        """The pair turned further, by twice the angle that has this tangent."""
+        total = self.let("total", 1 + half**2)
+        return self.by(
+            self.let("by_s", 2 * half / total),
+            self.let("by_c", (1 - half**2) / total),
+        )
+
     def least(self, goal: Within) -> Pair:
         """The smallest turn that brings a point within reach, up to rounding of the target."""
+        return self.by_half(self.half_to(goal))
+
+    def half_to(self, goal: Within) -> sp.Symbol:
+        """The tangent of half of that turn."""
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
         allowance = self.chain.size * ROUNDING
@@ -134,12 +146,7 @@ class Turn:
             for n, closest, there in (("above", slope, miss), ("below", 2 * bend, 2 * outer))
         )
         large = sp.Abs(above) >= sp.Abs(below)
-        half = self.let("half", choose(large, 0, -above / below))
-        total = self.let("total", 1 + half**2)
-        return self.by(
-            self.let("by_s", 2 * half / total),
-            self.let("by_c", (1 - half**2) / total),
-        )
+        return self.let("half", choose(large, 0, -above / below))
 
 
 @dataclass(frozen=True)

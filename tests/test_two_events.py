@@ -39,7 +39,7 @@ FACTORED = (
     *OBLIQUE,
 )
 """Structures whose singular set has a factor for each joint that can reach the end of its range."""
-THREE = ("axes 1, 2 and 3 parallel, 5 and 6 meet", "oblique wrist, three parallel axes")
+THREE = ("axes 1, 2 and 3 parallel, 5 and 6 meet", *OBLIQUE)
 """Those with three factors that vanish together, where a tilt limits the wrist."""
 FRANKA = "spherical shoulder, axes 6 and 5 meet, with t7 given"
 OK, SINGULAR = 0, 2

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from closedform.lemmas.tangent import LAST, ROUNDING, Links, Offset, Turn, Within
+from closedform.lemmas.tangent import LAST, ROUNDING, Links, LinksAndWrist, Offset, Turn, Within
 from closedform.model.functions import real, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
@@ -40,14 +40,37 @@ class LinksAndObliqueWrist(Links):
     sense: int = 1
 
     def nearest(self, turn: Turn) -> Pair:
-        """The pair of the turn, changed by no more than rounding, with the rest within reach."""
-        best = _Wrist(self, turn)
-        for k in range(2, 2 * STEPS + 2, 2):
-            tilted = best.moved(turn.renamed(best.turn.least(best.tilt), f"{turn.name}_{k}"))
-            near = tilted.closer()
-            other = tilted.moved(turn.renamed(near, f"{turn.name}_{k + 1}"))
-            best = best.better_of(other, f"{turn.name}_{k}b")
+        """The pair of the turn, changed by no more than rounding, with the rest within reach.
+
+        Steps fail where a small turn reverses the direction of the axis.  There the wrist is nearly
+        aligned, and its middle turn changes the axis as if its axes were at right angles.
+        """
+        start = _Wrist(self, turn)
+        best = start.improved(turn.name)
+        if start.can_be_aligned:
+            name = f"{turn.name}_a"
+            near = self._aligned(start).nearest(turn.renamed(turn.pair, name))
+            detour = start.moved(turn.renamed(near, f"{name}_0")).improved(f"{name}_0")
+            best = best.better_of(detour, f"{name}b")
         return best.turn.pair
+
+    def _aligned(self, at: _Wrist) -> LinksAndWrist:
+        """The same for a wrist that is nearly aligned, whose offset is constant."""
+        (x, y, _), B = self.offset(at.turn.pair), at.onward[0]
+        length = sp.sqrt(x**2 + y**2)
+        last = sp.Matrix([B[1, 2], -B[0, 2]]) * self.sense
+        last /= last.norm()
+        ahead = Pair(sp.S.Zero, sp.S.One) if length == 0 else Pair(y / length, x / length)
+        ahead -= Pair(last[1], last[0])
+        return LinksAndWrist(
+            q=self.q,
+            l1=self.l1,
+            l2=self.l2,
+            axis=self.axis,
+            offset=length,
+            ahead=Pair(*map(sp.simplify, (ahead.s, ahead.c))),
+            sigma=real(f"sigma_{label(self.middle)}"),
+        )
 
 
 @dataclass(frozen=True)
@@ -59,6 +82,15 @@ class _Wrist:
 
     def moved(self, turn: Turn) -> _Wrist:
         return _Wrist(self.goal, turn)
+
+    def improved(self, name: str) -> _Wrist:
+        """The wrist after some steps toward where the rest is within reach."""
+        best = self
+        for k in range(2, 2 * STEPS + 2, 2):
+            tilted = best.moved(best.turn.renamed(best.turn.least(best.tilt), f"{name}_{k}"))
+            other = tilted.moved(tilted.turn.renamed(tilted.closer(), f"{name}_{k + 1}"))
+            best = best.better_of(other, f"{name}_{k}b")
+        return best
 
     def better_of(self, other: _Wrist, name: str) -> _Wrist:
         """This wrist, or the other one if it misses less."""
@@ -145,7 +177,38 @@ class _Wrist:
         dy = let("dy", part * (dqy - us * dox - uc * doy) - spin * ex)
         least, most = let("fold", sp.Abs(goal.l1 - goal.l2)), let("full", goal.l1 + goal.l2)
         bend = let("bends", dx**2 + dy**2)
-        return Within((let("x", qx - ex), let("y", qy - ey)), (dx, dy), bend, least, most)
+        x, y = let("x", qx - ex), let("y", qy - ey)
+        if not self.can_be_aligned:
+            return Within((x, y), (dx, dy), bend, least, most)
+        # rounding may turn an aligned wrist and its offset anywhere
+        loose = self.across <= sp.Rational(1, 2**46)
+        offset = let("length", sp.sqrt(ox**2 + oy**2))
+        apart = let("apart", sp.Max(0, least - offset, offset - most))
+        x, y, dx, dy, low, high = (
+            let(f"{n}_any", sp.Piecewise((free, loose), (held, True)))
+            for n, free, held in (
+                ("x", qx, x),
+                ("y", qy, y),
+                ("dx", dqx, dx),
+                ("dy", dqy, dy),
+                ("low", apart, least),
+                ("high", most + offset, most),
+            )
+        )
+        return Within((x, y), (dx, dy), let("bends_any", dx**2 + dy**2), low, high)
+
+    @cached_property
+    def can_be_aligned(self) -> bool:
+        """Whether the outer axes of the wrist can coincide, at any turn."""
+        B, dB = self.onward
+        other = self.goal.sense * self.goal.last[2]
+        return bool(dB.is_zero_matrix and sp.simplify(B[2, 2] - other) == 0)
+
+    @cached_property
+    def across(self) -> sp.Symbol:
+        """The sine between the outer axes."""
+        (ax, ay, _), _ = self.axis
+        return self.turn.let("across", sp.sqrt(ax**2 + ay**2))
 
     @cached_property
     def _middle(self) -> _Middle:
@@ -181,12 +244,13 @@ class _Wrist:
         """
         let, w, sense = self.turn.let, self.goal.last, self.goal.sense
         (ax, ay, _), _ = self.axis
-        B, dB = self.onward
+        B, _ = self.onward
         c = let("right", az - B[2, 2] * w[2])
         margins = h - c, h + c
-        if dB.is_zero_matrix and sp.simplify(B[2, 2] - sense * w[2]) == 0:
+        if self.can_be_aligned:
             size = sp.Abs(az)
-            near = let("near", (ax**2 + ay**2) / (1 + size) + (size - sense * az))
+            opposite = let("opposite", size - sense * az)
+            near = let("near", (ax**2 + ay**2) / (1 + size) + opposite)
             margins = (near, 2 * h - near)[::sense]
         below, above = (
             let(f"{n}_most", sp.Max(0, sp.Min(margin, 2 * h)))

@@ -50,7 +50,7 @@ class LinksAndObliqueWrist(Links):
         if start.can_be_aligned:
             name = f"{turn.name}_a"
             near = self._aligned(start).nearest(turn.renamed(turn.pair, name))
-            detour = start.moved(turn.renamed(near, f"{name}_0")).improved(f"{name}_0")
+            detour = start.moved(turn.renamed(near, f"{name}_0"))
             best = best.better_of(detour, f"{name}b")
         return best.turn.pair
 

@@ -23,6 +23,9 @@ OBLIQUE = {
     "three parallel axes, oblique wrist whose outer axes can be aligned": [
         (H, pi / 2, 1), (2, 0, 0), (1, 0, 0), (H, pi / 3, H), (0, pi / 3, 1), (0, 0, H),
     ],
+    "three parallel axes, oblique wrist whose outer axes can be opposite": [
+        (H, pi / 2, 1), (2, 0, 0), (1, 0, 0), (H, 2 * pi / 3, 1), (0, pi / 3, H), (0, 0, H),
+    ],
     "oblique wrist, three parallel axes": [
         (0, -pi / 3, 1), (1, pi / 2, 0), (2, 0, 0), (1, 0, H), (H, -pi / 2, 0), (0, 0, 1),
     ],
@@ -89,6 +92,21 @@ def test_no_posture_is_lost_where_factors_vanish_together(structure: str, tmp_pa
 def test_no_posture_is_lost_where_three_factors_vanish(structure: str, tmp_path: Path) -> None:
     """A tangent turn, a straight elbow, and a wrist at the limit of its tilt."""
     assert check_common_zeros(structure, tmp_path, together=3) == 1
+
+
+def test_no_posture_is_lost_where_a_joint_between_lets_the_last_axis_be_as_the_first(
+    tmp_path: Path,
+) -> None:
+    """Joint 4 is between the parallel axes and the wrist, and lets axes 3 and 6 be parallel."""
+    d, serial = arm(TABLES["axes 1, 2 and 3 parallel, 5 and 6 meet"])
+    serial.export(d)
+    solved(d, serial, propose(serial).source)
+    robot, rng = printed(d, tmp_path), np.random.default_rng(2)
+    starts = rng.uniform(-np.pi, np.pi, (8 * BASES, 6))
+    found = [newton(lambda q: robot.fk(q)[:2, 2], q) for q in starts]
+    bases = [q for q in found if q is not None][: 2 * BASES]
+    assert len(bases) == 2 * BASES
+    check(robot, around(np.array(bases), rng))
 
 
 def test_no_posture_is_lost_where_an_elbow_with_an_offset_is_stretched_and_axis_6_is_passed(

@@ -313,7 +313,11 @@ class LinksPastTurn(Links):
         size = turn.chain.size
         x, y = turn.linear("far", lambda pair: size * self.last(pair))
         goal = turn.let("goal", size * across)
-        return turn.least(Within(x, y, y[0] ** 2 + y[1] ** 2, goal, goal))
+        level = self.last(turn.pair)[2]
+        grows = turn.let("grows", level * (level - self.last(Pair(sp.S.Zero, sp.S.Zero))[2]))
+        side = turn.let("ahead", turn.side * sign_of(grows))
+        within = Within(x, y, y[0] ** 2 + y[1] ** 2, goal, goal)
+        return turn.by_half(turn.half_to(within, side))
 
     def _closer(self, turn: Turn) -> Pair:
         """Turned so that the offset is where the links reach, by the rates at this turn.

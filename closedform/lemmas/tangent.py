@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -75,20 +75,16 @@ class Turn:
     beside: sp.Expr
     allowance: sp.Expr
     name: str
+    side: sp.Expr = sp.S.One
+    """On which side of the place where both solutions meet this one is."""
 
     def let(self, name: str, value: sp.Expr) -> sp.Symbol:
         return self.chain.program.let(f"{name}_{self.name}", value)
 
     def renamed(self, pair: Pair, name: str) -> Turn:
         p = self.chain.program
-        return Turn(
-            chain=self.chain,
-            pair=Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
-            lever=self.lever,
-            beside=self.beside,
-            allowance=self.allowance,
-            name=name,
-        )
+        named = Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c))
+        return replace(self, pair=named, name=name)
 
     def linear(
         self, name: str, value: Callable[[Pair], sp.Matrix]
@@ -130,8 +126,8 @@ class Turn:
         """The smallest turn that brings a point within reach, up to rounding of the target."""
         return self.by_half(self.half_to(goal))
 
-    def half_to(self, goal: Within) -> sp.Symbol:
-        """The tangent of half of that turn."""
+    def half_to(self, goal: Within, side: sp.Expr | None = None) -> sp.Symbol:
+        """The tangent of half of that turn, or of one to where the slope has the sign ``side``."""
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
         allowance = self.chain.size * ROUNDING
@@ -139,8 +135,9 @@ class Turn:
         high = self.let("high", (goal.high + allowance) ** 2)
         miss = self.let("miss", square - sp.Max(low, sp.Min(high, square)))
         slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", goal.bend)
+        side = sign_of(slope) if side is None else side
         inner = self.let("inner", slope**2 - bend * miss)
-        outer = self.let("outer", slope + sign_of(slope) * sp.sqrt(sp.Max(inner, 0)))
+        outer = self.let("outer", slope + side * sp.sqrt(sp.Max(inner, 0)))
         above, below = (
             self.let(n, sp.Piecewise((closest, inner < 0), (there, True)))
             for n, closest, there in (("above", slope, miss), ("below", 2 * bend, 2 * outer))
@@ -298,6 +295,7 @@ class Nearest(Goal):
                 beside=at.c,
                 allowance=turn.allowance,
                 name=suffix,
+                side=at.sigma * sign_of(at.c),
             ).renamed(found, f"{suffix}_1")
         )
         s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)

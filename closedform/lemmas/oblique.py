@@ -309,7 +309,11 @@ class LinksPastTurn(Links):
         return turn.pair
 
     def _as_far(self, turn: Turn, across: sp.Symbol) -> Pair:
-        """Turned so that the component across the first axis of the wrist has the wanted value."""
+        """Turned so that the component across the first axis of the wrist has the wanted value.
+
+        There are two such turns, and rounding may hide on which side of their middle this one is;
+        the branch says it.
+        """
         size = turn.chain.size
         x, y = turn.linear("far", lambda pair: size * self.last(pair))
         goal = turn.let("goal", size * across)

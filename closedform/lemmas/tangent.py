@@ -97,9 +97,12 @@ class Turn:
         def rate(e: sp.Expr) -> sp.Expr:
             return e.diff(s) * self.pair.c - e.diff(c) * self.pair.s
 
+        def named(n: str, e: sp.Expr) -> sp.Expr:
+            return self.let(n, e) if e != 0 else e
+
         return (
-            (self.let(f"{name}x", x.xreplace(here)), self.let(f"{name}y", y.xreplace(here))),
-            (self.let(f"d{name}x", rate(x)), self.let(f"d{name}y", rate(y))),
+            (named(f"{name}x", x.xreplace(here)), named(f"{name}y", y.xreplace(here))),
+            (named(f"d{name}x", rate(x)), named(f"d{name}y", rate(y))),
         )
 
     def by(self, sine: sp.Expr, cosine: sp.Expr) -> Pair:
@@ -133,10 +136,13 @@ class Turn:
         allowance = self.chain.size * ROUNDING
         low = self.let("low", sp.Max(0, goal.low - allowance) ** 2)
         high = self.let("high", (goal.high + allowance) ** 2)
-        miss = self.let("miss", square - sp.Max(low, sp.Min(high, square)))
+        reached = sp.Max(low, sp.Min(high, square))
+        miss = self.let("miss", square - reached)
         slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", goal.bend)
         side = sign_of(slope) if side is None else side
-        inner = self.let("inner", slope**2 - bend * miss)
+        # along a line the square of the slope is the product of bend and square: nothing cancels
+        line = y == dy == 0
+        inner = self.let("inner", bend * reached if line else slope**2 - bend * miss)
         outer = self.let("outer", slope + side * sp.sqrt(sp.Max(inner, 0)))
         above, below = (
             self.let(n, sp.Piecewise((closest, inner < 0), (there, True)))

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 536 compare and select, 353 add, 23 atan2, 43 divide, 593 multiply, 1 sincos, 54 sqrt
+#   ik: 536 compare and select, 349 add, 23 atan2, 43 divide, 589 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1073,33 +1073,32 @@ def _ik(
     t44 = (t42 - t41 * t37) * t43
     t45 = ops.abs(w_y)
     t46 = t45 < reach
-    t47 = c_straight * t44
+    t47 = size * 5.684341886080802e-14
+    t48 = ops.max(0.0, ops.select(t46, t45, 0.0) - t47)
+    low__elbow_1 = t48 * t48
+    t49 = t47 + ops.select(t46, size, reach)
+    high__elbow_1 = t49 * t49
+    t50 = c_straight * t44
     s__elbow_1_over_ahead_front = t43 * (2.0 * lever_elbow)
-    t48 = s_straight * s__elbow_1_over_ahead_front
-    t49 = t47 + t48
-    t50 = s_straight * t44
-    t51 = c_straight * s__elbow_1_over_ahead_front
-    t52 = t50 - t51
-    qx__elbow_1 = ops.select(t46, a5 + a4 * t49 - d3 * t52, d3 * t49 - (d5 - a4 * t52))
-    t53 = ops.select(t46, -t32, level_s_elbow) * t44
-    t54 = ops.select(t46, level_s_elbow, t32) * s__elbow_1_over_ahead_front
-    t55 = t53 + t54
-    t56 = qx__elbow_1 * t55
+    t51 = s_straight * s__elbow_1_over_ahead_front
+    t52 = t50 + t51
+    t53 = s_straight * t44
+    t54 = c_straight * s__elbow_1_over_ahead_front
+    t55 = t53 - t54
+    qx__elbow_1 = ops.select(t46, a5 + a4 * t52 - d3 * t55, d3 * t52 - (d5 - a4 * t55))
     square__elbow_1 = qx__elbow_1 * qx__elbow_1
-    t57 = size * 5.684341886080802e-14
-    t58 = ops.max(0.0, ops.select(t46, t45, 0.0) - t57)
-    low__elbow_1 = t58 * t58
-    t59 = t57 + ops.select(t46, size, reach)
-    high__elbow_1 = t59 * t59
-    t60 = ops.max(low__elbow_1, ops.min(high__elbow_1, square__elbow_1))
-    miss__elbow_1 = square__elbow_1 - t60
-    bend__elbow_1 = t55 * t55
-    inner__elbow_1 = t56 * t56 - miss__elbow_1 * bend__elbow_1
-    t61 = inner__elbow_1 < 0.0
-    t62 = ops.sign(-t56)
-    t63 = t56 - t62 * ops.sqrt(ops.max(0.0, inner__elbow_1))
-    below__elbow_1 = ops.select(t61, 2.0 * bend__elbow_1, -(2.0 * t63))
-    above__elbow_1 = ops.select(t61, -t56, miss__elbow_1)
+    t56 = ops.max(low__elbow_1, ops.min(high__elbow_1, square__elbow_1))
+    t57 = ops.select(t46, -t32, level_s_elbow) * t44
+    t58 = ops.select(t46, level_s_elbow, t32) * s__elbow_1_over_ahead_front
+    t59 = t57 + t58
+    bend__elbow_1 = t59 * t59
+    inner__elbow_1 = t56 * bend__elbow_1
+    t60 = inner__elbow_1 < 0.0
+    t61 = qx__elbow_1 * t59
+    t62 = ops.sign(-t61)
+    t63 = t61 - t62 * ops.sqrt(ops.max(0.0, inner__elbow_1))
+    below__elbow_1 = ops.select(t60, 2.0 * bend__elbow_1, -(2.0 * t63))
+    above__elbow_1 = ops.select(t60, -t61, square__elbow_1 - t56)
     t64 = ops.abs(below__elbow_1) <= ops.abs(above__elbow_1)
     t65 = ops.select(t64, 0.0, above__elbow_1 / below__elbow_1)
     t66 = t65 * t65
@@ -1182,22 +1181,21 @@ def _ik(
     failed_2 = invalid | unreachable_2
     t109 = ops.opposite(failed_2)
     t110 = t104 | t109
-    t111 = t47 - t48
-    t112 = t50 + t51
+    t111 = t50 - t51
+    t112 = t53 + t54
     qx__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t111 - d3 * t112, d3 * t111 - (d5 - a4 * t112))
-    t113 = t53 - t54
-    t114 = qx__elbow_1_over_ahead_front * t113
     square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
-    t115 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - ops.max(low__elbow_1, t115)
-    bend__elbow_1_over_ahead_front = t113 * t113
-    t116 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t114 * t114 - t116
-    t117 = inner__elbow_1_over_ahead_front < 0.0
-    t118 = ops.sign(-t114)
+    t113 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
+    t114 = ops.max(low__elbow_1, t113)
+    t115 = t57 - t58
+    bend__elbow_1_over_ahead_front = t115 * t115
+    inner__elbow_1_over_ahead_front = t114 * bend__elbow_1_over_ahead_front
+    t116 = inner__elbow_1_over_ahead_front < 0.0
+    t117 = qx__elbow_1_over_ahead_front * t115
+    t118 = ops.sign(-t117)
     t119 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    below__elbow_1_over_ahead_front = ops.select(t117, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t114 - t118 * ops.sqrt(t119))))
-    above__elbow_1_over_ahead_front = ops.select(t117, -t114, miss__elbow_1_over_ahead_front)
+    below__elbow_1_over_ahead_front = ops.select(t116, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t117 - t118 * ops.sqrt(t119))))
+    above__elbow_1_over_ahead_front = ops.select(t116, -t117, square__elbow_1_over_ahead_front - t114)
     t120 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
     t121 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
     t122 = ops.select(t120, 0.0, t121)
@@ -1316,19 +1314,18 @@ def _ik(
     t201 = t197 | (t198 & ops.opposite(t139)) | t199 | t200
     t202 = t199 | t200
     t203 = t202 & tangent6
-    t204 = t163 & ops.opposite(t117)
-    t205 = t168 & ops.opposite(t61)
+    t204 = t163 & ops.opposite(t116)
+    t205 = t168 & ops.opposite(t60)
     t206 = t201 | (t203 & ops.opposite(t84)) | ((t204 | t205) & ops.opposite(t46))
     reach_2 = ops.sqrt(ops.select(t206, t21, 1.0))
-    t207 = t57 + ops.select(t46, size, reach_2)
+    t207 = t47 + ops.select(t46, size, reach_2)
     high__elbow_1_2 = t207 * t207
     t208 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    miss__elbow_1_2 = square__elbow_1_2 - t208
+    above__elbow_1_2 = ops.select(t60, -t195, square__elbow_1_2 - t208)
     bend__elbow_1_2 = t194 * t194
-    inner__elbow_1_2 = t195 * t195 - miss__elbow_1_2 * bend__elbow_1_2
-    t209 = ops.select(t205, ops.max(0.0, inner__elbow_1_2), 1.0)
-    below__elbow_1_2 = ops.select(t61, 2.0 * bend__elbow_1_2, -(2.0 * (t195 - t62 * ops.sqrt(t209))))
-    t210 = ops.select(t61, -t195, miss__elbow_1_2) / ops.select(t168, below__elbow_1_2, 1.0)
+    t209 = ops.select(t205, ops.max(0.0, t208 * bend__elbow_1_2), 1.0)
+    below__elbow_1_2 = ops.select(t60, 2.0 * bend__elbow_1_2, -(2.0 * (t195 - t62 * ops.sqrt(t209))))
+    t210 = above__elbow_1_2 / ops.select(t168, below__elbow_1_2, 1.0)
     t211 = ops.select(t64, 0.0, t210)
     t212 = t211 * t211
     t213 = 1.0 / ops.select(t167, 1.0 + t212, 1.0)
@@ -1506,189 +1503,189 @@ def _ik(
     t328 = qx__elbow_1_over_ahead_front_2 * t327
     square__elbow_1_over_ahead_front_2 = qx__elbow_1_over_ahead_front_2 * qx__elbow_1_over_ahead_front_2
     t329 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
-    miss__elbow_1_over_ahead_front_2 = square__elbow_1_over_ahead_front_2 - ops.max(low__elbow_1, t329)
-    above__elbow_1_over_ahead_front_2 = ops.select(t117, -t328, miss__elbow_1_over_ahead_front_2)
+    t330 = ops.max(low__elbow_1, t329)
+    above__elbow_1_over_ahead_front_2 = ops.select(t116, -t328, square__elbow_1_over_ahead_front_2 - t330)
     bend__elbow_1_over_ahead_front_2 = t327 * t327
-    t330 = miss__elbow_1_over_ahead_front_2 * bend__elbow_1_over_ahead_front_2
-    t331 = ops.select(t204, ops.max(0.0, t328 * t328 - t330), 1.0)
-    below__elbow_1_over_ahead_front_2 = ops.select(t117, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * (t328 - t118 * ops.sqrt(t331))))
-    t332 = ops.select(t163, below__elbow_1_over_ahead_front_2, 1.0)
-    t333 = ops.select(t120, 0.0, above__elbow_1_over_ahead_front_2 / t332)
-    t334 = t333 * t333
-    t335 = 1.0 / ops.select(t162, 1.0 + t334, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t127, t335 * (1.0 - t334), 1.0)
-    sine__elbow_1_over_ahead_front_2 = ops.select(t127, -(2.0 * t333 * t335), 0.0)
-    t336 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t337 = t184 * cosine__elbow_1_over_ahead_front_2 + t336
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t176, -ops.select(tangent_elbow, t337, t184))
-    t338 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t339 = t338 - t184 * sine__elbow_1_over_ahead_front_2
-    t340 = ops.select(tangent_elbow, t339, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t216, t340)
-    t341 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t342 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t341 - d3 * t342
-    t343 = ops.abs(v_x_over_ahead_front_2)
-    t344 = d5 - a4 * t342 + d3 * t341
-    below6_over_ahead_front_2 = ops.max(reach_2 + t344, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t344, 0.0)
-    t345 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t139, ops.max(0.0, -((t45 - t343) * (t45 + t343))), t345)
-    t346 = ops.select(t198, held6_over_ahead_front_2, 1.0)
-    t347 = t197 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t346), ops.sqrt(ops.select(t347, t345, 1.0)))
-    t348 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t349 = ops.select(t198, 4.0 * held6_over_ahead_front_2 + t348 * t348, 1.0)
+    t331 = ops.max(0.0, t330 * bend__elbow_1_over_ahead_front_2)
+    t332 = t328 - t118 * ops.sqrt(ops.select(t204, t331, 1.0))
+    below__elbow_1_over_ahead_front_2 = ops.select(t116, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * t332))
+    t333 = ops.select(t163, below__elbow_1_over_ahead_front_2, 1.0)
+    t334 = ops.select(t120, 0.0, above__elbow_1_over_ahead_front_2 / t333)
+    t335 = t334 * t334
+    t336 = 1.0 / ops.select(t162, 1.0 + t335, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t127, t336 * (1.0 - t335), 1.0)
+    sine__elbow_1_over_ahead_front_2 = ops.select(t127, -(2.0 * t334 * t336), 0.0)
+    t337 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t338 = t184 * cosine__elbow_1_over_ahead_front_2 + t337
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t176, -ops.select(tangent_elbow, t338, t184))
+    t339 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t340 = t339 - t184 * sine__elbow_1_over_ahead_front_2
+    t341 = ops.select(tangent_elbow, t340, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t216, t341)
+    t342 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t343 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t342 - d3 * t343
+    t344 = ops.abs(v_x_over_ahead_front_2)
+    t345 = d5 - a4 * t343 + d3 * t342
+    below6_over_ahead_front_2 = ops.max(reach_2 + t345, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t345, 0.0)
+    t346 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t139, ops.max(0.0, -((t45 - t344) * (t45 + t344))), t346)
+    t347 = ops.select(t198, held6_over_ahead_front_2, 1.0)
+    t348 = t197 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t347), ops.sqrt(ops.select(t348, t346, 1.0)))
+    t349 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t350 = ops.select(t198, 4.0 * held6_over_ahead_front_2 + t349 * t349, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t349), width6_over_ahead_front_2)
-    t350 = ops.select(t197, reach_2 * span6_over_ahead_front_2, 1.0)
-    t351 = 1.0 / t350
-    t352 = t91 * kept6_over_ahead_front_2 * t351
-    t353 = t351 * (u_x * t348)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t352 - t353)
-    t354 = t351 * (t88 * kept6_over_ahead_front_2)
-    t355 = t351 * (s_z * t348)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t354 + t355)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t350), width6_over_ahead_front_2)
+    t351 = ops.select(t197, reach_2 * span6_over_ahead_front_2, 1.0)
+    t352 = 1.0 / t351
+    t353 = t91 * kept6_over_ahead_front_2 * t352
+    t354 = t352 * (u_x * t349)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t353 - t354)
+    t355 = t352 * (t88 * kept6_over_ahead_front_2)
+    t356 = t352 * (s_z * t349)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t355 + t356)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t356 = t152 & ops.opposite(on_axis_5_over_ahead_front)
-    t357 = w_y * v_x_over_ahead_front_2
-    t358 = t357 * t357
-    t359 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t360 = ops.select(t356, t358 + ops.select(t356, t359, 1.0), 1.0)
-    t361 = 1.0 / ops.select(t356, ops.sqrt(t360), 1.0)
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t361)
+    t357 = t152 & ops.opposite(on_axis_5_over_ahead_front)
+    t358 = w_y * v_x_over_ahead_front_2
+    t359 = t358 * t358
+    t360 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t361 = ops.select(t357, t359 + ops.select(t357, t360, 1.0), 1.0)
+    t362 = 1.0 / ops.select(t357, ops.sqrt(t361), 1.0)
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t362)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t362 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t363 = ops.select(on_axis_5_over_ahead_front, 0.0, t357 * t361)
-    R3_21_over_ahead_front_2 = t362 - R1_23 * t363
-    t364 = ops.select(t152, t342 * R3_21_over_ahead_front_2, 1.0)
-    R4_23_over_ahead_front_2 = t341 * R2_23_over_ahead_front_2 + t364
-    t365 = t152 & ops.opposite(aligned_wrist_over_ahead_front)
+    t363 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t364 = ops.select(on_axis_5_over_ahead_front, 0.0, t358 * t362)
+    R3_21_over_ahead_front_2 = t363 - R1_23 * t364
+    t365 = ops.select(t152, t343 * R3_21_over_ahead_front_2, 1.0)
+    R4_23_over_ahead_front_2 = t342 * R2_23_over_ahead_front_2 + t365
+    t366 = t152 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t366 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t366 - R1_13 * t363
-    t367 = ops.select(t152, t342 * R3_11_over_ahead_front_2, 1.0)
-    R4_13_over_ahead_front_2 = t341 * R2_13_over_ahead_front_2 + t367
-    t368 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t369 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t370 = ops.select(t365, ops.sqrt(ops.select(t365, t368 + t369, 1.0)), 1.0)
-    t371 = 1.0 / t370
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t371)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t371)
-    t372 = ops.select(t152, c_wrist_over_ahead_front, 1.0)
-    t373 = ops.atan2(s_wrist_over_ahead_front, t372)
-    t374 = ops.select(failed_3, ops.nan, ops.wrap_cut(t373))
-    t375 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t376 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t367 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t367 - R1_13 * t364
+    t368 = ops.select(t152, t343 * R3_11_over_ahead_front_2, 1.0)
+    R4_13_over_ahead_front_2 = t342 * R2_13_over_ahead_front_2 + t368
+    t369 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t370 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t371 = ops.select(t366, ops.sqrt(ops.select(t366, t369 + t370, 1.0)), 1.0)
+    t372 = 1.0 / t371
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t372)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t372)
+    t373 = ops.select(t152, c_wrist_over_ahead_front, 1.0)
+    t374 = ops.atan2(s_wrist_over_ahead_front, t373)
+    t375 = ops.select(failed_3, ops.nan, ops.wrap_cut(t374))
+    t376 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t377 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t377 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    t378 = ops.select(t152, t342 * (t377 - R1_33 * t363), 1.0)
-    t379 = ops.select(t152, t341 * R2_33_over_ahead_front + t378, 1.0)
-    t380 = ops.atan2(t375 + t376, t379)
-    t381 = ops.select(failed_3, ops.nan, ops.wrap_cut(t380))
-    t382 = ops.select(t152, t341 * R3_11_over_ahead_front_2, 1.0)
-    t383 = s_wrist_over_ahead_front * (t342 * R2_13_over_ahead_front_2 - t382)
-    t384 = ops.select(t152, t341 * R3_21_over_ahead_front_2, 1.0)
-    t385 = c_wrist_over_ahead_front * (t342 * R2_23_over_ahead_front_2 - t384)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t363 + R1_13 * c5_over_ahead_front_2
-    t386 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t363 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t387 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t388 = ops.select(t152, t386, 1.0) - ops.select(t152, t387, 1.0)
-    t389 = ops.atan2(t383 - t385, ops.select(t152, t388, 1.0))
-    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(t389))
-    t391 = ops.wrap_cut(ops.atan2(t342, ops.select(t159, t341, 1.0)))
-    t392 = ops.select(failed_3, ops.nan, t391)
-    t393 = ops.atan2(t363, ops.select(t152, c5_over_ahead_front_2, 1.0))
-    t394 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t393))
-    t395 = ops.atan2(s6_over_ahead_front_2, ops.select(t152, c6_over_ahead_front_2, 1.0))
-    t396 = ops.select(failed_3, ops.nan, ops.wrap_cut(t395))
-    t397 = ops.select(failed_3, ops.nan, t259)
+    t378 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    t379 = ops.select(t152, t343 * (t378 - R1_33 * t364), 1.0)
+    t380 = ops.select(t152, t342 * R2_33_over_ahead_front + t379, 1.0)
+    t381 = ops.atan2(t376 + t377, t380)
+    t382 = ops.select(failed_3, ops.nan, ops.wrap_cut(t381))
+    t383 = ops.select(t152, t342 * R3_11_over_ahead_front_2, 1.0)
+    t384 = s_wrist_over_ahead_front * (t343 * R2_13_over_ahead_front_2 - t383)
+    t385 = ops.select(t152, t342 * R3_21_over_ahead_front_2, 1.0)
+    t386 = c_wrist_over_ahead_front * (t343 * R2_23_over_ahead_front_2 - t385)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t364 + R1_13 * c5_over_ahead_front_2
+    t387 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t364 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t388 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t389 = ops.select(t152, t387, 1.0) - ops.select(t152, t388, 1.0)
+    t390 = ops.atan2(t384 - t386, ops.select(t152, t389, 1.0))
+    t391 = ops.select(failed_3, ops.nan, ops.wrap_cut(t390))
+    t392 = ops.wrap_cut(ops.atan2(t343, ops.select(t159, t342, 1.0)))
+    t393 = ops.select(failed_3, ops.nan, t392)
+    t394 = ops.atan2(t364, ops.select(t152, c5_over_ahead_front_2, 1.0))
+    t395 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t394))
+    t396 = ops.atan2(s6_over_ahead_front_2, ops.select(t152, c6_over_ahead_front_2, 1.0))
+    t397 = ops.select(failed_3, ops.nan, ops.wrap_cut(t396))
+    t398 = ops.select(failed_3, ops.nan, t259)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t398 = ops.select(failed_3, ops.nan, ops.wrap(t373 + flip_wrist_over_ahead_back))
-    t399 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t380))
-    t400 = ops.select(failed_3, ops.nan, ops.wrap(t389 + flip_wrist_over_ahead_back))
-    t401 = t133 * (R1_11 * t153 + T13 * c6_over_behind_front)
+    t399 = ops.select(failed_3, ops.nan, ops.wrap(t374 + flip_wrist_over_ahead_back))
+    t400 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t381))
+    t401 = ops.select(failed_3, ops.nan, ops.wrap(t390 + flip_wrist_over_ahead_back))
+    t402 = t133 * (R1_11 * t153 + T13 * c6_over_behind_front)
     on_axis_5_over_behind_front = ops.min(t150, t155) <= t39
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t402 = dot_5_over_behind_front * dot_5_over_behind_front
-    t403 = 1.0 / ops.sqrt(t319 + t402)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t403)
-    t404 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t153)
-    t405 = ops.select(on_axis_5_over_behind_front, 0.0, t318 * t403)
-    t406 = t401 - t132 * (t404 - R1_13 * t405)
-    t407 = t133 * (R1_21 * t153 + T23 * c6_over_behind_front)
-    t408 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t153)
-    t409 = t407 - t132 * (t408 - R1_23 * t405)
-    aligned_wrist_over_behind_front = ops.sqrt(t406 * t406 + t409 * t409) <= t103
-    t410 = ops.select(free6, 0.0, t352 + t353)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t355 - t354)
-    t411 = R1_21 * t410 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t410)
-    t412 = t157 & ops.opposite(on_axis_5_over_behind_front)
-    t413 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t414 = ops.select(t412, t358 + ops.select(t412, t413, 1.0), 1.0)
-    t415 = 1.0 / ops.select(t412, ops.sqrt(t414), 1.0)
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t415)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t410
-    t416 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t417 = ops.select(on_axis_5_over_behind_front, 0.0, t357 * t415)
-    R3_21_over_behind_front = t416 - R1_23 * t417
-    t418 = ops.select(t157, t342 * R3_21_over_behind_front, 1.0)
-    t419 = t341 * t411 - t418
-    t420 = ops.opposite(aligned_wrist_over_behind_front)
-    t421 = t157 & t420
-    t422 = R1_11 * t410 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t410
-    t423 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t423 - R1_13 * t417
-    t424 = ops.select(t157, t342 * R3_11_over_behind_front, 1.0)
-    t425 = t341 * t422 - t424
-    t426 = ops.select(t421, t425 * t425 + t419 * t419, 1.0)
-    t427 = 1.0 / ops.select(t421, ops.sqrt(t426), 1.0)
-    t428 = ops.select(aligned_wrist_over_behind_front, 0.0, t419 * t427)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t425 * t427))
-    t429 = ops.select(t157, c_wrist_over_behind_front, 1.0)
-    t430 = ops.atan2(t428, t429)
-    t431 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t430))
-    t432 = t425 * c_wrist_over_behind_front - t419 * t428
-    t433 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t410)
-    t434 = ops.select(t157, t342 * (t433 - R1_33 * t417), 1.0)
-    t435 = t341 * (R1_31 * t410 + T33 * c6_over_behind_front_2)
-    t436 = ops.atan2(t432, ops.select(t157, t434 - t435, 1.0))
-    t437 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t436))
-    t438 = ops.select(t157, t341 * R3_11_over_behind_front, 1.0)
-    t439 = ops.select(t157, t341 * R3_21_over_behind_front, 1.0)
-    t440 = c_wrist_over_behind_front * (t342 * t411 + t439)
-    R3_13_over_behind_front = R2_11_over_behind_front * t417 + R1_13 * c5_over_behind_front_2
-    t441 = ops.select(t157, t428 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t417 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t442 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t443 = ops.select(t157, -(t441 + ops.select(t157, t442, 1.0)), 1.0)
-    t444 = ops.atan2(t428 * (t342 * t422 + t438) + t440, t443)
-    t445 = ops.select(failed_4, ops.nan, ops.wrap_cut(t444))
-    t446 = ops.select(failed_4, ops.nan, t391)
-    t447 = ops.select(t157, c5_over_behind_front_2, 1.0)
-    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t417, t447)))
-    t449 = ops.select(t157, c6_over_behind_front_2, 1.0)
-    t450 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t410, t449)))
-    t451 = ops.select(failed_4, ops.nan, t259)
+    t403 = dot_5_over_behind_front * dot_5_over_behind_front
+    t404 = 1.0 / ops.sqrt(t319 + t403)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t404)
+    t405 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t153)
+    t406 = ops.select(on_axis_5_over_behind_front, 0.0, t318 * t404)
+    t407 = t402 - t132 * (t405 - R1_13 * t406)
+    t408 = t133 * (R1_21 * t153 + T23 * c6_over_behind_front)
+    t409 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t153)
+    t410 = t408 - t132 * (t409 - R1_23 * t406)
+    aligned_wrist_over_behind_front = ops.sqrt(t407 * t407 + t410 * t410) <= t103
+    t411 = ops.select(free6, 0.0, t353 + t354)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t356 - t355)
+    t412 = R1_21 * t411 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t411)
+    t413 = t157 & ops.opposite(on_axis_5_over_behind_front)
+    t414 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t415 = ops.select(t413, t359 + ops.select(t413, t414, 1.0), 1.0)
+    t416 = 1.0 / ops.select(t413, ops.sqrt(t415), 1.0)
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t416)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t411
+    t417 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t418 = ops.select(on_axis_5_over_behind_front, 0.0, t358 * t416)
+    R3_21_over_behind_front = t417 - R1_23 * t418
+    t419 = ops.select(t157, t343 * R3_21_over_behind_front, 1.0)
+    t420 = t342 * t412 - t419
+    t421 = ops.opposite(aligned_wrist_over_behind_front)
+    t422 = t157 & t421
+    t423 = R1_11 * t411 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t411
+    t424 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t424 - R1_13 * t418
+    t425 = ops.select(t157, t343 * R3_11_over_behind_front, 1.0)
+    t426 = t342 * t423 - t425
+    t427 = ops.select(t422, t426 * t426 + t420 * t420, 1.0)
+    t428 = 1.0 / ops.select(t422, ops.sqrt(t427), 1.0)
+    t429 = ops.select(aligned_wrist_over_behind_front, 0.0, t420 * t428)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t426 * t428))
+    t430 = ops.select(t157, c_wrist_over_behind_front, 1.0)
+    t431 = ops.atan2(t429, t430)
+    t432 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t431))
+    t433 = t426 * c_wrist_over_behind_front - t420 * t429
+    t434 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t411)
+    t435 = ops.select(t157, t343 * (t434 - R1_33 * t418), 1.0)
+    t436 = t342 * (R1_31 * t411 + T33 * c6_over_behind_front_2)
+    t437 = ops.atan2(t433, ops.select(t157, t435 - t436, 1.0))
+    t438 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t437))
+    t439 = ops.select(t157, t342 * R3_11_over_behind_front, 1.0)
+    t440 = ops.select(t157, t342 * R3_21_over_behind_front, 1.0)
+    t441 = c_wrist_over_behind_front * (t343 * t412 + t440)
+    R3_13_over_behind_front = R2_11_over_behind_front * t418 + R1_13 * c5_over_behind_front_2
+    t442 = ops.select(t157, t429 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t418 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t443 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t444 = ops.select(t157, -(t442 + ops.select(t157, t443, 1.0)), 1.0)
+    t445 = ops.atan2(t429 * (t343 * t423 + t439) + t441, t444)
+    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(t445))
+    t447 = ops.select(failed_4, ops.nan, t392)
+    t448 = ops.select(t157, c5_over_behind_front_2, 1.0)
+    t449 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t418, t448)))
+    t450 = ops.select(t157, c6_over_behind_front_2, 1.0)
+    t451 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t411, t450)))
+    t452 = ops.select(failed_4, ops.nan, t259)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t452 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t430))
-    t453 = ops.select(failed_4, ops.nan, ops.wrap_cut(t436))
-    t454 = ops.select(failed_4, ops.nan, ops.wrap(t444 + flip_wrist_over_behind_back))
-    t455 = no_link_elbow | free6
-    t456 = ops.status(invalid, unreachable, t455 | on_axis_5 | aligned_wrist)
-    t457 = t455 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t458 = ops.status(invalid, unreachable_2, t457)
-    t459 = t455 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t460 = ops.status(invalid, unreachable_3, t459)
-    t461 = t455 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t462 = ops.status(invalid, unreachable_4, t461)
+    t453 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t431))
+    t454 = ops.select(failed_4, ops.nan, ops.wrap_cut(t437))
+    t455 = ops.select(failed_4, ops.nan, ops.wrap(t445 + flip_wrist_over_behind_back))
+    t456 = no_link_elbow | free6
+    t457 = ops.status(invalid, unreachable, t456 | on_axis_5 | aligned_wrist)
+    t458 = t456 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t459 = ops.status(invalid, unreachable_2, t458)
+    t460 = t456 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t461 = ops.status(invalid, unreachable_3, t460)
+    t462 = t456 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t463 = ops.status(invalid, unreachable_4, t462)
     return (
         t243,
         t245,
@@ -1718,42 +1715,42 @@ def _ik(
         t311,
         t313,
         t314,
-        t374,
-        t381,
-        t390,
-        t392,
-        t394,
-        t396,
+        t375,
+        t382,
+        t391,
+        t393,
+        t395,
         t397,
         t398,
         t399,
         t400,
-        t392,
-        t394,
-        t396,
+        t401,
+        t393,
+        t395,
         t397,
-        t431,
-        t437,
-        t445,
+        t398,
+        t432,
+        t438,
         t446,
-        t448,
-        t450,
+        t447,
+        t449,
         t451,
         t452,
         t453,
         t454,
-        t446,
-        t448,
-        t450,
+        t455,
+        t447,
+        t449,
         t451,
-        t456,
-        t456,
-        t458,
-        t458,
-        t460,
-        t460,
-        t462,
-        t462,
+        t452,
+        t457,
+        t457,
+        t459,
+        t459,
+        t461,
+        t461,
+        t463,
+        t463,
     )
 
 

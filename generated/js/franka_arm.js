@@ -11,7 +11,7 @@
 //   singularities: 5 add, 8 multiply, 3 sincos
 //   jacobian_space: 73 add, 155 multiply, 6 sincos
 //   jacobian_body: 83 add, 159 multiply, 6 sincos
-//   ik: 260 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
+//   ik: 260 compare and select, 273 add, 23 atan2, 28 divide, 382 multiply, 1 sincos, 31 sqrt
 //   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 //     1 sincos, 24 sqrt
 
@@ -1215,32 +1215,31 @@ function _ik(v, o) {
     const t26 = Math.abs(w_y);
     const reach = Math.sqrt(t13);
     const t27 = t26 < reach;
-    const t28 = c_straight * t25;
+    const t28 = size * 5.684341886080802e-14;
+    const t29 = Math.max(0.0, (t27 ? t26 : 0.0) - t28);
+    const low__elbow_1 = t29 * t29;
+    const t30 = t28 + (t27 ? size : reach);
+    const high__elbow_1 = t30 * t30;
+    const t31 = c_straight * t25;
     const s__elbow_1_over_ahead_front = t24 * (2.0 * lever_elbow);
-    const t29 = s_straight * s__elbow_1_over_ahead_front;
-    const t30 = t28 + t29;
-    const t31 = s_straight * t25;
-    const t32 = c_straight * s__elbow_1_over_ahead_front;
-    const t33 = t31 - t32;
-    const qx__elbow_1 = t27 ? a5 + a4 * t30 - d3 * t33 : d3 * t30 - (d5 - a4 * t33);
-    const t34 = (t27 ? -t5 : level_s_elbow) * t25;
-    const t35 = (t27 ? level_s_elbow : t5) * s__elbow_1_over_ahead_front;
-    const t36 = t34 + t35;
-    const t37 = qx__elbow_1 * t36;
+    const t32 = s_straight * s__elbow_1_over_ahead_front;
+    const t33 = t31 + t32;
+    const t34 = s_straight * t25;
+    const t35 = c_straight * s__elbow_1_over_ahead_front;
+    const t36 = t34 - t35;
+    const qx__elbow_1 = t27 ? a5 + a4 * t33 - d3 * t36 : d3 * t33 - (d5 - a4 * t36);
     const square__elbow_1 = qx__elbow_1 * qx__elbow_1;
-    const t38 = size * 5.684341886080802e-14;
-    const t39 = Math.max(0.0, (t27 ? t26 : 0.0) - t38);
-    const low__elbow_1 = t39 * t39;
-    const t40 = t38 + (t27 ? size : reach);
-    const high__elbow_1 = t40 * t40;
-    const t41 = Math.max(low__elbow_1, Math.min(high__elbow_1, square__elbow_1));
-    const miss__elbow_1 = square__elbow_1 - t41;
-    const bend__elbow_1 = t36 * t36;
-    const inner__elbow_1 = t37 * t37 - miss__elbow_1 * bend__elbow_1;
-    const t42 = inner__elbow_1 < 0.0;
-    const t43 = (-t37 < 0 ? -1 : 1) * Math.sqrt(Math.max(0.0, inner__elbow_1));
-    const below__elbow_1 = t42 ? 2.0 * bend__elbow_1 : -(2.0 * (t37 - t43));
-    const above__elbow_1 = t42 ? -t37 : miss__elbow_1;
+    const t37 = Math.max(low__elbow_1, Math.min(high__elbow_1, square__elbow_1));
+    const t38 = (t27 ? -t5 : level_s_elbow) * t25;
+    const t39 = (t27 ? level_s_elbow : t5) * s__elbow_1_over_ahead_front;
+    const t40 = t38 + t39;
+    const bend__elbow_1 = t40 * t40;
+    const inner__elbow_1 = t37 * bend__elbow_1;
+    const t41 = inner__elbow_1 < 0.0;
+    const t42 = qx__elbow_1 * t40;
+    const t43 = (-t42 < 0 ? -1 : 1) * Math.sqrt(Math.max(0.0, inner__elbow_1));
+    const below__elbow_1 = t41 ? 2.0 * bend__elbow_1 : -(2.0 * (t42 - t43));
+    const above__elbow_1 = t41 ? -t42 : square__elbow_1 - t37;
     const t44 = Math.abs(below__elbow_1) <= Math.abs(above__elbow_1);
     const t45 = t44 ? 0.0 : above__elbow_1 / below__elbow_1;
     const t46 = t45 * t45;
@@ -1415,26 +1414,25 @@ function _ik(v, o) {
         3.141592653589793;
     const t148 = _runtime.wrap(flip_wrist_bent_behind_back - t129);
     const t149 = _runtime.wrap(t141 + flip_wrist_bent_behind_back);
-    const t150 = t28 - t29;
-    const t151 = t31 + t32;
+    const t150 = t31 - t32;
+    const t151 = t34 + t35;
     const qx__elbow_1_over_ahead_front = t27 ? a5 + a4 * t150 - d3 * t151 : d3 * t150 - (d5 - a4
         * t151);
-    const t152 = t34 - t35;
-    const t153 = qx__elbow_1_over_ahead_front * t152;
     const square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front *
         qx__elbow_1_over_ahead_front;
-    const t154 = Math.min(high__elbow_1, square__elbow_1_over_ahead_front);
-    const miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front -
-        Math.max(low__elbow_1, t154);
-    const bend__elbow_1_over_ahead_front = t152 * t152;
-    const t155 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front;
-    const inner__elbow_1_over_ahead_front = t153 * t153 - t155;
-    const t156 = inner__elbow_1_over_ahead_front < 0.0;
+    const t152 = Math.min(high__elbow_1, square__elbow_1_over_ahead_front);
+    const t153 = Math.max(low__elbow_1, t152);
+    const t154 = t38 - t39;
+    const bend__elbow_1_over_ahead_front = t154 * t154;
+    const inner__elbow_1_over_ahead_front = t153 * bend__elbow_1_over_ahead_front;
+    const t155 = inner__elbow_1_over_ahead_front < 0.0;
+    const t156 = qx__elbow_1_over_ahead_front * t154;
     const t157 = Math.max(0.0, inner__elbow_1_over_ahead_front);
-    const t158 = t153 - (-t153 < 0 ? -1 : 1) * Math.sqrt(t157);
-    const below__elbow_1_over_ahead_front = t156 ? 2.0 * bend__elbow_1_over_ahead_front : -(2.0
+    const t158 = t156 - (-t156 < 0 ? -1 : 1) * Math.sqrt(t157);
+    const below__elbow_1_over_ahead_front = t155 ? 2.0 * bend__elbow_1_over_ahead_front : -(2.0
         * t158);
-    const above__elbow_1_over_ahead_front = t156 ? -t153 : miss__elbow_1_over_ahead_front;
+    const above__elbow_1_over_ahead_front = t155 ? -t156 : square__elbow_1_over_ahead_front -
+        t153;
     const t159 = Math.abs(below__elbow_1_over_ahead_front) <=
         Math.abs(above__elbow_1_over_ahead_front);
     const t160 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front;

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 260 compare and select, 275 add, 23 atan2, 28 divide, 384 multiply, 1 sincos, 31 sqrt
+#   ik: 260 compare and select, 273 add, 23 atan2, 28 divide, 382 multiply, 1 sincos, 31 sqrt
 #   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
@@ -1115,44 +1115,41 @@ def _ik(
     reach = np.sqrt(t13)
     del t13
     t26 = t25 < reach
-    t27 = c_straight * t24
+    t27 = size * 5.684341886080802e-14
+    t28 = np.maximum(0.0, _runtime.select(t26, t25, 0.0) - t27)
+    low__elbow_1 = t28 * t28
+    del t28
+    t29 = t27 + _runtime.select(t26, size, reach)
+    del t27
+    high__elbow_1 = t29 * t29
+    del t29
+    t30 = c_straight * t24
     s__elbow_1_over_ahead_front = t23 * (2.0 * lever_elbow)
     del t23
-    t28 = s_straight * s__elbow_1_over_ahead_front
-    t29 = t27 + t28
-    t30 = s_straight * t24
-    t31 = c_straight * s__elbow_1_over_ahead_front
-    t32 = t30 - t31
-    qx__elbow_1 = _runtime.select(t26, a5 + a4 * t29 - d3 * t32, d3 * t29 - (d5 - a4 * t32))
-    del t29, t32
-    t33 = _runtime.select(t26, -t5, level_s_elbow) * t24
-    t34 = _runtime.select(t26, level_s_elbow, t5) * s__elbow_1_over_ahead_front
-    del level_s_elbow
-    t35 = t33 + t34
-    t36 = qx__elbow_1 * t35
+    t31 = s_straight * s__elbow_1_over_ahead_front
+    t32 = t30 + t31
+    t33 = s_straight * t24
+    t34 = c_straight * s__elbow_1_over_ahead_front
+    t35 = t33 - t34
+    qx__elbow_1 = _runtime.select(t26, a5 + a4 * t32 - d3 * t35, d3 * t32 - (d5 - a4 * t35))
+    del t32, t35
     square__elbow_1 = qx__elbow_1 * qx__elbow_1
-    del qx__elbow_1
-    t37 = size * 5.684341886080802e-14
-    t38 = np.maximum(0.0, _runtime.select(t26, t25, 0.0) - t37)
-    low__elbow_1 = t38 * t38
-    del t38
-    t39 = t37 + _runtime.select(t26, size, reach)
-    del t37
-    high__elbow_1 = t39 * t39
-    del t39
-    t40 = np.maximum(low__elbow_1, np.minimum(high__elbow_1, square__elbow_1))
-    miss__elbow_1 = square__elbow_1 - t40
-    del square__elbow_1, t40
-    bend__elbow_1 = t35 * t35
-    del t35
-    inner__elbow_1 = t36 * t36 - miss__elbow_1 * bend__elbow_1
-    t41 = inner__elbow_1 < 0.0
-    t42 = _runtime.sign(-t36) * np.sqrt(np.maximum(0.0, inner__elbow_1))
+    t36 = np.maximum(low__elbow_1, np.minimum(high__elbow_1, square__elbow_1))
+    t37 = _runtime.select(t26, -t5, level_s_elbow) * t24
+    t38 = _runtime.select(t26, level_s_elbow, t5) * s__elbow_1_over_ahead_front
+    del level_s_elbow
+    t39 = t37 + t38
+    bend__elbow_1 = t39 * t39
+    inner__elbow_1 = t36 * bend__elbow_1
+    t40 = inner__elbow_1 < 0.0
+    t41 = qx__elbow_1 * t39
+    del qx__elbow_1, t39
+    t42 = _runtime.sign(-t41) * np.sqrt(np.maximum(0.0, inner__elbow_1))
     del inner__elbow_1
-    below__elbow_1 = _runtime.select(t41, 2.0 * bend__elbow_1, -(2.0 * (t36 - t42)))
+    below__elbow_1 = _runtime.select(t40, 2.0 * bend__elbow_1, -(2.0 * (t41 - t42)))
     del bend__elbow_1, t42
-    above__elbow_1 = _runtime.select(t41, -t36, miss__elbow_1)
-    del miss__elbow_1, t36, t41
+    above__elbow_1 = _runtime.select(t40, -t41, square__elbow_1 - t36)
+    del square__elbow_1, t36, t40, t41
     t43 = np.abs(below__elbow_1) <= np.abs(above__elbow_1)
     t44 = _runtime.select(t43, 0.0, above__elbow_1 / below__elbow_1)
     del above__elbow_1, below__elbow_1, t43
@@ -1384,35 +1381,32 @@ def _ik(
     t141 = _runtime.wrap(flip_wrist_bent_behind_back - t124)
     t142 = _runtime.wrap(t134 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t143 = t27 - t28
-    del t27, t28
-    t144 = t30 + t31
+    t143 = t30 - t31
     del t30, t31
+    t144 = t33 + t34
+    del t33, t34
     qx__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t143 - d3 * t144, d3 * t143 - (d5 - a4 * t144))
     del t143, t144, t26
-    t145 = t33 - t34
-    del t33, t34
-    t146 = qx__elbow_1_over_ahead_front * t145
     square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
-    del qx__elbow_1_over_ahead_front
-    t147 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
+    t145 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
     del high__elbow_1
-    miss__elbow_1_over_ahead_front = square__elbow_1_over_ahead_front - np.maximum(low__elbow_1, t147)
-    del low__elbow_1, square__elbow_1_over_ahead_front, t147
-    bend__elbow_1_over_ahead_front = t145 * t145
-    del t145
-    t148 = miss__elbow_1_over_ahead_front * bend__elbow_1_over_ahead_front
-    inner__elbow_1_over_ahead_front = t146 * t146 - t148
-    del t148
-    t149 = inner__elbow_1_over_ahead_front < 0.0
+    t146 = np.maximum(low__elbow_1, t145)
+    del low__elbow_1, t145
+    t147 = t37 - t38
+    del t37, t38
+    bend__elbow_1_over_ahead_front = t147 * t147
+    inner__elbow_1_over_ahead_front = t146 * bend__elbow_1_over_ahead_front
+    t148 = inner__elbow_1_over_ahead_front < 0.0
+    t149 = qx__elbow_1_over_ahead_front * t147
+    del qx__elbow_1_over_ahead_front, t147
     t150 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
     del inner__elbow_1_over_ahead_front
-    t151 = 2.0 * (t146 - _runtime.sign(-t146) * np.sqrt(t150))
+    t151 = 2.0 * (t149 - _runtime.sign(-t149) * np.sqrt(t150))
     del t150
-    below__elbow_1_over_ahead_front = _runtime.select(t149, 2.0 * bend__elbow_1_over_ahead_front, -t151)
+    below__elbow_1_over_ahead_front = _runtime.select(t148, 2.0 * bend__elbow_1_over_ahead_front, -t151)
     del bend__elbow_1_over_ahead_front, t151
-    above__elbow_1_over_ahead_front = _runtime.select(t149, -t146, miss__elbow_1_over_ahead_front)
-    del miss__elbow_1_over_ahead_front, t146, t149
+    above__elbow_1_over_ahead_front = _runtime.select(t148, -t149, square__elbow_1_over_ahead_front - t146)
+    del square__elbow_1_over_ahead_front, t146, t148, t149
     t152 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
     t153 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
     del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front

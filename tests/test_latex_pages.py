@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.generated.numpy import puma560
 
 from closedform.emit.backends.latex import symbols
-from closedform.emit.backends.latex.article import Page, document
+from closedform.emit.backends.latex.article import Page, document, indexed, tied
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
@@ -252,8 +252,13 @@ def test_the_size_of_a_matrix_has_a_cross() -> None:
 
 def test_the_rate_of_a_target_is_a_differential() -> None:
     assert Prose(derivation("delta"))("It is A*dp = B*dq.") == (
-        r"It is $A\,\mathrm{d}p = B\,\mathrm{d}q$."
+        r"It is $A\,\mathrm{d}\mathbf p = B\,\mathrm{d}q$."
     )
+
+
+def test_a_vector_of_the_formulas_is_bold_in_sentences() -> None:
+    told = Prose(derivation("rpr_planar"))("A2 is at b, and p - b_1 has the length rho1.")
+    assert r"at $b$, and $\mathbf p - \mathbf b_1$ has" in told  # b is also a parameter
 
 
 def test_an_angle_that_is_another_one_is_told_once() -> None:
@@ -275,3 +280,21 @@ def test_the_entries_of_a_diagonal_share_a_row() -> None:
     whole = [(r"B_{11},\ \ldots,\ B_{33}", r"entry, see \eqref{eq:x:1}--\eqref{eq:x:3}")]
     assert symbols.joined(rows) == whole
     assert symbols.joined([rows[0], rows[2]]) == [rows[0], rows[2]]
+
+
+@pytest.mark.parametrize(
+    ("title", "entry"),
+    [
+        ("The loop", "loop"),
+        ("Inverse: the elbow", "inverse!elbow"),
+        ("Axes in three planes", "axes in three planes"),
+        ("Forward: P from two circles", "forward!P from two circles"),
+    ],
+)
+def test_no_entry_of_the_index_starts_with_an_article(title: str, entry: str) -> None:
+    assert indexed(title) == entry
+
+
+def test_the_number_of_a_model_stays_on_its_line_in_a_title() -> None:
+    assert tied("ABB IRB 260 palletiser") == "ABB IRB~260 palletiser"
+    assert tied("Planar 2R arm") == "Planar 2R arm"

@@ -51,7 +51,7 @@ from closedform.model.inverse import Inverse, Rank
 from closedform.model.lemma import Lemma
 from closedform.proof.prove import Proof
 
-__all__ = ["Page", "document"]
+__all__ = ["Page", "document", "indexed", "tied"]
 
 BARE: Mapping[str, Any] = {
     "blocks": [],
@@ -64,10 +64,14 @@ BARE: Mapping[str, Any] = {
 """A function without a listing."""
 ROOM = 26
 """A table that needs no more lines than that is kept on one page."""
+HEADING = 6
+"""The lines of a heading and a short reason, which stay with the table below them."""
 SENTENCE = 60
 """The letters of a cell that is broken into lines."""
 PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
 """What keeps its capital in the index: names, and letters of the figure."""
+ARTICLE = re.compile(r"(?:the|a|an) (?=\w)", re.IGNORECASE)
+"""What no entry of the index starts with."""
 LENGTH = re.compile(r"[a-z]_\d")
 """A letter of a lemma for a length, such as ``l_1``."""
 PARTS = 12
@@ -171,22 +175,28 @@ class Page(Sheet):
         fresh = [run for run in runs(shown) if not self.numbers.is_shown(run)]
         again = [label for run in runs(shown) if (label := self.numbers.is_shown(run))]
         uses = self.used(step, [left for left, _ in shown])
+        if fresh and again:  # of what is shown once more, the number says enough
+            names = [run[0][0] for run in runs(shown) if self.numbers.is_shown(run)]
+            seen = f"See {reference(again)} for {listed([f'${n}$' for n in names])}."
+            uses = f"{uses} {seen}".lstrip()
         new = self.numbers.number(fresh)
         self.labels.append([e.label for e in new if e.label] or again)
         n, proved = len(step.vanishes), step.title in self.proof.steps
         counted = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
         if counted and step.nonnegative:
             counted += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
+        room = min(2 * len(step.rows) + 3, ROOM)
         return {
             "title": escape(step.title),
             "index": indexed(step.title),
             "reason": self.prose(step.reason),
             "uses": uses,
-            "again": reference(again),
+            "again": "" if fresh else reference(again),
             "blocks": blocks(new),
             "columns": "".join(map(column, zip(*step.rows, strict=True))),
             "rows": [[self.cell(cell) for cell in row] for row in step.rows],
-            "room": min(2 * len(step.rows) + 3, ROOM),
+            "room": room,
+            "heading_room": room + HEADING,
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
             "counted": counted,
             "proves": self.prose(step.proves) if counted else "",
@@ -332,6 +342,11 @@ def matrices(inverse: Inverse, lemmas: Sequence[Lemma]) -> dict[str, sp.MatrixBa
     }
 
 
+def tied(title: str) -> str:
+    """A title in which the number of a model stays beside its name: ``IRB~2400``."""
+    return re.sub(r"(?<=[A-Za-z]) (?=\d+\b)", "~", title)
+
+
 def column(cells: Sequence[Any]) -> str:
     """The type of a column of a table: long sentences are broken into lines."""
     longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
@@ -339,12 +354,10 @@ def column(cells: Sequence[Any]) -> str:
 
 
 def indexed(title: str) -> str:
-    """The entry of a step in the index: ``inverse!the elbow`` for "Inverse: the elbow"."""
+    """The entry of a step in the index: ``inverse!elbow`` for "Inverse: the elbow"."""
     escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
-    return "!".join(
-        part if PROPER.match(part) else part[:1].lower() + part[1:]
-        for part in map(str.strip, escaped.split(":"))
-    )
+    parts = (ARTICLE.sub("", part.strip()) for part in escaped.split(":"))
+    return "!".join(p if PROPER.match(p) else p[:1].lower() + p[1:] for p in parts)
 
 
 def default(value: sp.Rational) -> str:
@@ -387,6 +400,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     context = {
         "name": derivation.name,
         "title": escape(derivation.title),
+        "heading": tied(escape(derivation.title)),
         "source": bibliography.source(derivation.paper),
         "cited": bibliography.cited(derivation.paper),
         "works": bibliography.entries([derivation.paper]),

@@ -332,7 +332,7 @@ ANGLE = re.compile(r"(\\(?:sin|cos|tan)) \\frac\{((?:[^{}]|\{[^{}]*\})*[+-](?:[^
 def stacked(rows: Sequence[str]) -> str:
     """Rows of a matrix or of cases; fractions need some space between them."""
     small = r"\frac" not in "".join(rows)
-    return (r" \\ " if small else r" \\[5pt] ").join(rows)
+    return (r" \\ " if small else r" \\[9pt] ").join(rows)
 
 
 INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
@@ -369,7 +369,7 @@ def is_nested(text: str) -> bool:
 def measure(text: str) -> float:
     """The width of a formula, in average letters; a fraction counts as the wider of its parts."""
     if stack := INNERMOST.search(text):
-        widest = max(map(measure, re.split(r" \\\\(?:\[5pt\])? ", stack[2])))
+        widest = max(map(measure, re.split(r" \\\\(?:\[9pt\])? ", stack[2])))
         return measure(text[: stack.start()] + text[stack.end() :]) + 3 + widest
     if fraction := FRACTION.search(text):
         widest = 0.8 + max(map(measure, fraction.groups()))

@@ -11,6 +11,7 @@ import sympy as sp
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.article import Page
 from closedform.emit.backends.latex.formulas import FITS, Printer, integer, is_nested, measure
+from closedform.emit.backends.latex.inequalities import inequalities
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.names import Quantities, is_word
 from closedform.emit.backends.latex.wide import Lines
@@ -295,3 +296,43 @@ def test_a_quantity_is_used_after_its_definition() -> None:
 )  # fmt: skip
 def test_names_that_are_words(name: str, word: bool) -> None:
     assert is_word(name) == word
+
+
+# Names and conditions
+
+
+def test_a_name_in_a_condition_is_defined_in_its_step() -> None:
+    step, *_ = told("irb2400")[1]["stages"]
+    assert "h_{1} = 0" in step["degenerate"]
+    assert r"h_{1} &= \sqrt{" in "".join(map(str, step["solution"]))
+
+
+def test_a_length_keeps_the_name_that_a_step_gave_it() -> None:
+    text = (GENERATED / "srs_arm.tex").read_text(encoding="utf-8")
+    first = text[text.index("Step 1:") : text.index("Step 2:")]
+    assert "$r$ is $L$" in first  # r is the name of another distance in this chapter
+    assert r"\mathrm{plane}" not in text
+
+
+def test_a_list_of_arguments_is_not_called_as_one_of_them() -> None:
+    assert told("scara")[1]["given"] == r"$\displaystyle \mathtt{x} = (x,\ y,\ z,\ \psi)$"
+
+
+def test_an_arctangent_has_no_length_below_both_arguments() -> None:
+    [step] = told("spherical_wrist")[1]["stages"]
+    solution = "".join(map(str, step["solution"]))
+    assert r"\operatorname{atan2}(R_{23},\ R_{13})" in solution
+    assert r"\operatorname{atan2}(h,\ R_{33})" in solution
+
+
+def test_two_bounds_of_one_name_are_one_condition() -> None:
+    sheet = page("scara")
+    order = {x: 0, y: 1}
+    found = inequalities(sheet, order, [y - a, y + a, b - y, x - c, x + c])
+    assert found == [r"$\left|a\right| \le y \le b$", r"$\left|c\right| \le x$"]
+
+
+def test_a_turned_hand_is_called_as_the_inverse_calls_it() -> None:
+    sheet = page("agile_wrist")
+    [hand] = sheet.derivation["fk"].outputs
+    assert [left for left, _ in sheet.array(hand, [*range(1, 10)])] == ["R"]

@@ -150,8 +150,10 @@ def arm_plane(
         ),
         vectors=(
             "The algorithm uses polar coordinates of $w$ and $v$, and forms the vectors $f_i$ "
-            "from the sines and cosines of their angles."
+            "from the sines and cosines of their angles.  It needs "
+            r"$t = \sigma(\cos\psi\,f_1 + \sin\psi\,f_2)$ too, which is in the plane of the arm."
         ),
+        letters={e: f"t_{axis}" for axis, e in zip("xyz", in_plane, strict=True) if e.is_Symbol},
         matrix="M",
     )
     beta, phi, chi, angle = (any_pair(f"tau{k}") for k in range(1, 5))

@@ -208,7 +208,10 @@ class Algorithm:
         self.page.printer.rename(self.names)
 
     def _free_letter(self, symbol: sp.Symbol) -> str:
-        """The letter of the lemma for a name, unless something else is written so."""
+        """What a step calls it, or the letter of the lemma unless something else is written so."""
+        known = self.page.quantities.known.items()
+        if stated := next((n for n, (e, _) in known if e == self.value(symbol)), ""):
+            return stated
         letter = self.letters.get(symbol, "")
         other = self.page.symbols - {symbol}
         base = letter.partition("_{")[0]
@@ -255,7 +258,28 @@ class Algorithm:
         value = value.xreplace({p: e for p, e in powers.items() if p.exp.is_Integer})
         value = self._without_detours(value.xreplace(self._sums_of_angles(value)))
         value = self.page.lines.tidy(value)
-        return value.xreplace({e: s for e, s in self.quantities.items() if e != value})
+        value = value.xreplace({e: s for e, s in self.quantities.items() if e != value})
+        return self._without_norms(value)
+
+    def _without_norms(self, value: sp.Expr) -> sp.Expr:
+        """The same without a length below both arguments of an arctangent."""
+        roots = {s: e.base for e, s in self.quantities.items() if e.is_Pow and s.is_Symbol}
+        squares = {
+            total: root
+            for total in value.atoms(sp.Add)
+            for root in total.free_symbols & roots.keys()
+            if sp.expand(total * root - roots[root]) == 0
+        }
+        value = value.xreplace(squares)
+        found = {}
+        for angle in value.atoms(sp.atan2):
+            sides = [sp.Mul.make_args(sp.together(side)) for side in angle.args]
+            shared = [p for p in sides[0] if p in sides[1] and _is_below(p, roots)]
+            if shared:
+                found[angle] = sp.atan2(
+                    *(sp.Mul(*s) / sp.Mul(*shared) for s in sides), evaluate=False
+                )
+        return value.xreplace(found)
 
     def _without_detours(self, value: sp.Expr) -> sp.Expr:
         """A sum without a name that stands beside the same terms with the other sign."""
@@ -502,6 +526,12 @@ class Algorithm:
         if self.function.has_status:
             return rf"\textsc{{{status}}}"
         return r"\textbf{return} false" if sp.true in self.outputs else "NaN"
+
+
+def _is_below(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool:
+    """Whether a factor divides by a root, or by the name of one."""
+    base, power = factor.as_base_exp()
+    return (power == -1 and base in roots) or (power == -sp.S.Half and base.is_Add)
 
 
 def _simplest_first(term: sp.Expr) -> tuple[Any, ...]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
+from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
 from closedform.model.functions import Bound, Determined, Let, Vanishes, substitute
@@ -113,7 +114,7 @@ class Cases:
     def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
         returned = ", ".join(effect)
         if free:
-            names = " and ".join(f"${self.page.math(s)}$" for s in free)
+            names = listed([f"${self.page.math(s)}$" for s in free])
             verb = "are" if len(free) > 1 else "is"
             returned = f"{names} {verb} free" + (f"; {returned}" if returned else "")
         value = self.algorithm.full(flag.value)

@@ -17,9 +17,11 @@ def inequalities(
     math = page.math
     left = list(dict.fromkeys(values))
     texts: list[str] = []
-    pairs = [(*magnitude(page, v, w), v, w) for v, w in combinations(left, 2)]
-    pairs = [p for p in pairs if p[0] in order and p[1] != 0]
-    if pairs:
+    while pairs := [
+        found
+        for v, w in combinations(left, 2)
+        if (found := (*magnitude(page, v, w), v, w))[0] in order and found[1] != 0
+    ]:
         middle, difference, value, other = max(pairs, key=lambda p: order[p[0]])
         above = next((e + middle for e in left if is_above(e, middle)), None)
         text = rf"{math(sp.Abs(difference, evaluate=False))} \le {math(middle)}"

@@ -16,6 +16,7 @@ from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.prose import escape, upright
 from closedform.emit.backends.latex.sheet import Sheet, blocks
 from closedform.emit.backends.latex.stages import Stages, block, enumeration
+from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
     Array,
     Bound,
@@ -83,8 +84,15 @@ class Told:
                 text = f"${page.math(array.entries[0])}$"
                 texts.append(f"the {escape(array.name.replace('_', ' '))} {text}")
             else:
-                texts += whole(page.assigned(array, {}))
+                texts += whole(self.argument(array))
         return ", and ".join(texts)
+
+    def argument(self, array: Array) -> list[Equation]:
+        """An argument and its entries; in the font of the code if it is called as one of them."""
+        page = self.page
+        if page.written(array.name) in map(page.math, array.entries):
+            return page.equations(rf"\mathtt{{{array.name}}}", list(array.entries))
+        return page.assigned(array, {})
 
     def order(self) -> str:
         """The unknowns, in the order in which they are solved for."""

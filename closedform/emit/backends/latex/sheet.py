@@ -54,9 +54,10 @@ class Sheet:
     @property
     def free_angles(self) -> list[str]:
         """The letters for angles that mean nothing else."""
-        used = self.prose.names
-        written = {w.latex for w in self.derivation.written.values()}
-        return [g for g in ANGLES if g not in used and rf"\{g}" not in written]
+        used = {*self.prose.names}
+        written = self.derivation.written
+        used |= {*written, *(w.latex.removeprefix("\\") for w in written.values())}
+        return [g for g in ANGLES if g not in used]
 
     def model(self, function: Function) -> Function | None:
         """The earlier printed function whose statements this one starts with, if there is one."""
@@ -87,6 +88,10 @@ class Sheet:
         entries = array.entries if entries is None else entries
         name = self.written(array.name)
         if len(array.shape) > 1:
+            if array.name == "p":  # the place of the hand, which is its rotation
+                arguments = (a for f in self.derivation.functions for a in f.inputs)
+                rotation = next((a for a in arguments if a.shape == array.shape), array)
+                name = self.written(rotation.name)
             shape = array.shape[-2:]
             if array.size == 1:  # a number needs no brackets
                 return self.equations(name, entries[0]) if self.math(entries[0]) != name else []
@@ -118,7 +123,7 @@ class Sheet:
                 return names
         arguments = (a for f in self.derivation.functions for a in f.inputs)
         alike = (a for a in arguments if (a.name, a.shape) == (array.name, array.shape))
-        if array.shape and (same := next(alike, None)):
+        if same := next(alike, None):
             return [self.math(e) for e in same.entries]
         if array.name == "det":
             return [r"\det J"]

@@ -397,6 +397,7 @@ class Stages:
             value = self.algorithm.value(result)
             rows += page.equations(result, value)
             values.append(value)
+        values += [self.vanishing(flag) for flag in self.freeing(solving)]
         return self.made_before(values) + rows
 
     def sums_with(self, solving: Solving) -> list[sp.Symbol]:
@@ -428,7 +429,9 @@ class Stages:
         algorithm = self.algorithm
         unknowns = {u for s in self.solvings for u in s.unknowns}
         named = algorithm.needed - unknowns
-        shown = {algorithm.known.get(s, s): s for s in algorithm.values if s in named}
+        printed = [s for s in algorithm.values if s in named]
+        shown = {e: s for s in printed if (e := algorithm.known.get(s)) is not None}
+        shown |= {s: s for s in printed if s not in algorithm.known}  # also if another one is it
         pending = [s for v in values for s in self.atoms(v) if s in shown]
         found: set[sp.Symbol] = set()
         while pending:
@@ -462,23 +465,29 @@ class Stages:
 
     def degenerate(self, solving: Solving) -> str:
         """Where an unknown of the lemma is free."""
-        flags = [
-            s
-            for s in (solving.link.body if solving.link else self.function.body)
-            if isinstance(s, Vanishes) and (solving.link or set(s.free) & set(solving.unknowns))
-        ]
         texts = []
-        for flag in flags:
-            if not flag.free:
-                continue
+        for flag in self.freeing(solving):
             free = enumeration([f"${self.page.math(s)}$" for s in flag.free])
-            value = self.named(flag.value)
-            where = Cases(self.algorithm).vanishing(self.algorithm.quantities.get(value, value))
+            where = Cases(self.algorithm).vanishing(self.vanishing(flag))
             texts.append(
                 f"{self.page.prose(flag.meaning)} ({where}): "
                 f"{free} {'are' if len(flag.free) > 1 else 'is'} free"
             )
         return "; ".join(texts)
+
+    def vanishing(self, flag: Vanishes) -> sp.Expr:
+        """What a flag compares with zero, by its name if it has one."""
+        value = self.named(flag.value)
+        return self.algorithm.quantities.get(value, value)
+
+    def freeing(self, solving: Solving) -> list[Vanishes]:
+        """The flags of the cases in which an unknown of the lemma is free."""
+        return [
+            s
+            for s in (solving.link.body if solving.link else self.function.body)
+            if isinstance(s, Vanishes) and s.free
+            if solving.link or set(s.free) & set(solving.unknowns)
+        ]
 
 
 def same_angle(pair: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr | None:

@@ -64,6 +64,8 @@ for k in (1, 2, 3):
         {rf"\mathbf w_{k}": "middle axis of leg k", f"B_{{{k}{k}}}": "entry of the diagonal of B"}
     )
     d.explain({rf"\mathbf a_{k}": "cross product of w and v, a row of A"})
+d.write("u", r"\mathbf u", "first axis of a leg")
+d.write("p", r"\mathbf p", "cross product of u and w of a leg")
 d.write("gap", r"\Delta", "determinant of A in every assembly mode")
 stated = d.step(
     "The loop",

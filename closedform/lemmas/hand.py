@@ -152,6 +152,15 @@ class Hand:
             return [(INDEX, renamed(value, self.alike.names(first - 1)))]
         return [*numbered]
 
+    def coordinates(self, near: Sequence[sp.Matrix]) -> dict[sp.Symbol, str]:
+        """How the names of the coordinates of the points b are written."""
+        return {
+            e: f"b_{{{k},{axis}}}"
+            for (k, _), end in zip(self.in_lemma(self.numbered), near, strict=True)
+            for axis, e in zip("xyz", end, strict=False)
+            if e.is_Symbol and e.name == f"c{k}_{axis}"
+        }
+
     def declare_alike(self) -> None:
         """Say in the derivation that the legs are alike, and what the symbols of leg i are."""
         self.d.alike = self.alike
@@ -186,9 +195,9 @@ class Hand:
         strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",
-            f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
-            "the joint of its leg determines.  Its distance from the hand is the length of the "
-            f"rod.{strut}{same}",
+            f"The hand p hangs on {self.count} rods.  The near end of rod {INDEX}{less} is "
+            f"b_{INDEX}, which the joint of its leg determines.  Its distance from the hand is "
+            f"the length of the rod.{strut}{same}",
             shown,
         )
 

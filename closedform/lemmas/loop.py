@@ -198,11 +198,12 @@ def _on_rods(
                     "first": rf"\mathbf b_{first}",
                     "result": r"\mathbf p",
                 },
+                letters={**found.lemma.letters, **m.coordinates(near)},
             ),
         ),
         title=f"{m.count} {shape}",
-        reason=f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
-        f"lengths of the rods.  They meet twice, on both sides of the "
+        reason=f"The hand is where {m.count} {shape} about the points b_i meet, whose radii are "
+        f"the lengths of the rods.  They meet twice, on both sides of the "
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
         f"determinant of the vectors along the rods has the sign of the mode.",
         shown={}

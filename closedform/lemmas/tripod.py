@@ -84,9 +84,9 @@ def _place(m: Tripod) -> Step:
     d.explain({"g": "coefficient of sin(psi) in the equation of the twist"})
     step = d.step(
         "Pose of the hand",
-        "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and the "
-        "corner of leg i is e in its frame, so it is at p + R*e.  It has to be in the plane of "
-        "its leg, whose normal is n.  This gives three equations.  The sum of the normals, each "
+        "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and "
+        "h_i leads from there to the corner of leg i.  The corner has to be in the plane of its "
+        "leg, whose normal is n_i.  This gives three equations.  The sum of the normals, each "
         "times a weight, is zero.  So the sum of the equations with these weights does not "
         "contain p.  It is f*cos(psi) + g*sin(psi) = 0, and gives the twist.  Then two of the "
         "equations are linear in the x and y of p.  The other solution for the twist differs by "

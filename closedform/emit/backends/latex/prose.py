@@ -88,6 +88,8 @@ DIFFERENTIAL = re.compile("d([pqx])")
 CROSS = r"\[\w\]_×"
 CROSSED = r"[{}]_\times"
 """The matrix of the cross product with a vector."""
+BOLD = re.compile(r"\\mathbf ?\{?([a-z])(?![A-Za-z])")
+"""A vector in a formula."""
 POINT = re.compile(r"\\mathbf ?\{?([A-Z])\}?_\{?(\d)\}?")
 """A point of a drawing, as in ``\\mathbf B_1``."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
@@ -233,6 +235,11 @@ class Prose:
         """Angles of an inverse whose names are words, in LaTeX."""
         self.code = {f.name for f in functions if f.has_status} - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
+        bold = set(BOLD.findall(" ".join(shown)))
+        self.vectors = bold - names - {*shown}
+        """The letters that are vectors wherever a sentence has them."""
+        self.indexed = bold
+        """The letters that are vectors where they have an index."""
         self.points = {m[1] + m[2] for left in shown if (m := POINT.fullmatch(left))}
         if self.points:  # then all points of the drawing are written so
             cells = [c for step in derivation.steps for row in step.rows for c in row]
@@ -308,11 +315,24 @@ class Prose:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
                 short = short or name in self.derivation.written
                 rate = not short and DIFFERENTIAL.fullmatch(name)
-                other = rf"\mathrm{{d}}{rate[1]}" if rate else rf"\mathrm{{{name}}}"
-                done.append(written_name(self.derivation, name) if short else other)
+                other = rf"\mathrm{{d}}{self._name(rate[1])}" if rate else rf"\mathrm{{{name}}}"
+                done.append(self._name(name) if short else other)
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)
+
+    def _name(self, name: str) -> str:
+        """A symbol; a vector is bold as in the formulas."""
+        free = name not in self.names and name not in self.derivation.written
+        if free and name in self.vectors:
+            return rf"\mathbf {name}"
+        if (
+            free
+            and name[0] in self.indexed
+            and (index := re.fullmatch(r"(?:_(?=\w)|(?=\d))(\w)", name[1:]))
+        ):
+            return rf"\mathbf {name[0]}_{index[1]}"
+        return written_name(self.derivation, name)
 
 
 def starts(before: list[str]) -> bool:

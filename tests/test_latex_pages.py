@@ -287,7 +287,9 @@ def test_the_entries_of_a_diagonal_share_a_row() -> None:
     [
         ("The loop", "loop"),
         ("Inverse: the elbow", "inverse!elbow"),
-        ("Axes in three planes", "axes in three planes"),
+        ("Centre of the wrist", "centre of the wrist"),
+        ("Jacobian and its determinant", "Jacobian and its determinant"),
+        ("Velocity: A and B", "velocity!A and B"),
         ("Forward: P from two circles", "forward!P from two circles"),
     ],
 )

@@ -129,7 +129,7 @@ def skeleton(
             *((", ".join(ends), size) for size, ends in distances.items()),
         ],
         proves=(
-            "The squared distance of each pair of neighbouring points is that of the length"
+            "The squared distance of each pair of neighbouring points is the square of the length"
             f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "
             f"the hand is at {position}."
         ),

@@ -70,7 +70,7 @@ SENTENCE = 60
 """The letters of a cell that is broken into lines."""
 PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
 """What keeps its capital in the index: names, and letters of the figure."""
-ARTICLE = re.compile(r"(?:the|a|an) (?=\w)", re.IGNORECASE)
+ARTICLE = re.compile(r"^(?:[Tt]he|[Aa]n) ")
 """What no entry of the index starts with."""
 LENGTH = re.compile(r"[a-z]_\d")
 """A letter of a lemma for a length, such as ``l_1``."""

@@ -9,15 +9,15 @@ them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
-from closedform.lemmas.hand import Hand, in_space, square
-from closedform.lemmas.held import LEFT_OUT, Bars, bars_of, check_held, constraint, state_held
+from closedform.lemmas.hand import Hand
+from closedform.lemmas.held import LEFT_OUT, check_held, constraint, state_held
 from closedform.lemmas.leg_by_leg import (
     MISSED,
     SIGN,
@@ -29,14 +29,13 @@ from closedform.lemmas.leg_by_leg import (
     size_of,
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
+from closedform.lemmas.loop_skeleton import draw
 from closedform.lemmas.missed import MOVED, SHARE, loosened
 from closedform.lemmas.modes import NO_MODE, Exported, export
-from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
-from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import (
     SINGLE,
@@ -86,7 +85,7 @@ def parallel(
     posture = _forward(mechanism, modes, loop)
     if passive:
         _passive_angles(mechanism, posture, passive)
-    _draw(mechanism, posture)
+    draw(mechanism, posture.hand, posture.program, posture.modes)
     _velocity(mechanism, posture, loop)
     _inverse(mechanism, loop)
 
@@ -294,116 +293,6 @@ def _passive_angles(m: Hand, at: _Posture, passive: Sequence[sp.Symbol]) -> None
         entries=tuple(passive),
         notes=(NO_MODE,),
     )
-
-
-@dataclass
-class _Drawing:
-    """What the skeleton of a hand on legs consists of; names of points end in those of legs."""
-
-    m: Hand
-    links: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    lengths: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
-    closing: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
-    joints: dict[sp.Symbol, tuple[str, ...]] = field(default_factory=dict)
-
-    def add(self, k: int, leg: Leg, equation: sp.Expr) -> None:
-        """A leg with its equation, and the link of the hand that it holds."""
-        place = self.m.place(leg)
-        far = "P" if place.is_zero_matrix else f"C{k}"
-        if far != "P":
-            self.links[f"hand{k}"] = ("P", far)
-            self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
-        if isinstance(leg, Rail):
-            self._add_rail(k, leg, far, equation)
-            return
-        self._add_rod(k, leg, far, equation)
-        self._add_driven(k, leg)
-        for pair in bars_of(k, leg, far):
-            self._add_bars(k, pair, equation if pair.far == far else None)
-
-    def _add_rail(self, k: int, leg: Rail, far: str, equation: sp.Expr) -> None:
-        base, end = f"A{k}", f"B{k}"
-        span = self.m.hand - self.m.centres[k - 1]
-        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
-        self.lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
-        self.closing[end, far] = equation**2
-
-    def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
-        """The rod; of a leg that stretches it is the driven joint."""
-        near = f"A{k}" if isinstance(leg, Stretch | Strut) else f"B{k}"
-        self.lengths[near, far] = sp.sympify(leg.rod, strict=True)
-        self.closing[near, far] = equation
-        if isinstance(leg, Stretch):
-            self.joints[leg.joint] = (near, far)
-        elif not isinstance(leg.rod, Parallelogram):
-            self.links[f"rod{k}"] = (near, far)
-
-    def _add_driven(self, k: int, leg: Leg) -> None:
-        """The crank or the slider."""
-        base, end = f"A{k}", f"B{k}"
-        if isinstance(leg, Crank):
-            if not isinstance(leg.length, Parallelogram):
-                self.links[f"crank{k}"] = (base, end)
-            self.lengths[base, end] = sp.sympify(leg.length, strict=True)
-            self.joints[leg.joint] = (base,)
-        elif isinstance(leg, Slide):
-            self.lengths[base, end] = leg.joint
-            self.joints[leg.joint] = (base, end)
-
-    def _add_bars(self, k: int, pair: Bars, equation: sp.Expr | None) -> None:
-        """The bars of a parallelogram: a rod, which the equation closes, or a crank."""
-        whole = "crank" if equation is None else "rod"
-        for ends in zip(pair.ends(pair.near), pair.ends(pair.far), strict=True):
-            self.links[f"{whole}{k}{ends[0][-1]}"] = ends
-            self.lengths[ends] = sp.sympify(pair.given, strict=True)
-            if equation is not None:
-                self.closing[ends] = equation
-        for middle in (pair.near, pair.far):
-            first, second = pair.ends(middle)
-            half = pair.given.half
-            self.links[f"bar_{first}"] = (first, middle, second)
-            self.lengths |= {(first, middle): half, (middle, second): half}
-
-
-def _draw(m: Hand, at: _Posture) -> None:
-    drawn = _Drawing(m)
-    for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
-        drawn.add(k, leg, equation)
-    ground = tuple(f"A{k}" for k, _ in m.numbered)
-    skeleton(
-        m.d,
-        _points(m, at.hand),
-        links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **drawn.links},
-        joints=drawn.joints,
-        hand="P",
-        hand_at=in_space(m.hand),
-        ground=ground,
-        lengths=drawn.lengths,
-        program=at.program,
-        branches=at.modes,
-        notes=(NO_MODE, *["The width of a parallelogram matters here alone."] * bool(m.held)),
-        at_posture=[_points(m, m.hand)],
-        closing=drawn.closing,
-    )
-
-
-def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
-    """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
-    points: dict[str, Sequence[sp.Expr]] = {}
-    for k, leg in m.numbered:
-        points[f"A{k}"] = in_space(leg.base)
-        if not isinstance(leg, Stretch | Strut):
-            points[f"B{k}"] = in_space(leg.end())
-        place, far = m.place(leg), "P"
-        if not place.is_zero_matrix:
-            far = f"C{k}"
-            points[far] = in_space(hand + place)
-        at = {f"A{k}": leg.base, f"B{k}": leg.end(), far: hand + place}
-        for pair in bars_of(k, leg, far):
-            for middle in (pair.near, pair.far):
-                ends = pair.around(middle, at[middle])
-                points |= {name: in_space(end) for name, end in ends.items()}
-    return points | {"P": in_space(hand)}
 
 
 def _velocity(m: Hand, at: _Posture, loop: Step) -> None:

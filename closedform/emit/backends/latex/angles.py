@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.emit.backends.latex.plain import is_rounding
+from closedform.emit.backends.latex.plain import followed, is_rounding
 from closedform.emit.backends.latex.rotations import product
 from closedform.model.functions import (
     Bound,
@@ -168,7 +168,7 @@ class _InAngles:
         users: dict[sp.Basic, set[Any]] = {}
         for name, value in [*self.values.items(), *((None, e) for e in self.outputs)]:
             if name is None or (name in needed and name not in self.alias):
-                for part in sp.preorder_traversal(self._followed(value, self.alias)):
+                for part in sp.preorder_traversal(followed(value, self.alias)):
                     if part in self.values:
                         uses[part] += 1
                         users.setdefault(part, set()).add(name)
@@ -186,11 +186,6 @@ class _InAngles:
             or (name in serving and (uses[name] < 2 or self._is_short(value)))
         }
 
-    def _followed(self, value: sp.Expr, alias: Mapping[sp.Basic, sp.Basic]) -> sp.Expr:
-        while (other := substitute(value, alias)) != value:
-            value = other
-        return value
-
     def _is_short(self, value: sp.Expr) -> bool:
         """Whether a value may occur twice: it has no roots, or those of letters."""
         roots = [p.base for p in value.atoms(sp.Pow) if p.exp == sp.S.Half]
@@ -202,7 +197,7 @@ class _InAngles:
         """Name the angle of a sine and a cosine, and what it is."""
         arctangent = sp.atan2(sine, cosine)
         for unknown, solution in self.solutions.items():
-            if self._followed(solution, self.alias) == self._followed(arctangent, self.alias):
+            if followed(solution, self.alias) == followed(arctangent, self.alias):
                 if unknown not in self.known:
                     self._define(unknown, arctangent)
                 return self._called(sine, cosine, unknown)

@@ -262,6 +262,13 @@ def _made(body: Sequence[Statement]) -> set[sp.Symbol]:
     return {s.symbol for s in body if isinstance(s, Let | Bound)}
 
 
+def followed(value: sp.Expr, names: Mapping[sp.Basic, sp.Basic]) -> sp.Expr:
+    """A value without names that stand for others, however many of them follow one another."""
+    while (other := substitute(value, names)) != value:
+        value = other
+    return value
+
+
 def is_rounding(flag: Vanishes) -> bool:
     """Whether the flag compares with a tiny multiple, which no exact quantity does."""
     tiny = any(q.q >= 2**8 for q in flag.value.atoms(sp.Rational))

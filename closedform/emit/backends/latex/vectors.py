@@ -8,6 +8,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from closedform.emit.backends.latex.plain import followed
 from closedform.model.functions import (
     Bound,
     Function,
@@ -89,7 +90,7 @@ class _Coordinates:
         # a coordinate that is another name is known by its own
         own = {same[c]: c for triple in kept for c in triple if c in same}
         same = {n: e for n, e in same.items() if n not in own.values()}
-        self.values = {n: _followed(e, same) for n, e in values.items()}
+        self.values = {n: followed(e, same) for n, e in values.items()}
         self.values = {
             n: e if n in own.values() else substitute(e, own) for n, e in self.values.items()
         }
@@ -99,7 +100,7 @@ class _Coordinates:
             for base, triple in triples.items()
             if triple in kept and {*triple} & needed
         }
-        self.outputs = [substitute(_followed(e, same), own) for e in outputs]
+        self.outputs = [substitute(followed(e, same), own) for e in outputs]
         self.coordinates = {c for triple in self.triples.values() for c in triple}
         inside = self.coordinates | same.keys()
         self.scalars = {n: e for n, e in self.values.items() if n in needed and n not in inside}
@@ -236,12 +237,6 @@ class _Coordinates:
         return usual
 
 
-def _followed(value: sp.Expr, same: Mapping[sp.Basic, sp.Basic]) -> sp.Expr:
-    while (other := substitute(value, same)) != value:
-        value = other
-    return value
-
-
 def _needed(
     function: Function,
     values: Mapping[sp.Symbol, sp.Expr],
@@ -249,7 +244,7 @@ def _needed(
     same: Mapping[sp.Symbol, sp.Expr],
 ) -> set[sp.Basic]:
     """The names on which the results and the conditions depend."""
-    needed = {s for e in outputs for s in _followed(e, same).free_symbols}
+    needed = {s for e in outputs for s in followed(e, same).free_symbols}
     for statement in reversed(function.body):
         name = getattr(statement, "symbol", None)
         if name in values and (name in needed or isinstance(statement, Bound)):

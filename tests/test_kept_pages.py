@@ -110,6 +110,13 @@ def test_a_file_that_is_cut_short_is_written_anew(slider, store, loaded) -> None
     assert file.read_bytes() == whole
 
 
+def test_a_kept_file_of_another_form_is_ignored(slider, store, tmp_path: Path) -> None:
+    pages = tmp_path / "build" / "pages"
+    pages.mkdir(parents=True)
+    (pages / "slider.numpy.pickle").write_bytes(pickle.dumps(("digest", "files", "share")))
+    assert store.pages(slider, "digest", ("numpy",)) is None
+
+
 def test_a_kept_file_cannot_run_code(slider, store, tmp_path: Path) -> None:
     class Hostile:
         def __reduce__(self) -> object:

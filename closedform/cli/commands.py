@@ -427,7 +427,7 @@ def _require_checkout(chosen: Sequence[scripts.Source]) -> None:
     for source in chosen:
         if not source.module:
             raise CommandError(
-                f"{source.path} is not in {scripts.scripts()}; give a folder with -o DIR", 2
+                f"{source.path} is not in {folders.scripts()}; give a folder with -o DIR", 2
             )
 
 

@@ -1,4 +1,4 @@
-"""Where generated files and the checkout are."""
+"""Where the scripts, the generated files and the checkout are."""
 
 from __future__ import annotations
 
@@ -15,3 +15,8 @@ def checkout() -> Path | None:
     """The root of the repository, or None if the package was installed from a wheel."""
     root = generated().parent
     return root if (root / "pyproject.toml").is_file() else None
+
+
+def scripts() -> Path:
+    """The folder of the derivation scripts."""
+    return Path(str(files("closedform.derivations")))

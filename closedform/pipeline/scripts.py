@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from closedform.pipeline import folders
 from closedform.pipeline.imports import digest_of, package, sources_of
 
 if TYPE_CHECKING:
@@ -51,16 +51,11 @@ class Source:
         return docstring.partition("\n")[0]
 
 
-def scripts() -> Path:
-    """The folder of the derivation scripts."""
-    return Path(str(files("closedform.derivations")))
-
-
 def sources() -> list[Source]:
     """The derivation scripts of the package, by name."""
     return [
         Source(path.stem, path, f"closedform.derivations.{path.stem}")
-        for path in sorted(scripts().glob("*.py"))
+        for path in sorted(folders.scripts().glob("*.py"))
         if _assigns_d(path.read_bytes())
     ]
 

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 OURS = "closedform"
 KNOWN = (OURS, "pathlib")
 RUNTIME = "runtime"
-TOOLS = ("sympy", "python-flint", "jinja2")
 
 
 class Store:
@@ -83,10 +82,10 @@ class Store:
     def pages(self, source: Source, digested: str, backends: Sequence[str]) -> Printed | None:
         """What was printed of a script, if nothing has changed since."""
         try:
-            data = _Data(io.BytesIO(self._pages(source, backends).read_bytes())).load()
+            file = io.BytesIO(self._pages(source, backends).read_bytes())
+            known, printed = _Data(file).load()
         except Exception:  # absent, cut short, or of another version: a pickle raises anything
             return None
-        known, printed = data
         return printed if known == digested else None
 
     def put_pages(
@@ -127,9 +126,12 @@ class _Data(pickle.Unpickler):
 
 
 def printing_digest(derived: str) -> str:
-    """A digest of all that pages depend on: a derivation, given by its digest, and the toolkit."""
+    """A digest of all that pages depend on: a derivation, given by its digest, and the toolkit.
+
+    The digest of the derivation has the versions of SymPy and python-flint.
+    """
     found = [path for path in package().rglob("*.py") if path.is_file()]
     for folder in (package() / RUNTIME, Path(str(files(f"{OURS}.templates")))):
         found += [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    tools = [f"Python {sys.version}\n", *(f"{tool} {version(tool)}\n" for tool in TOOLS)]
+    tools = [f"Python {sys.version}\n", f"jinja2 {version('jinja2')}\n"]
     return digest_of(sorted(set(found)), [derived, *tools])

@@ -50,13 +50,13 @@ from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.spheres import three_spheres as three_spheres
+from closedform.lemmas.tangent import CoordinateWithin as CoordinateWithin
 from closedform.lemmas.tangent import LinkAtHeight as LinkAtHeight
 from closedform.lemmas.tangent import Links as Links
 from closedform.lemmas.tangent import LinksAndWrist as LinksAndWrist
 from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.tangent import Preferred as Preferred
 from closedform.lemmas.tangent import TwoTurns as TwoTurns
-from closedform.lemmas.tangent import coordinate_within as coordinate_within
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.triangle import Triangle as Triangle
 from closedform.lemmas.tripod import tripod as tripod

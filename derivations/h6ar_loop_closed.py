@@ -457,7 +457,9 @@ cross = p.let("twice", 2 * point.dot(shift))
 # shoulder; the distance of the tips determines the length of the wrist.
 size = p.let("size", m.L1 + second)
 square = p.let("square_mid", M + (m.L1 - second) ** 2)
-p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=True)
+# the roll has d for a scale, and its promised error grows with the sum of all lengths over d
+over = p.let("over", sp.Max(64 * m.d, sum(m)))
+p.determined(M * square * over**2, 4096 * gap * size**4, "the virtual arm is folded", squares=True)
 p.determined(square, size**2, "the virtual arm has no length", squares=True)
 p.determined(wrist, m.al, "the wrist links are stretched")
 free = free_turn(p, m, mid.elbow, slack)
@@ -556,8 +558,9 @@ d.function(
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on "
         "its own shoulder (its upper arm is returned parallel to that of the virtual arm).",
         "SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a "
-        "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
-        "the distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and "
+        "folded virtual arm (its reach times its bend times d is less than 2^-10 of the square of "
+        "its size times half the distance of the tips; if d is less than 1/64 of the sum of all "
+        "lengths, that replaces d), with a virtual arm shorter than 2^-10 of a stretched one, and "
         "where the wrist links are nearly stretched (l_W is less than 2^-10 al).  A posture is "
         "SINGULAR too if an arm is at its limit and rounding bends it to the other side than the "
         "virtual arm.",

@@ -140,9 +140,7 @@ class Turn:
         miss = self.let("miss", square - reached)
         slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", goal.bend)
         side = sign_of(slope) if side is None else side
-        # along a line the square of the slope is the product of bend and square: nothing cancels
-        line = y == dy == 0
-        inner = self.let("inner", bend * reached if line else slope**2 - bend * miss)
+        inner = self.let("inner", slope**2 - bend * miss)
         outer = self.let("outer", slope + side * sp.sqrt(sp.Max(inner, 0)))
         above, below = (
             self.let(n, sp.Piecewise((closest, inner < 0), (there, True)))
@@ -326,9 +324,39 @@ class Between(Nearest):
         return turn.least(Within(x, y, y[0] ** 2 + y[1] ** 2, self.low, self.high))
 
 
-def coordinate_within(value: Callable[[Pair], sp.Expr], most: sp.Expr) -> Between:
-    """The goal that a coordinate, linear in the pair of a turn, is at most ``most`` in size."""
-    return Between(lambda pair: sp.Matrix([value(pair), 0]), sp.S.Zero, most)
+@dataclass(frozen=True)
+class CoordinateWithin(Nearest):
+    """A coordinate, linear in the pair of a turn, whose size is between ``least`` and ``most``."""
+
+    value: Callable[[Pair], sp.Expr]
+    most: sp.Expr
+    least: sp.Expr = sp.S.Zero
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with the coordinate in range.
+
+        A turn by an angle adds ``rate`` times its sine, less ``arm`` times its versine.
+        """
+        let, rounding = turn.let, turn.chain.size * ROUNDING
+        s, c = sp.Dummy("s"), sp.Dummy("c")
+        value = self.value(Pair(s, c))
+        by_s, by_c = value.diff(s), value.diff(c)
+        here = let("q", value.xreplace({s: turn.pair.s, c: turn.pair.c}))
+        rate = let("rate", by_s * turn.pair.c - by_c * turn.pair.s)
+        arm = let("arm", by_s * turn.pair.s + by_c * turn.pair.c)
+        size = let("size", sp.Abs(here))
+        wanted = sp.Max(self.least - rounding, sp.Min(size, self.most + rounding))
+        step = let("step", sign_of(here) * (wanted - size))
+        inner = let("inner", rate**2 - step * (2 * arm + step))
+        above, below = (
+            let(n, sp.Piecewise((farthest, inner < 0), (there, True)))
+            for n, farthest, there in (
+                ("above", rate, step),
+                ("below", 2 * arm + step, rate + sign_of(rate) * sp.sqrt(sp.Max(inner, 0))),
+            )
+        )
+        large = sp.Abs(above) >= sp.Abs(below)
+        return turn.by_half(let("half", choose(large, 0, above / below)))
 
 
 @dataclass(frozen=True)
@@ -352,12 +380,12 @@ class TwoTurns(Goal):
         def shorter(x: sp.Expr, z: sp.Expr) -> sp.Expr:
             return sp.Piecewise((x, along < self.across), (z, True))
 
-        def q(pair: Pair) -> sp.Matrix:
+        def value(pair: Pair) -> sp.Expr:
             v = self.vector(pair)
-            return sp.Matrix([shorter(v[0], v[2]), 0])
+            return shorter(v[0], v[2])
 
-        goal = Between(q, shorter(along, sp.S.Zero), shorter(size, self.across))
-        return goal.reached(turn)
+        most, least = shorter(size, self.across), shorter(along, sp.S.Zero)
+        return CoordinateWithin(value, most, least).reached(turn)
 
     def anywhere(self, program: Program, suffix: str) -> Pair:
         """The pair of a turn that is free: one that brings z to the middle of its range."""

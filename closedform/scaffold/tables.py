@@ -44,13 +44,12 @@ ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Rational", "atan", "atan2")
 CHAIN = (
-    "Carrying", "Reaching", "arm_angle", "coordinate_within", "rotation", "sign_of", "turned",
-    "within_tilt",
+    "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (
-    "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist", "LinksAtHeight",
-    "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
+    "CoordinateWithin", "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist",
+    "LinksAtHeight", "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",

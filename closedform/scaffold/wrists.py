@@ -79,7 +79,7 @@ class WristMaker(Maker):
     def within_reach(self, vector: str, beside: Any, reach: str) -> None:
         """Name the goal that a turn's third coordinate differs from ``beside`` by the reach."""
         less = f" - ({source(beside)})" if beside != 0 else ""
-        self.add(f"seen_across = coordinate_within(lambda pair: ({vector})[2]{less}, {reach})")
+        self.add(f"seen_across = CoordinateWithin(lambda pair: ({vector})[2]{less}, {reach})")
 
     def ahead_of_turn(self, vector: str, w: sp.Matrix, tilt: Any) -> None:
         """Name the goal that two turns can bring a vector as long as ``w`` to it.

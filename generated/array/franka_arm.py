@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 536 compare and select, 349 add, 23 atan2, 43 divide, 589 multiply, 1 sincos, 54 sqrt
+#   ik: 541 compare and select, 361 add, 23 atan2, 43 divide, 582 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1073,684 +1073,687 @@ def _ik(
     t44 = (t42 - t41 * t37) * t43
     t45 = ops.abs(w_y)
     t46 = t45 < reach
-    t47 = size * 5.684341886080802e-14
-    t48 = ops.max(0.0, ops.select(t46, t45, 0.0) - t47)
-    low__elbow_1 = t48 * t48
-    t49 = t47 + ops.select(t46, size, reach)
-    high__elbow_1 = t49 * t49
-    t50 = c_straight * t44
+    t47 = ops.select(t46, -t32, level_s_elbow)
+    t48 = t47 * t44
+    t49 = ops.select(t46, level_s_elbow, t32)
     s__elbow_1_over_ahead_front = t43 * (2.0 * lever_elbow)
-    t51 = s_straight * s__elbow_1_over_ahead_front
-    t52 = t50 + t51
-    t53 = s_straight * t44
-    t54 = c_straight * s__elbow_1_over_ahead_front
-    t55 = t53 - t54
-    qx__elbow_1 = ops.select(t46, a5 + a4 * t52 - d3 * t55, d3 * t52 - (d5 - a4 * t55))
-    square__elbow_1 = qx__elbow_1 * qx__elbow_1
-    t56 = ops.max(low__elbow_1, ops.min(high__elbow_1, square__elbow_1))
-    t57 = ops.select(t46, -t32, level_s_elbow) * t44
-    t58 = ops.select(t46, level_s_elbow, t32) * s__elbow_1_over_ahead_front
-    t59 = t57 + t58
-    bend__elbow_1 = t59 * t59
-    inner__elbow_1 = t56 * bend__elbow_1
-    t60 = inner__elbow_1 < 0.0
-    t61 = qx__elbow_1 * t59
-    t62 = ops.sign(-t61)
-    t63 = t61 - t62 * ops.sqrt(ops.max(0.0, inner__elbow_1))
-    below__elbow_1 = ops.select(t60, 2.0 * bend__elbow_1, -(2.0 * t63))
-    above__elbow_1 = ops.select(t60, -t61, square__elbow_1 - t56)
-    t64 = ops.abs(below__elbow_1) <= ops.abs(above__elbow_1)
-    t65 = ops.select(t64, 0.0, above__elbow_1 / below__elbow_1)
-    t66 = t65 * t65
-    t67 = 1.0 / (1.0 + t66)
-    t68 = 2.0 * t65 * t67
-    t69 = ops.abs(span_elbow * 0.5 - t42)
-    by_c__elbow_1 = t67 * (1.0 - t66)
-    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t68 * t68 / (1.0 + ops.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * ops.abs(t68) + t69 * versine__elbow_1
+    t50 = t49 * s__elbow_1_over_ahead_front
+    t51 = t48 + t50
+    t52 = c_straight * t44
+    t53 = s_straight * s__elbow_1_over_ahead_front
+    t54 = t52 + t53
+    t55 = s_straight * t44
+    t56 = c_straight * s__elbow_1_over_ahead_front
+    t57 = t55 - t56
+    q__elbow_1 = ops.select(t46, a5 + a4 * t54 - d3 * t57, d3 * t54 - (d5 - a4 * t57))
+    size__elbow_1 = ops.abs(q__elbow_1)
+    t58 = size * 5.684341886080802e-14
+    t59 = ops.select(t46, t45, 0.0) - t58
+    t60 = t58 + ops.select(t46, size, reach)
+    t61 = size__elbow_1 - ops.max(t59, ops.min(size__elbow_1, t60))
+    t62 = ops.sign(q__elbow_1)
+    t63 = t61 * t62
+    t64 = t49 * t44
+    t65 = t47 * s__elbow_1_over_ahead_front
+    t66 = t63 - 2.0 * (t64 - t65)
+    inner__elbow_1 = t51 * t51 - t63 * t66
+    t67 = inner__elbow_1 < 0.0
+    t68 = ops.sign(-t51)
+    t69 = t51 - t68 * ops.sqrt(ops.max(0.0, inner__elbow_1))
+    t70 = ops.select(t67, t66, t69)
+    t71 = ops.select(t67, t51, t63)
+    t72 = ops.abs(t70) <= ops.abs(t71)
+    half__elbow_1 = ops.select(t72, 0.0, t71 / t70)
+    t73 = half__elbow_1 * half__elbow_1
+    t74 = 1.0 / (1.0 + t73)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t74
+    t75 = ops.abs(span_elbow * 0.5 - t42)
+    by_c__elbow_1 = t74 * (1.0 - t73)
+    t76 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
+    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t76, 1.0 - by_c__elbow_1)
+    cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t75 * versine__elbow_1
     whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
-    t70 = cost__elbow_1 <= whole__elbow_1
-    sine__elbow_1 = ops.select(t70, -t68, 0.0)
-    cosine__elbow_1 = ops.select(t70, by_c__elbow_1, 1.0)
-    t71 = s__elbow_1_over_ahead_front * cosine__elbow_1
-    t72 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t71, s__elbow_1_over_ahead_front)
-    selbow = ops.select(no_link_elbow, t35, -t72)
-    t73 = ops.select(t33, 1.0, level_s_elbow * t34)
-    t74 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t74, t44))
-    t75 = c_straight * selbow - s_straight * celbow
-    t76 = c_straight * celbow + s_straight * selbow
-    t77 = d5 - a4 * t75 + d3 * t76
-    t78 = reach + t77
-    t79 = reach - t77
-    t80 = t27 & (-t13 <= t78) & (-t13 <= t79)
-    t81 = reach * 0.00390625
-    t82 = reach * ops.vanishing
-    tangent6 = ops.sqrt(ops.abs(t78 * t79)) - t81 <= t82
+    t77 = cost__elbow_1 <= whole__elbow_1
+    sine__elbow_1 = ops.select(t77, by_s__elbow_1, 0.0)
+    cosine__elbow_1 = ops.select(t77, by_c__elbow_1, 1.0)
+    t78 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t79 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t78, s__elbow_1_over_ahead_front)
+    selbow = ops.select(no_link_elbow, t35, -t79)
+    t80 = ops.select(t33, 1.0, level_s_elbow * t34)
+    t81 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t81, t44))
+    t82 = c_straight * selbow - s_straight * celbow
+    t83 = c_straight * celbow + s_straight * selbow
+    t84 = d5 - a4 * t82 + d3 * t83
+    t85 = reach + t84
+    t86 = reach - t84
+    t87 = t27 & (-t13 <= t85) & (-t13 <= t86)
+    t88 = reach * 0.00390625
+    t89 = reach * ops.vanishing
+    tangent6 = ops.sqrt(ops.abs(t85 * t86)) - t88 <= t89
     free6 = reach <= t39
-    v_x = a5 - a4 * t76 - d3 * t75
-    t83 = ops.abs(v_x)
-    t84 = t83 < reach
-    below6 = ops.max(t78, 0.0)
-    above6 = ops.max(t79, 0.0)
-    t85 = below6 * above6
-    held6 = ops.select(t84, ops.max(0.0, -((t45 - t83) * (t45 + t83))), t85)
-    t86 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t86 * t86), below6 + above6)
-    t87 = 1.0 / (reach * span6)
-    t88 = u_x * 2.0
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t85))
-    t89 = t87 * (t88 * kept6)
-    t90 = t87 * (s_z * t86)
-    c6 = ops.select(free6, 1.0, t89 + t90)
-    t91 = s_z * 2.0
-    t92 = t91 * kept6 * t87
-    t93 = t87 * (u_x * t86)
-    s6 = ops.select(free6, 0.0, t92 - t93)
+    v_x = a5 - a4 * t83 - d3 * t82
+    t90 = ops.abs(v_x)
+    t91 = t90 < reach
+    below6 = ops.max(t85, 0.0)
+    above6 = ops.max(t86, 0.0)
+    t92 = below6 * above6
+    held6 = ops.select(t91, ops.max(0.0, -((t45 - t90) * (t45 + t90))), t92)
+    t93 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t93 * t93), below6 + above6)
+    t94 = 1.0 / (reach * span6)
+    t95 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t92))
+    t96 = t94 * (t95 * kept6)
+    t97 = t94 * (s_z * t93)
+    c6 = ops.select(free6, 1.0, t96 + t97)
+    t98 = s_z * 2.0
+    t99 = t98 * kept6 * t94
+    t100 = t94 * (u_x * t93)
+    s6 = ops.select(free6, 0.0, t99 - t100)
     w_x = u_x * c6 + s_z * s6
-    t94 = ops.sqrt(t20 + w_x * w_x)
-    t95 = ops.sqrt(v_x * v_x)
-    t96 = ops.abs(ops.select(tangent6, t94 - t95, 0.0))
-    unreachable = ops.opposite(t80 & (t96 <= t13))
+    t101 = ops.sqrt(t20 + w_x * w_x)
+    t102 = ops.sqrt(v_x * v_x)
+    t103 = ops.abs(ops.select(tangent6, t101 - t102, 0.0))
+    unreachable = ops.opposite(t87 & (t103 <= t13))
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    on_axis_5 = ops.min(t95, t94) <= t39
+    on_axis_5 = ops.min(t102, t101) <= t39
     dot_5 = v_x * w_x
-    t97 = w_y * v_x
-    t98 = t97 * t97
-    t99 = 1.0 / ops.sqrt(t98 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t99)
+    t104 = w_y * v_x
+    t105 = t104 * t104
+    t106 = 1.0 / ops.sqrt(t105 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t106)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t100 = ops.select(on_axis_5, 0.0, t97 * t99)
-    t101 = t75 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t100)
-    R4_13 = t76 * (R1_11 * s6 - T13 * c6) + t101
+    t107 = ops.select(on_axis_5, 0.0, t104 * t106)
+    t108 = t82 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t107)
+    R4_13 = t83 * (R1_11 * s6 - T13 * c6) + t108
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t102 = t75 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t100)
-    R4_23 = t76 * (R1_21 * s6 - T23 * c6) + t102
-    t103 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t103
-    t104 = ops.opposite(failed)
-    c6_bent_behind_front = ops.select(free6, 1.0, t90 - t89)
-    t105 = ops.select(free6, 0.0, t92 + t93)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t105
-    t106 = w_x_bent_behind_front * w_x_bent_behind_front
-    t107 = ops.sqrt(t20 + t106)
-    t108 = ops.abs(ops.select(tangent6, t107 - t95, 0.0))
-    unreachable_2 = ops.opposite(t80 & (t108 <= t13))
+    t109 = t82 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t107)
+    R4_23 = t83 * (R1_21 * s6 - T23 * c6) + t109
+    t110 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t110
+    t111 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t97 - t96)
+    t112 = ops.select(free6, 0.0, t99 + t100)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t112
+    t113 = w_x_bent_behind_front * w_x_bent_behind_front
+    t114 = ops.sqrt(t20 + t113)
+    t115 = ops.abs(ops.select(tangent6, t114 - t102, 0.0))
+    unreachable_2 = ops.opposite(t87 & (t115 <= t13))
     failed_2 = invalid | unreachable_2
-    t109 = ops.opposite(failed_2)
-    t110 = t104 | t109
-    t111 = t50 - t51
-    t112 = t53 + t54
-    qx__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t111 - d3 * t112, d3 * t111 - (d5 - a4 * t112))
-    square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
-    t113 = ops.min(high__elbow_1, square__elbow_1_over_ahead_front)
-    t114 = ops.max(low__elbow_1, t113)
-    t115 = t57 - t58
-    bend__elbow_1_over_ahead_front = t115 * t115
-    inner__elbow_1_over_ahead_front = t114 * bend__elbow_1_over_ahead_front
-    t116 = inner__elbow_1_over_ahead_front < 0.0
-    t117 = qx__elbow_1_over_ahead_front * t115
-    t118 = ops.sign(-t117)
-    t119 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    below__elbow_1_over_ahead_front = ops.select(t116, 2.0 * bend__elbow_1_over_ahead_front, -(2.0 * (t117 - t118 * ops.sqrt(t119))))
-    above__elbow_1_over_ahead_front = ops.select(t116, -t117, square__elbow_1_over_ahead_front - t114)
-    t120 = ops.abs(below__elbow_1_over_ahead_front) <= ops.abs(above__elbow_1_over_ahead_front)
-    t121 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    t122 = ops.select(t120, 0.0, t121)
-    t123 = t122 * t122
-    t124 = 1.0 / (1.0 + t123)
-    t125 = 2.0 * t122 * t124
-    by_c__elbow_1_over_ahead_front = t124 * (1.0 - t123)
-    t126 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t125 * t125 / t126, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = lever_elbow * ops.abs(t125) + t69 * versine__elbow_1_over_ahead_front
-    t127 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t127, by_c__elbow_1_over_ahead_front, 1.0)
-    t128 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t127, -t125, 0.0)
-    t129 = ops.select(tangent_elbow, t128 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t129)
-    t130 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t131 = t44 * cosine__elbow_1_over_ahead_front + t130
-    celbow_over_ahead_front = ops.select(no_link_elbow, t73, -ops.select(tangent_elbow, t131, t44))
-    t132 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t133 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t134 = d5 - a4 * t132 + d3 * t133
-    t135 = reach + t134
-    t136 = reach - t134
-    t137 = t27 & (-t13 <= t135) & (-t13 <= t136)
-    tangent6_over_ahead_front = ops.sqrt(ops.abs(t135 * t136)) - t81 <= t82
-    v_x_over_ahead_front = a5 - a4 * t133 - d3 * t132
-    t138 = ops.abs(v_x_over_ahead_front)
-    t139 = t138 < reach
-    below6_over_ahead_front = ops.max(t135, 0.0)
-    above6_over_ahead_front = ops.max(t136, 0.0)
-    t140 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t139, ops.max(0.0, -((t45 - t138) * (t45 + t138))), t140)
-    t141 = below6_over_ahead_front - above6_over_ahead_front
-    t142 = ops.sqrt(4.0 * held6_over_ahead_front + t141 * t141)
+    t116 = ops.opposite(failed_2)
+    t117 = t111 | t116
+    t118 = t48 - t50
+    t119 = t52 - t53
+    t120 = t55 + t56
+    q__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t119 - d3 * t120, d3 * t119 - (d5 - a4 * t120))
+    size__elbow_1_over_ahead_front = ops.abs(q__elbow_1_over_ahead_front)
+    t121 = ops.max(t59, ops.min(size__elbow_1_over_ahead_front, t60))
+    t122 = ops.sign(q__elbow_1_over_ahead_front)
+    t123 = (size__elbow_1_over_ahead_front - t121) * t122
+    t124 = t123 - 2.0 * (t64 + t65)
+    inner__elbow_1_over_ahead_front = t118 * t118 - t123 * t124
+    t125 = inner__elbow_1_over_ahead_front < 0.0
+    t126 = ops.sign(-t118)
+    t127 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    t128 = ops.select(t125, t124, t118 - t126 * ops.sqrt(t127))
+    t129 = ops.select(t125, t118, t123)
+    t130 = ops.abs(t128) <= ops.abs(t129)
+    half__elbow_1_over_ahead_front = ops.select(t130, 0.0, t129 / t128)
+    t131 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t132 = 1.0 / (1.0 + t131)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t132
+    t133 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
+    by_c__elbow_1_over_ahead_front = t132 * (1.0 - t131)
+    t134 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t135 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t134 / t135, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = t133 + t75 * versine__elbow_1_over_ahead_front
+    t136 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t136, by_c__elbow_1_over_ahead_front, 1.0)
+    t137 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t136, by_s__elbow_1_over_ahead_front, 0.0)
+    t138 = ops.select(tangent_elbow, t137 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t138)
+    t139 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t140 = t44 * cosine__elbow_1_over_ahead_front + t139
+    celbow_over_ahead_front = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t140, t44))
+    t141 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t142 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t143 = d5 - a4 * t141 + d3 * t142
+    t144 = reach + t143
+    t145 = reach - t143
+    t146 = t27 & (-t13 <= t144) & (-t13 <= t145)
+    tangent6_over_ahead_front = ops.sqrt(ops.abs(t144 * t145)) - t88 <= t89
+    v_x_over_ahead_front = a5 - a4 * t142 - d3 * t141
+    t147 = ops.abs(v_x_over_ahead_front)
+    t148 = t147 < reach
+    below6_over_ahead_front = ops.max(t144, 0.0)
+    above6_over_ahead_front = ops.max(t145, 0.0)
+    t149 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t148, ops.max(0.0, -((t45 - t147) * (t45 + t147))), t149)
+    t150 = below6_over_ahead_front - above6_over_ahead_front
+    t151 = ops.sqrt(4.0 * held6_over_ahead_front + t150 * t150)
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t142, width6_over_ahead_front)
-    t143 = 1.0 / (reach * span6_over_ahead_front)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t140))
-    t144 = t143 * (t88 * kept6_over_ahead_front)
-    t145 = t143 * (s_z * t141)
-    c6_over_ahead_front = ops.select(free6, 1.0, t144 + t145)
-    t146 = t91 * kept6_over_ahead_front * t143
-    t147 = t143 * (u_x * t141)
-    s6_over_ahead_front = ops.select(free6, 0.0, t146 - t147)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t151, width6_over_ahead_front)
+    t152 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t149))
+    t153 = t152 * (t95 * kept6_over_ahead_front)
+    t154 = t152 * (s_z * t150)
+    c6_over_ahead_front = ops.select(free6, 1.0, t153 + t154)
+    t155 = t98 * kept6_over_ahead_front * t152
+    t156 = t152 * (u_x * t150)
+    s6_over_ahead_front = ops.select(free6, 0.0, t155 - t156)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t148 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    t149 = ops.sqrt(t148)
-    t150 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    t151 = ops.select(tangent6_over_ahead_front, t149 - t150, 0.0)
-    unreachable_3 = ops.opposite(t137 & (ops.abs(t151) <= t13))
+    t157 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t158 = ops.sqrt(t157)
+    t159 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t160 = ops.select(tangent6_over_ahead_front, t158 - t159, 0.0)
+    unreachable_3 = ops.opposite(t146 & (ops.abs(t160) <= t13))
     failed_3 = invalid | unreachable_3
-    t152 = ops.opposite(failed_3)
-    c6_over_behind_front = ops.select(free6, 1.0, t145 - t144)
-    t153 = ops.select(free6, 0.0, t146 + t147)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t153
-    t154 = w_x_over_behind_front * w_x_over_behind_front
-    t155 = ops.sqrt(t20 + t154)
-    t156 = ops.select(tangent6_over_ahead_front, t155 - t150, 0.0)
-    unreachable_4 = ops.opposite(t137 & (ops.abs(t156) <= t13))
+    t161 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t154 - t153)
+    t162 = ops.select(free6, 0.0, t155 + t156)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t162
+    t163 = w_x_over_behind_front * w_x_over_behind_front
+    t164 = ops.sqrt(t20 + t163)
+    t165 = ops.select(tangent6_over_ahead_front, t164 - t159, 0.0)
+    unreachable_4 = ops.opposite(t146 & (ops.abs(t165) <= t13))
     failed_4 = invalid | unreachable_4
-    t157 = ops.opposite(failed_4)
-    t158 = t110 | t152 | t157
-    t159 = t152 | t157
-    t160 = ops.opposite(no_link_elbow)
-    t161 = t159 & t160
-    t162 = t161 & tangent_elbow & t127
-    t163 = t162 & ops.opposite(t120)
-    t164 = (t159 & no_link_elbow) | (t110 & no_link_elbow)
-    t165 = t164 & ops.opposite(t33)
-    t166 = t110 & t160
-    t167 = t166 & tangent_elbow & t70
-    t168 = t167 & ops.opposite(t64)
-    t169 = (t158 | t163 | t165 | t168) & ops.opposite(no_straight)
-    t170 = ops.select(t169, ops.sqrt(ops.select(t169, t30, 1.0)), 1.0)
-    t171 = 1.0 / t170
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t171))
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t171)
+    t166 = ops.opposite(failed_4)
+    t167 = t117 | t161 | t166
+    t168 = t161 | t166
+    t169 = ops.opposite(no_link_elbow)
+    t170 = t168 & t169
+    t171 = t170 & tangent_elbow & t136
+    t172 = t171 & ops.opposite(t130)
+    t173 = (t168 & no_link_elbow) | (t117 & no_link_elbow)
+    t174 = t173 & ops.opposite(t33)
+    t175 = t117 & t169
+    t176 = t175 & tangent_elbow & t77
+    t177 = t176 & ops.opposite(t72)
+    t178 = (t167 | t172 | t174 | t177) & ops.opposite(no_straight)
+    t179 = ops.select(t178, ops.sqrt(ops.select(t178, t30, 1.0)), 1.0)
+    t180 = 1.0 / t179
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t180))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t180)
     level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
-    t172 = a4 * s_straight_2 + d3 * c_straight_2
-    t173 = t172 * t172 + level_s_elbow_2 * level_s_elbow_2
-    t174 = ops.select(t165, ops.sqrt(ops.select(t165, t173, 1.0)), 1.0)
-    t175 = 1.0 / t174
-    t176 = ops.select(t33, 1.0, level_s_elbow_2 * t175)
-    t177 = t161 | t163 | t166 | t168
-    t178 = 1.0 / ops.select(t177, t40, 1.0)
-    upper_2 = ops.sqrt(ops.select(t177, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t177, t15, 1.0))
-    t179 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t177, t22, 1.0))
-    t180 = (t179 + far_2) * ops.max(t179 - far_2, 0.0)
-    t181 = upper_2 - fore_2
-    t182 = ops.max(t181 + far_2, 0.0) * ops.max(far_2 - t181, 0.0)
-    t183 = 1.0 / ops.select(t177, t178 * (t180 + t182), 1.0)
-    t184 = (t178 * t180 - t178 * t182) * t183
-    t185 = c_straight_2 * t184
-    area_elbow = 2.0 * ops.sqrt(ops.select(t177, t180 * t182, 1.0))
-    t186 = 2.0 * (area_elbow / ops.select(t177, t38, 1.0))
-    s__elbow_1_over_ahead_front_2 = t183 * t186
-    t187 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t188 = t185 + t187
-    t189 = s_straight_2 * t184
-    t190 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t191 = t189 - t190
-    qx__elbow_1_2 = ops.select(t46, a5 + a4 * t188 - d3 * t191, d3 * t188 - (d5 - a4 * t191))
-    t192 = ops.select(t46, -t172, level_s_elbow_2) * t184
-    t193 = ops.select(t46, level_s_elbow_2, t172) * s__elbow_1_over_ahead_front_2
-    t194 = t192 + t193
-    t195 = qx__elbow_1_2 * t194
-    square__elbow_1_2 = qx__elbow_1_2 * qx__elbow_1_2
-    t196 = ops.opposite(free6)
-    t197 = (t157 & t196) | (t152 & t196)
-    t198 = t197 & tangent6_over_ahead_front
-    t199 = t109 & t196
-    t200 = t104 & t196
-    t201 = t197 | (t198 & ops.opposite(t139)) | t199 | t200
-    t202 = t199 | t200
-    t203 = t202 & tangent6
-    t204 = t163 & ops.opposite(t116)
-    t205 = t168 & ops.opposite(t60)
-    t206 = t201 | (t203 & ops.opposite(t84)) | ((t204 | t205) & ops.opposite(t46))
-    reach_2 = ops.sqrt(ops.select(t206, t21, 1.0))
-    t207 = t47 + ops.select(t46, size, reach_2)
-    high__elbow_1_2 = t207 * t207
-    t208 = ops.max(low__elbow_1, ops.min(high__elbow_1_2, square__elbow_1_2))
-    above__elbow_1_2 = ops.select(t60, -t195, square__elbow_1_2 - t208)
-    bend__elbow_1_2 = t194 * t194
-    t209 = ops.select(t205, ops.max(0.0, t208 * bend__elbow_1_2), 1.0)
-    below__elbow_1_2 = ops.select(t60, 2.0 * bend__elbow_1_2, -(2.0 * (t195 - t62 * ops.sqrt(t209))))
-    t210 = above__elbow_1_2 / ops.select(t168, below__elbow_1_2, 1.0)
-    t211 = ops.select(t64, 0.0, t210)
-    t212 = t211 * t211
-    t213 = 1.0 / ops.select(t167, 1.0 + t212, 1.0)
-    cosine__elbow_1_2 = ops.select(t70, t213 * (1.0 - t212), 1.0)
-    sine__elbow_1_2 = ops.select(t70, -(2.0 * t211 * t213), 0.0)
-    t214 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t215 = ops.select(tangent_elbow, t184 * cosine__elbow_1_2 - t214, t184)
-    celbow_2 = ops.select(no_link_elbow, t176, -t215)
-    t216 = ops.select(t33, 0.0, t172 * t175)
-    t217 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t218 = ops.select(tangent_elbow, t184 * sine__elbow_1_2 + t217, s__elbow_1_over_ahead_front_2)
-    selbow_2 = ops.select(no_link_elbow, t216, -t218)
-    t219 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
-    t220 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t219 - d3 * t220
-    t221 = ops.abs(v_x_2)
-    t222 = d5 - a4 * t220 + d3 * t219
-    below6_2 = ops.max(reach_2 + t222, 0.0)
-    above6_2 = ops.max(reach_2 - t222, 0.0)
-    t223 = below6_2 * above6_2
-    held6_2 = ops.select(t84, ops.max(0.0, -((t45 - t221) * (t45 + t221))), t223)
-    t224 = ops.select(t202 & ops.opposite(tangent6), t223, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t203, held6_2, 1.0)), ops.sqrt(t224))
-    t225 = below6_2 - above6_2
-    t226 = ops.select(t203, 4.0 * held6_2 + t225 * t225, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t226), below6_2 + above6_2)
-    t227 = 1.0 / ops.select(t202, reach_2 * span6_2, 1.0)
-    t228 = t91 * kept6_2 * t227
-    t229 = t227 * (u_x * t225)
-    s6_2 = ops.select(free6, 0.0, t228 - t229)
-    t230 = t227 * (t88 * kept6_2)
-    t231 = t227 * (s_z * t225)
-    c6_2 = ops.select(free6, 1.0, t230 + t231)
+    t181 = a4 * s_straight_2 + d3 * c_straight_2
+    t182 = t181 * t181 + level_s_elbow_2 * level_s_elbow_2
+    t183 = ops.select(t174, ops.sqrt(ops.select(t174, t182, 1.0)), 1.0)
+    t184 = 1.0 / t183
+    t185 = ops.select(t33, 1.0, level_s_elbow_2 * t184)
+    t186 = t170 | t172 | t175 | t177
+    t187 = 1.0 / ops.select(t186, t40, 1.0)
+    upper_2 = ops.sqrt(ops.select(t186, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t186, t15, 1.0))
+    t188 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t186, t22, 1.0))
+    t189 = (t188 + far_2) * ops.max(t188 - far_2, 0.0)
+    t190 = upper_2 - fore_2
+    t191 = ops.max(t190 + far_2, 0.0) * ops.max(far_2 - t190, 0.0)
+    t192 = 1.0 / ops.select(t186, t187 * (t189 + t191), 1.0)
+    t193 = (t187 * t189 - t187 * t191) * t192
+    t194 = ops.select(t46, -t181, level_s_elbow_2)
+    t195 = t194 * t193
+    t196 = ops.select(t46, level_s_elbow_2, t181)
+    area_elbow = 2.0 * ops.sqrt(ops.select(t186, t189 * t191, 1.0))
+    t197 = 2.0 * (area_elbow / ops.select(t186, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t192 * t197
+    t198 = t196 * s__elbow_1_over_ahead_front_2
+    t199 = t195 + t198
+    t200 = c_straight_2 * t193
+    t201 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t202 = t200 + t201
+    t203 = s_straight_2 * t193
+    t204 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t205 = t203 - t204
+    q__elbow_1_2 = ops.select(t46, a5 + a4 * t202 - d3 * t205, d3 * t202 - (d5 - a4 * t205))
+    size__elbow_1_2 = ops.abs(q__elbow_1_2)
+    t206 = ops.opposite(free6)
+    t207 = (t166 & t206) | (t161 & t206)
+    t208 = t207 & tangent6_over_ahead_front
+    t209 = t116 & t206
+    t210 = t111 & t206
+    t211 = t207 | (t208 & ops.opposite(t148)) | t209 | t210
+    t212 = t209 | t210
+    t213 = t212 & tangent6
+    t214 = t211 | (t213 & ops.opposite(t91)) | ((t172 | t177) & ops.opposite(t46))
+    reach_2 = ops.sqrt(ops.select(t214, t21, 1.0))
+    t215 = t58 + ops.select(t46, size, reach_2)
+    t216 = size__elbow_1_2 - ops.max(t59, ops.min(size__elbow_1_2, t215))
+    t217 = t216 * t62
+    t218 = t196 * t193
+    t219 = t194 * s__elbow_1_over_ahead_front_2
+    t220 = t217 - 2.0 * (t218 - t219)
+    t221 = ops.select(t177 & ops.opposite(t67), ops.max(0.0, t199 * t199 - t217 * t220), 1.0)
+    t222 = ops.select(t67, t220, t199 - t68 * ops.sqrt(t221))
+    t223 = ops.select(t67, t199, t217) / ops.select(t177, t222, 1.0)
+    half__elbow_1_2 = ops.select(t72, 0.0, t223)
+    t224 = half__elbow_1_2 * half__elbow_1_2
+    t225 = 1.0 / ops.select(t176, 1.0 + t224, 1.0)
+    cosine__elbow_1_2 = ops.select(t77, t225 * (1.0 - t224), 1.0)
+    sine__elbow_1_2 = ops.select(t77, 2.0 * half__elbow_1_2 * t225, 0.0)
+    t226 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t227 = ops.select(tangent_elbow, t193 * cosine__elbow_1_2 - t226, t193)
+    celbow_2 = ops.select(no_link_elbow, t185, -t227)
+    t228 = ops.select(t33, 0.0, t181 * t184)
+    t229 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t230 = ops.select(tangent_elbow, t193 * sine__elbow_1_2 + t229, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t228, -t230)
+    t231 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t232 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t231 - d3 * t232
+    t233 = ops.abs(v_x_2)
+    t234 = d5 - a4 * t232 + d3 * t231
+    below6_2 = ops.max(reach_2 + t234, 0.0)
+    above6_2 = ops.max(reach_2 - t234, 0.0)
+    t235 = below6_2 * above6_2
+    held6_2 = ops.select(t91, ops.max(0.0, -((t45 - t233) * (t45 + t233))), t235)
+    t236 = ops.select(t212 & ops.opposite(tangent6), t235, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t213, held6_2, 1.0)), ops.sqrt(t236))
+    t237 = below6_2 - above6_2
+    t238 = ops.select(t213, 4.0 * held6_2 + t237 * t237, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t238), below6_2 + above6_2)
+    t239 = 1.0 / ops.select(t212, reach_2 * span6_2, 1.0)
+    t240 = t98 * kept6_2 * t239
+    t241 = t239 * (u_x * t237)
+    s6_2 = ops.select(free6, 0.0, t240 - t241)
+    t242 = t239 * (t95 * kept6_2)
+    t243 = t239 * (s_z * t237)
+    c6_2 = ops.select(free6, 1.0, t242 + t243)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t232 = t104 & ops.opposite(on_axis_5)
-    t233 = w_y * v_x_2
-    t234 = t233 * t233
-    t235 = t234 + ops.select(t232, dot_5_2 * dot_5_2, 1.0)
-    t236 = ops.select(t232, ops.sqrt(ops.select(t232, t235, 1.0)), 1.0)
-    t237 = 1.0 / t236
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t237)
+    t244 = t111 & ops.opposite(on_axis_5)
+    t245 = w_y * v_x_2
+    t246 = t245 * t245
+    t247 = ops.select(t244, t246 + dot_5_2 * dot_5_2, 1.0)
+    t248 = 1.0 / ops.select(t244, ops.sqrt(t247), 1.0)
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t248)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t238 = ops.select(on_axis_5, 0.0, t233 * t237)
-    R3_21 = c5_2 * R2_21 - R1_23 * t238
-    R4_23_2 = t219 * R2_23 + ops.select(t104, t220 * R3_21, 1.0)
-    t239 = t104 & ops.opposite(aligned_wrist)
+    t249 = ops.select(on_axis_5, 0.0, t245 * t248)
+    R3_21 = c5_2 * R2_21 - R1_23 * t249
+    R4_23_2 = t231 * R2_23 + t232 * R3_21
+    t250 = t111 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t238
-    R4_13_2 = t219 * R2_13 + ops.select(t104, t220 * R3_11, 1.0)
-    t240 = ops.select(t239, R4_13_2 * R4_13_2 + R4_23_2 * R4_23_2, 1.0)
-    t241 = 1.0 / ops.select(t239, ops.sqrt(t240), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t241)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t241)
-    t242 = ops.atan2(s_wrist, ops.select(t104, c_wrist, 1.0))
-    t243 = ops.select(failed, ops.nan, ops.wrap_cut(t242))
+    R3_11 = c5_2 * R2_11 - R1_13 * t249
+    R4_13_2 = t231 * R2_13 + t232 * R3_11
+    t251 = ops.select(t250, R4_13_2 * R4_13_2, 1.0) + ops.select(t250, R4_23_2 * R4_23_2, 1.0)
+    t252 = ops.select(t250, ops.sqrt(ops.select(t250, t251, 1.0)), 1.0)
+    t253 = 1.0 / t252
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t253)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t253)
+    t254 = ops.atan2(s_wrist, ops.select(t111, c_wrist, 1.0))
+    t255 = ops.select(failed, ops.nan, ops.wrap_cut(t254))
+    t256 = ops.select(t111, R4_13_2 * c_wrist, 1.0) + ops.select(t111, R4_23_2 * s_wrist, 1.0)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t238
-    R4_33 = t219 * (R1_31 * s6_2 - T33 * c6_2) + ops.select(t104, t220 * R3_31, 1.0)
-    t244 = ops.atan2(R4_13_2 * c_wrist + R4_23_2 * s_wrist, ops.select(t104, R4_33, 1.0))
-    t245 = ops.select(failed, ops.nan, ops.wrap_cut(t244))
-    t246 = t220 * R2_13 - ops.select(t104, t219 * R3_11, 1.0)
-    t247 = t220 * R2_23 - ops.select(t104, t219 * R3_21, 1.0)
-    t248 = ops.select(t104, s_wrist * (R2_11 * t238 + R1_13 * c5_2), 1.0)
-    t249 = ops.select(t104, c_wrist * (t238 * R2_21 + R1_23 * c5_2), 1.0)
-    t250 = ops.atan2(s_wrist * t246 - c_wrist * t247, ops.select(t104, t248 - t249, 1.0))
-    t251 = ops.select(failed, ops.nan, ops.wrap_cut(t250))
-    t252 = ops.wrap_cut(ops.atan2(t220, ops.select(t110, t219, 1.0)))
-    t253 = ops.select(failed, ops.nan, t252)
-    t254 = ops.wrap_cut(-ops.atan2(t238, ops.select(t104, c5_2, 1.0)))
-    t255 = ops.select(failed, ops.nan, t254)
-    t256 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t104, c6_2, 1.0)))
-    t257 = ops.select(failed, ops.nan, t256)
-    t258 = ops.atan2(s_x_theta7, ops.select(t158, c_x_theta7, 1.0))
-    t259 = ops.wrap_cut(t258)
-    t260 = ops.select(failed, ops.nan, t259)
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t249
+    R4_33 = t231 * (R1_31 * s6_2 - T33 * c6_2) + t232 * R3_31
+    t257 = ops.atan2(t256, ops.select(t111, R4_33, 1.0))
+    t258 = ops.select(failed, ops.nan, ops.wrap_cut(t257))
+    t259 = ops.select(t111, s_wrist * (t232 * R2_13 - t231 * R3_11), 1.0)
+    t260 = ops.select(t111, c_wrist * (t232 * R2_23 - t231 * R3_21), 1.0)
+    t261 = ops.select(t111, s_wrist * (R2_11 * t249 + R1_13 * c5_2), 1.0)
+    t262 = ops.select(t111, c_wrist * (t249 * R2_21 + R1_23 * c5_2), 1.0)
+    t263 = ops.atan2(t259 - t260, ops.select(t111, t261 - t262, 1.0))
+    t264 = ops.select(failed, ops.nan, ops.wrap_cut(t263))
+    t265 = ops.wrap_cut(ops.atan2(t232, ops.select(t117, t231, 1.0)))
+    t266 = ops.select(failed, ops.nan, t265)
+    t267 = ops.wrap_cut(-ops.atan2(t249, ops.select(t111, c5_2, 1.0)))
+    t268 = ops.select(failed, ops.nan, t267)
+    t269 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t111, c6_2, 1.0)))
+    t270 = ops.select(failed, ops.nan, t269)
+    t271 = ops.atan2(s_x_theta7, ops.select(t167, c_x_theta7, 1.0))
+    t272 = ops.wrap_cut(t271)
+    t273 = ops.select(failed, ops.nan, t272)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t261 = ops.select(failed, ops.nan, ops.wrap(t242 + flip_wrist))
-    t262 = ops.select(failed, ops.nan, ops.wrap_cut(-t244))
-    t263 = ops.select(failed, ops.nan, ops.wrap(t250 + flip_wrist))
-    t264 = t76 * (R1_11 * t105 + T13 * c6_bent_behind_front)
-    on_axis_5_bent_behind_front = ops.min(t95, t107) <= t39
+    t274 = ops.select(failed, ops.nan, ops.wrap(t254 + flip_wrist))
+    t275 = ops.select(failed, ops.nan, ops.wrap_cut(-t257))
+    t276 = ops.select(failed, ops.nan, ops.wrap(t263 + flip_wrist))
+    t277 = t83 * (R1_11 * t112 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t102, t114) <= t39
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t265 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t266 = 1.0 / ops.sqrt(t98 + t265)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t266)
-    t267 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t105)
-    t268 = ops.select(on_axis_5_bent_behind_front, 0.0, t97 * t266)
-    t269 = t264 - t75 * (t267 - R1_13 * t268)
-    t270 = t76 * (R1_21 * t105 + T23 * c6_bent_behind_front)
-    t271 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t105)
-    t272 = t270 - t75 * (t271 - R1_23 * t268)
-    aligned_wrist_bent_behind_front = ops.sqrt(t269 * t269 + t272 * t272) <= t103
-    t273 = ops.select(free6, 0.0, t228 + t229)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t231 - t230)
-    t274 = R1_21 * t273 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t273)
-    t275 = t109 & ops.opposite(on_axis_5_bent_behind_front)
-    t276 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t277 = ops.select(t275, t234 + ops.select(t275, t276, 1.0), 1.0)
-    t278 = 1.0 / ops.select(t275, ops.sqrt(t277), 1.0)
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t278)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t273
-    t279 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t280 = ops.select(on_axis_5_bent_behind_front, 0.0, t233 * t278)
-    R3_21_bent_behind_front = t279 - R1_23 * t280
-    t281 = ops.select(t109, t220 * R3_21_bent_behind_front, 1.0)
-    t282 = t219 * t274 - t281
-    t283 = ops.opposite(aligned_wrist_bent_behind_front)
-    t284 = t109 & t283
-    t285 = R1_11 * t273 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t273
-    t286 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t286 - R1_13 * t280
-    t287 = ops.select(t109, t220 * R3_11_bent_behind_front, 1.0)
-    t288 = t219 * t285 - t287
-    t289 = ops.select(t284, t288 * t288 + t282 * t282, 1.0)
-    t290 = 1.0 / ops.select(t284, ops.sqrt(t289), 1.0)
-    t291 = ops.select(aligned_wrist_bent_behind_front, 0.0, t282 * t290)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t288 * t290))
-    t292 = ops.select(t109, c_wrist_bent_behind_front, 1.0)
-    t293 = ops.atan2(t291, t292)
-    t294 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t293))
-    t295 = t288 * c_wrist_bent_behind_front - t282 * t291
-    t296 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t273)
-    t297 = ops.select(t109, t220 * (t296 - R1_33 * t280), 1.0)
-    t298 = t219 * (R1_31 * t273 + T33 * c6_bent_behind_front_2)
-    t299 = ops.atan2(t295, ops.select(t109, t297 - t298, 1.0))
-    t300 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t299))
-    t301 = ops.select(t109, t219 * R3_11_bent_behind_front, 1.0)
-    t302 = ops.select(t109, t219 * R3_21_bent_behind_front, 1.0)
-    t303 = c_wrist_bent_behind_front * (t220 * t274 + t302)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t280 + R1_13 * c5_bent_behind_front_2
-    t304 = ops.select(t109, t291 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t280 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t305 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t306 = ops.select(t109, -(t304 + ops.select(t109, t305, 1.0)), 1.0)
-    t307 = ops.atan2(t291 * (t220 * t285 + t301) + t303, t306)
-    t308 = ops.select(failed_2, ops.nan, ops.wrap_cut(t307))
-    t309 = ops.select(failed_2, ops.nan, t252)
-    t310 = ops.select(t109, c5_bent_behind_front_2, 1.0)
-    t311 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t280, t310)))
-    t312 = ops.select(t109, c6_bent_behind_front_2, 1.0)
-    t313 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t273, t312)))
-    t314 = ops.select(failed_2, ops.nan, t259)
+    t278 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t279 = 1.0 / ops.sqrt(t105 + t278)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t279)
+    t280 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t112)
+    t281 = ops.select(on_axis_5_bent_behind_front, 0.0, t104 * t279)
+    t282 = t277 - t82 * (t280 - R1_13 * t281)
+    t283 = t83 * (R1_21 * t112 + T23 * c6_bent_behind_front)
+    t284 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t112)
+    t285 = t283 - t82 * (t284 - R1_23 * t281)
+    aligned_wrist_bent_behind_front = ops.sqrt(t282 * t282 + t285 * t285) <= t110
+    t286 = ops.select(free6, 0.0, t240 + t241)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t243 - t242)
+    t287 = R1_21 * t286 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t286)
+    t288 = t116 & ops.opposite(on_axis_5_bent_behind_front)
+    t289 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t290 = ops.select(t288, ops.sqrt(ops.select(t288, t246 + t289, 1.0)), 1.0)
+    t291 = 1.0 / t290
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t291)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t286
+    t292 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t293 = ops.select(on_axis_5_bent_behind_front, 0.0, t245 * t291)
+    R3_21_bent_behind_front = t292 - R1_23 * t293
+    t294 = t231 * t287 - t232 * R3_21_bent_behind_front
+    t295 = ops.opposite(aligned_wrist_bent_behind_front)
+    t296 = t116 & t295
+    t297 = R1_11 * t286 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t286
+    t298 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t298 - R1_13 * t293
+    t299 = t231 * t297 - t232 * R3_11_bent_behind_front
+    t300 = ops.select(t296, t299 * t299, 1.0) + ops.select(t296, t294 * t294, 1.0)
+    t301 = ops.select(t296, ops.sqrt(ops.select(t296, t300, 1.0)), 1.0)
+    t302 = 1.0 / t301
+    t303 = ops.select(aligned_wrist_bent_behind_front, 0.0, t294 * t302)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t299 * t302))
+    t304 = ops.select(t116, c_wrist_bent_behind_front, 1.0)
+    t305 = ops.atan2(t303, t304)
+    t306 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t305))
+    t307 = ops.select(t116, t299 * c_wrist_bent_behind_front, 1.0)
+    t308 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t286)
+    t309 = t231 * (R1_31 * t286 + T33 * c6_bent_behind_front_2)
+    t310 = ops.select(t116, t232 * (t308 - R1_33 * t293) - t309, 1.0)
+    t311 = ops.atan2(t307 - ops.select(t116, t294 * t303, 1.0), t310)
+    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t311))
+    t313 = t303 * (t232 * t297 + t231 * R3_11_bent_behind_front)
+    t314 = c_wrist_bent_behind_front * (t232 * t287 + t231 * R3_21_bent_behind_front)
+    t315 = ops.select(t116, t313, 1.0) + ops.select(t116, t314, 1.0)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t293 + R1_13 * c5_bent_behind_front_2
+    t316 = ops.select(t116, t303 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t293 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t317 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t318 = ops.select(t116, -(t316 + ops.select(t116, t317, 1.0)), 1.0)
+    t319 = ops.atan2(t315, t318)
+    t320 = ops.select(failed_2, ops.nan, ops.wrap_cut(t319))
+    t321 = ops.select(failed_2, ops.nan, t265)
+    t322 = ops.select(t116, c5_bent_behind_front_2, 1.0)
+    t323 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t293, t322)))
+    t324 = ops.select(t116, c6_bent_behind_front_2, 1.0)
+    t325 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t286, t324)))
+    t326 = ops.select(failed_2, ops.nan, t272)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t315 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t293))
-    t316 = ops.select(failed_2, ops.nan, ops.wrap_cut(t299))
-    t317 = ops.select(failed_2, ops.nan, ops.wrap(t307 + flip_wrist_bent_behind_back))
+    t327 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t305))
+    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(t311))
+    t329 = ops.select(failed_2, ops.nan, ops.wrap(t319 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t150, t149) <= t39
+    on_axis_5_over_ahead_front = ops.min(t159, t158) <= t39
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t318 = w_y * v_x_over_ahead_front
-    t319 = t318 * t318
-    t320 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t321 = 1.0 / ops.sqrt(t319 + t320)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t321)
+    t330 = w_y * v_x_over_ahead_front
+    t331 = t330 * t330
+    t332 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t333 = 1.0 / ops.sqrt(t331 + t332)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t333)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t322 = ops.select(on_axis_5_over_ahead_front, 0.0, t318 * t321)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t322
-    R4_13_over_ahead_front = t133 * R2_13_over_ahead_front + t132 * R3_11_over_ahead_front
-    t323 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t334 = ops.select(on_axis_5_over_ahead_front, 0.0, t330 * t333)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t334
+    R4_13_over_ahead_front = t142 * R2_13_over_ahead_front + t141 * R3_11_over_ahead_front
+    t335 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t322
-    R4_23_over_ahead_front = t133 * R2_23_over_ahead_front + t132 * R3_21_over_ahead_front
-    t324 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t323 + t324) <= t103
-    t325 = t185 - t187
-    t326 = t189 + t190
-    qx__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t325 - d3 * t326, d3 * t325 - (d5 - a4 * t326))
-    t327 = t192 - t193
-    t328 = qx__elbow_1_over_ahead_front_2 * t327
-    square__elbow_1_over_ahead_front_2 = qx__elbow_1_over_ahead_front_2 * qx__elbow_1_over_ahead_front_2
-    t329 = ops.min(high__elbow_1_2, square__elbow_1_over_ahead_front_2)
-    t330 = ops.max(low__elbow_1, t329)
-    above__elbow_1_over_ahead_front_2 = ops.select(t116, -t328, square__elbow_1_over_ahead_front_2 - t330)
-    bend__elbow_1_over_ahead_front_2 = t327 * t327
-    t331 = ops.max(0.0, t330 * bend__elbow_1_over_ahead_front_2)
-    t332 = t328 - t118 * ops.sqrt(ops.select(t204, t331, 1.0))
-    below__elbow_1_over_ahead_front_2 = ops.select(t116, 2.0 * bend__elbow_1_over_ahead_front_2, -(2.0 * t332))
-    t333 = ops.select(t163, below__elbow_1_over_ahead_front_2, 1.0)
-    t334 = ops.select(t120, 0.0, above__elbow_1_over_ahead_front_2 / t333)
-    t335 = t334 * t334
-    t336 = 1.0 / ops.select(t162, 1.0 + t335, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t127, t336 * (1.0 - t335), 1.0)
-    sine__elbow_1_over_ahead_front_2 = ops.select(t127, -(2.0 * t334 * t336), 0.0)
-    t337 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t338 = t184 * cosine__elbow_1_over_ahead_front_2 + t337
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t176, -ops.select(tangent_elbow, t338, t184))
-    t339 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t340 = t339 - t184 * sine__elbow_1_over_ahead_front_2
-    t341 = ops.select(tangent_elbow, t340, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t216, t341)
-    t342 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t343 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t342 - d3 * t343
-    t344 = ops.abs(v_x_over_ahead_front_2)
-    t345 = d5 - a4 * t343 + d3 * t342
-    below6_over_ahead_front_2 = ops.max(reach_2 + t345, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t345, 0.0)
-    t346 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t139, ops.max(0.0, -((t45 - t344) * (t45 + t344))), t346)
-    t347 = ops.select(t198, held6_over_ahead_front_2, 1.0)
-    t348 = t197 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t347), ops.sqrt(ops.select(t348, t346, 1.0)))
-    t349 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t350 = ops.select(t198, 4.0 * held6_over_ahead_front_2 + t349 * t349, 1.0)
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t334
+    R4_23_over_ahead_front = t142 * R2_23_over_ahead_front + t141 * R3_21_over_ahead_front
+    t336 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t335 + t336) <= t110
+    t337 = t195 - t198
+    t338 = t200 - t201
+    t339 = t203 + t204
+    q__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t338 - d3 * t339, d3 * t338 - (d5 - a4 * t339))
+    size__elbow_1_over_ahead_front_2 = ops.abs(q__elbow_1_over_ahead_front_2)
+    t340 = ops.min(size__elbow_1_over_ahead_front_2, t215)
+    t341 = size__elbow_1_over_ahead_front_2 - ops.max(t59, t340)
+    t342 = t341 * t122
+    t343 = t342 - 2.0 * (t218 + t219)
+    t344 = ops.select(t172 & ops.opposite(t125), ops.max(0.0, t337 * t337 - t342 * t343), 1.0)
+    t345 = ops.select(t125, t343, t337 - t126 * ops.sqrt(t344))
+    t346 = ops.select(t125, t337, t342) / ops.select(t172, t345, 1.0)
+    half__elbow_1_over_ahead_front_2 = ops.select(t130, 0.0, t346)
+    t347 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
+    t348 = 1.0 / ops.select(t171, 1.0 + t347, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t136, t348 * (1.0 - t347), 1.0)
+    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t348
+    sine__elbow_1_over_ahead_front_2 = ops.select(t136, by_s__elbow_1_over_ahead_front_2, 0.0)
+    t349 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t350 = t193 * cosine__elbow_1_over_ahead_front_2 + t349
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t185, -ops.select(tangent_elbow, t350, t193))
+    t351 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t352 = t351 - t193 * sine__elbow_1_over_ahead_front_2
+    t353 = ops.select(tangent_elbow, t352, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t228, t353)
+    t354 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t355 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t354 - d3 * t355
+    t356 = ops.abs(v_x_over_ahead_front_2)
+    t357 = d5 - a4 * t355 + d3 * t354
+    below6_over_ahead_front_2 = ops.max(reach_2 + t357, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t357, 0.0)
+    t358 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t148, ops.max(0.0, -((t45 - t356) * (t45 + t356))), t358)
+    t359 = ops.select(t208, held6_over_ahead_front_2, 1.0)
+    t360 = t207 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t359), ops.sqrt(ops.select(t360, t358, 1.0)))
+    t361 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t362 = ops.select(t208, 4.0 * held6_over_ahead_front_2 + t361 * t361, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t350), width6_over_ahead_front_2)
-    t351 = ops.select(t197, reach_2 * span6_over_ahead_front_2, 1.0)
-    t352 = 1.0 / t351
-    t353 = t91 * kept6_over_ahead_front_2 * t352
-    t354 = t352 * (u_x * t349)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t353 - t354)
-    t355 = t352 * (t88 * kept6_over_ahead_front_2)
-    t356 = t352 * (s_z * t349)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t355 + t356)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t362), width6_over_ahead_front_2)
+    t363 = ops.select(t207, reach_2 * span6_over_ahead_front_2, 1.0)
+    t364 = 1.0 / t363
+    t365 = t98 * kept6_over_ahead_front_2 * t364
+    t366 = t364 * (u_x * t361)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t365 - t366)
+    t367 = t364 * (t95 * kept6_over_ahead_front_2)
+    t368 = t364 * (s_z * t361)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t367 + t368)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t357 = t152 & ops.opposite(on_axis_5_over_ahead_front)
-    t358 = w_y * v_x_over_ahead_front_2
-    t359 = t358 * t358
-    t360 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t361 = ops.select(t357, t359 + ops.select(t357, t360, 1.0), 1.0)
-    t362 = 1.0 / ops.select(t357, ops.sqrt(t361), 1.0)
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t362)
+    t369 = t161 & ops.opposite(on_axis_5_over_ahead_front)
+    t370 = w_y * v_x_over_ahead_front_2
+    t371 = t370 * t370
+    t372 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t373 = ops.select(t369, ops.sqrt(ops.select(t369, t371 + t372, 1.0)), 1.0)
+    t374 = 1.0 / t373
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t374)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t363 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t364 = ops.select(on_axis_5_over_ahead_front, 0.0, t358 * t362)
-    R3_21_over_ahead_front_2 = t363 - R1_23 * t364
-    t365 = ops.select(t152, t343 * R3_21_over_ahead_front_2, 1.0)
-    R4_23_over_ahead_front_2 = t342 * R2_23_over_ahead_front_2 + t365
-    t366 = t152 & ops.opposite(aligned_wrist_over_ahead_front)
+    t375 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t376 = ops.select(on_axis_5_over_ahead_front, 0.0, t370 * t374)
+    R3_21_over_ahead_front_2 = t375 - R1_23 * t376
+    R4_23_over_ahead_front_2 = t354 * R2_23_over_ahead_front_2 + t355 * R3_21_over_ahead_front_2
+    t377 = t161 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t367 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t367 - R1_13 * t364
-    t368 = ops.select(t152, t343 * R3_11_over_ahead_front_2, 1.0)
-    R4_13_over_ahead_front_2 = t342 * R2_13_over_ahead_front_2 + t368
-    t369 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t370 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t371 = ops.select(t366, ops.sqrt(ops.select(t366, t369 + t370, 1.0)), 1.0)
-    t372 = 1.0 / t371
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t372)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t372)
-    t373 = ops.select(t152, c_wrist_over_ahead_front, 1.0)
-    t374 = ops.atan2(s_wrist_over_ahead_front, t373)
-    t375 = ops.select(failed_3, ops.nan, ops.wrap_cut(t374))
-    t376 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t377 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t378 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t378 - R1_13 * t376
+    R4_13_over_ahead_front_2 = t354 * R2_13_over_ahead_front_2 + t355 * R3_11_over_ahead_front_2
+    t379 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t380 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t381 = ops.select(t377, t379, 1.0) + ops.select(t377, t380, 1.0)
+    t382 = ops.select(t377, ops.sqrt(ops.select(t377, t381, 1.0)), 1.0)
+    t383 = 1.0 / t382
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t383)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t383)
+    t384 = ops.select(t161, c_wrist_over_ahead_front, 1.0)
+    t385 = ops.atan2(s_wrist_over_ahead_front, t384)
+    t386 = ops.select(failed_3, ops.nan, ops.wrap_cut(t385))
+    t387 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t388 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t389 = ops.select(t161, t387, 1.0) + ops.select(t161, t388, 1.0)
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t378 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    t379 = ops.select(t152, t343 * (t378 - R1_33 * t364), 1.0)
-    t380 = ops.select(t152, t342 * R2_33_over_ahead_front + t379, 1.0)
-    t381 = ops.atan2(t376 + t377, t380)
-    t382 = ops.select(failed_3, ops.nan, ops.wrap_cut(t381))
-    t383 = ops.select(t152, t342 * R3_11_over_ahead_front_2, 1.0)
-    t384 = s_wrist_over_ahead_front * (t343 * R2_13_over_ahead_front_2 - t383)
-    t385 = ops.select(t152, t342 * R3_21_over_ahead_front_2, 1.0)
-    t386 = c_wrist_over_ahead_front * (t343 * R2_23_over_ahead_front_2 - t385)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t364 + R1_13 * c5_over_ahead_front_2
-    t387 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t364 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t388 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t389 = ops.select(t152, t387, 1.0) - ops.select(t152, t388, 1.0)
-    t390 = ops.atan2(t384 - t386, ops.select(t152, t389, 1.0))
-    t391 = ops.select(failed_3, ops.nan, ops.wrap_cut(t390))
-    t392 = ops.wrap_cut(ops.atan2(t343, ops.select(t159, t342, 1.0)))
-    t393 = ops.select(failed_3, ops.nan, t392)
-    t394 = ops.atan2(t364, ops.select(t152, c5_over_ahead_front_2, 1.0))
-    t395 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t394))
-    t396 = ops.atan2(s6_over_ahead_front_2, ops.select(t152, c6_over_ahead_front_2, 1.0))
-    t397 = ops.select(failed_3, ops.nan, ops.wrap_cut(t396))
-    t398 = ops.select(failed_3, ops.nan, t259)
+    t390 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    R4_33_over_ahead_front = t354 * R2_33_over_ahead_front + t355 * (t390 - R1_33 * t376)
+    t391 = ops.select(t161, R4_33_over_ahead_front, 1.0)
+    t392 = ops.atan2(t389, t391)
+    t393 = ops.select(failed_3, ops.nan, ops.wrap_cut(t392))
+    t394 = t355 * R2_13_over_ahead_front_2 - t354 * R3_11_over_ahead_front_2
+    t395 = ops.select(t161, s_wrist_over_ahead_front * t394, 1.0)
+    t396 = t355 * R2_23_over_ahead_front_2 - t354 * R3_21_over_ahead_front_2
+    t397 = ops.select(t161, c_wrist_over_ahead_front * t396, 1.0)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t376 + R1_13 * c5_over_ahead_front_2
+    t398 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t376 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t399 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t400 = ops.select(t161, t398, 1.0) - ops.select(t161, t399, 1.0)
+    t401 = ops.atan2(t395 - t397, ops.select(t161, t400, 1.0))
+    t402 = ops.select(failed_3, ops.nan, ops.wrap_cut(t401))
+    t403 = ops.wrap_cut(ops.atan2(t355, ops.select(t168, t354, 1.0)))
+    t404 = ops.select(failed_3, ops.nan, t403)
+    t405 = ops.atan2(t376, ops.select(t161, c5_over_ahead_front_2, 1.0))
+    t406 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t405))
+    t407 = ops.atan2(s6_over_ahead_front_2, ops.select(t161, c6_over_ahead_front_2, 1.0))
+    t408 = ops.select(failed_3, ops.nan, ops.wrap_cut(t407))
+    t409 = ops.select(failed_3, ops.nan, t272)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t399 = ops.select(failed_3, ops.nan, ops.wrap(t374 + flip_wrist_over_ahead_back))
-    t400 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t381))
-    t401 = ops.select(failed_3, ops.nan, ops.wrap(t390 + flip_wrist_over_ahead_back))
-    t402 = t133 * (R1_11 * t153 + T13 * c6_over_behind_front)
-    on_axis_5_over_behind_front = ops.min(t150, t155) <= t39
+    t410 = ops.select(failed_3, ops.nan, ops.wrap(t385 + flip_wrist_over_ahead_back))
+    t411 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t392))
+    t412 = ops.select(failed_3, ops.nan, ops.wrap(t401 + flip_wrist_over_ahead_back))
+    t413 = t142 * (R1_11 * t162 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t159, t164) <= t39
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t403 = dot_5_over_behind_front * dot_5_over_behind_front
-    t404 = 1.0 / ops.sqrt(t319 + t403)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t404)
-    t405 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t153)
-    t406 = ops.select(on_axis_5_over_behind_front, 0.0, t318 * t404)
-    t407 = t402 - t132 * (t405 - R1_13 * t406)
-    t408 = t133 * (R1_21 * t153 + T23 * c6_over_behind_front)
-    t409 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t153)
-    t410 = t408 - t132 * (t409 - R1_23 * t406)
-    aligned_wrist_over_behind_front = ops.sqrt(t407 * t407 + t410 * t410) <= t103
-    t411 = ops.select(free6, 0.0, t353 + t354)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t356 - t355)
-    t412 = R1_21 * t411 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t411)
-    t413 = t157 & ops.opposite(on_axis_5_over_behind_front)
-    t414 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t415 = ops.select(t413, t359 + ops.select(t413, t414, 1.0), 1.0)
-    t416 = 1.0 / ops.select(t413, ops.sqrt(t415), 1.0)
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t416)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t411
-    t417 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t418 = ops.select(on_axis_5_over_behind_front, 0.0, t358 * t416)
-    R3_21_over_behind_front = t417 - R1_23 * t418
-    t419 = ops.select(t157, t343 * R3_21_over_behind_front, 1.0)
-    t420 = t342 * t412 - t419
-    t421 = ops.opposite(aligned_wrist_over_behind_front)
-    t422 = t157 & t421
-    t423 = R1_11 * t411 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t411
-    t424 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t424 - R1_13 * t418
-    t425 = ops.select(t157, t343 * R3_11_over_behind_front, 1.0)
-    t426 = t342 * t423 - t425
-    t427 = ops.select(t422, t426 * t426 + t420 * t420, 1.0)
-    t428 = 1.0 / ops.select(t422, ops.sqrt(t427), 1.0)
-    t429 = ops.select(aligned_wrist_over_behind_front, 0.0, t420 * t428)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t426 * t428))
-    t430 = ops.select(t157, c_wrist_over_behind_front, 1.0)
-    t431 = ops.atan2(t429, t430)
-    t432 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t431))
-    t433 = t426 * c_wrist_over_behind_front - t420 * t429
-    t434 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t411)
-    t435 = ops.select(t157, t343 * (t434 - R1_33 * t418), 1.0)
-    t436 = t342 * (R1_31 * t411 + T33 * c6_over_behind_front_2)
-    t437 = ops.atan2(t433, ops.select(t157, t435 - t436, 1.0))
-    t438 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t437))
-    t439 = ops.select(t157, t342 * R3_11_over_behind_front, 1.0)
-    t440 = ops.select(t157, t342 * R3_21_over_behind_front, 1.0)
-    t441 = c_wrist_over_behind_front * (t343 * t412 + t440)
-    R3_13_over_behind_front = R2_11_over_behind_front * t418 + R1_13 * c5_over_behind_front_2
-    t442 = ops.select(t157, t429 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t418 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t443 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t444 = ops.select(t157, -(t442 + ops.select(t157, t443, 1.0)), 1.0)
-    t445 = ops.atan2(t429 * (t343 * t423 + t439) + t441, t444)
-    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(t445))
-    t447 = ops.select(failed_4, ops.nan, t392)
-    t448 = ops.select(t157, c5_over_behind_front_2, 1.0)
-    t449 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t418, t448)))
-    t450 = ops.select(t157, c6_over_behind_front_2, 1.0)
-    t451 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t411, t450)))
-    t452 = ops.select(failed_4, ops.nan, t259)
+    t414 = dot_5_over_behind_front * dot_5_over_behind_front
+    t415 = 1.0 / ops.sqrt(t331 + t414)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t415)
+    t416 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t162)
+    t417 = ops.select(on_axis_5_over_behind_front, 0.0, t330 * t415)
+    t418 = t413 - t141 * (t416 - R1_13 * t417)
+    t419 = t142 * (R1_21 * t162 + T23 * c6_over_behind_front)
+    t420 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t162)
+    t421 = t419 - t141 * (t420 - R1_23 * t417)
+    aligned_wrist_over_behind_front = ops.sqrt(t418 * t418 + t421 * t421) <= t110
+    t422 = ops.select(free6, 0.0, t365 + t366)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t368 - t367)
+    t423 = R1_21 * t422 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t422)
+    t424 = t166 & ops.opposite(on_axis_5_over_behind_front)
+    t425 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t426 = ops.select(t424, ops.sqrt(ops.select(t424, t371 + t425, 1.0)), 1.0)
+    t427 = 1.0 / t426
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t427)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t422
+    t428 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t429 = ops.select(on_axis_5_over_behind_front, 0.0, t370 * t427)
+    R3_21_over_behind_front = t428 - R1_23 * t429
+    t430 = t354 * t423 - t355 * R3_21_over_behind_front
+    t431 = ops.opposite(aligned_wrist_over_behind_front)
+    t432 = t166 & t431
+    t433 = R1_11 * t422 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t422
+    t434 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t434 - R1_13 * t429
+    t435 = t354 * t433 - t355 * R3_11_over_behind_front
+    t436 = ops.select(t432, t435 * t435, 1.0) + ops.select(t432, t430 * t430, 1.0)
+    t437 = ops.select(t432, ops.sqrt(ops.select(t432, t436, 1.0)), 1.0)
+    t438 = 1.0 / t437
+    t439 = ops.select(aligned_wrist_over_behind_front, 0.0, t430 * t438)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t435 * t438))
+    t440 = ops.select(t166, c_wrist_over_behind_front, 1.0)
+    t441 = ops.atan2(t439, t440)
+    t442 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t441))
+    t443 = ops.select(t166, t435 * c_wrist_over_behind_front, 1.0)
+    t444 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t422)
+    t445 = t354 * (R1_31 * t422 + T33 * c6_over_behind_front_2)
+    t446 = ops.select(t166, t355 * (t444 - R1_33 * t429) - t445, 1.0)
+    t447 = ops.atan2(t443 - ops.select(t166, t430 * t439, 1.0), t446)
+    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t447))
+    t449 = t439 * (t355 * t433 + t354 * R3_11_over_behind_front)
+    t450 = c_wrist_over_behind_front * (t355 * t423 + t354 * R3_21_over_behind_front)
+    t451 = ops.select(t166, t449, 1.0) + ops.select(t166, t450, 1.0)
+    R3_13_over_behind_front = R2_11_over_behind_front * t429 + R1_13 * c5_over_behind_front_2
+    t452 = ops.select(t166, t439 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t429 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t453 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t454 = ops.select(t166, -(t452 + ops.select(t166, t453, 1.0)), 1.0)
+    t455 = ops.atan2(t451, t454)
+    t456 = ops.select(failed_4, ops.nan, ops.wrap_cut(t455))
+    t457 = ops.select(failed_4, ops.nan, t403)
+    t458 = ops.select(t166, c5_over_behind_front_2, 1.0)
+    t459 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t429, t458)))
+    t460 = ops.select(t166, c6_over_behind_front_2, 1.0)
+    t461 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t422, t460)))
+    t462 = ops.select(failed_4, ops.nan, t272)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t453 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t431))
-    t454 = ops.select(failed_4, ops.nan, ops.wrap_cut(t437))
-    t455 = ops.select(failed_4, ops.nan, ops.wrap(t445 + flip_wrist_over_behind_back))
-    t456 = no_link_elbow | free6
-    t457 = ops.status(invalid, unreachable, t456 | on_axis_5 | aligned_wrist)
-    t458 = t456 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t459 = ops.status(invalid, unreachable_2, t458)
-    t460 = t456 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t461 = ops.status(invalid, unreachable_3, t460)
-    t462 = t456 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t463 = ops.status(invalid, unreachable_4, t462)
+    t463 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t441))
+    t464 = ops.select(failed_4, ops.nan, ops.wrap_cut(t447))
+    t465 = ops.select(failed_4, ops.nan, ops.wrap(t455 + flip_wrist_over_behind_back))
+    t466 = no_link_elbow | free6
+    t467 = ops.status(invalid, unreachable, t466 | on_axis_5 | aligned_wrist)
+    t468 = t466 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t469 = ops.status(invalid, unreachable_2, t468)
+    t470 = t466 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t471 = ops.status(invalid, unreachable_3, t470)
+    t472 = t466 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t473 = ops.status(invalid, unreachable_4, t472)
     return (
-        t243,
-        t245,
-        t251,
-        t253,
         t255,
-        t257,
-        t260,
-        t261,
-        t262,
-        t263,
-        t253,
-        t255,
-        t257,
-        t260,
-        t294,
-        t300,
-        t308,
-        t309,
-        t311,
-        t313,
-        t314,
-        t315,
-        t316,
-        t317,
-        t309,
-        t311,
-        t313,
-        t314,
-        t375,
-        t382,
-        t391,
+        t258,
+        t264,
+        t266,
+        t268,
+        t270,
+        t273,
+        t274,
+        t275,
+        t276,
+        t266,
+        t268,
+        t270,
+        t273,
+        t306,
+        t312,
+        t320,
+        t321,
+        t323,
+        t325,
+        t326,
+        t327,
+        t328,
+        t329,
+        t321,
+        t323,
+        t325,
+        t326,
+        t386,
         t393,
-        t395,
-        t397,
-        t398,
-        t399,
-        t400,
-        t401,
-        t393,
-        t395,
-        t397,
-        t398,
-        t432,
-        t438,
-        t446,
-        t447,
-        t449,
-        t451,
-        t452,
-        t453,
-        t454,
-        t455,
-        t447,
-        t449,
-        t451,
-        t452,
-        t457,
+        t402,
+        t404,
+        t406,
+        t408,
+        t409,
+        t410,
+        t411,
+        t412,
+        t404,
+        t406,
+        t408,
+        t409,
+        t442,
+        t448,
+        t456,
         t457,
         t459,
+        t461,
+        t462,
+        t463,
+        t464,
+        t465,
+        t457,
         t459,
         t461,
-        t461,
-        t463,
-        t463,
+        t462,
+        t467,
+        t467,
+        t469,
+        t469,
+        t471,
+        t471,
+        t473,
+        t473,
     )
 
 

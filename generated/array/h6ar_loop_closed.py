@@ -12,7 +12,7 @@
 #   jacobian: 131 compare and select, 190 add, 59 divide, 323 multiply, 6 sincos, 8 sqrt
 #   determinant: 85 compare and select, 94 add, 28 divide, 157 multiply, 5 sincos, 8 sqrt
 #   singularities: 89 compare and select, 94 add, 27 divide, 147 multiply, 5 sincos, 8 sqrt
-#   ik: 2538 compare and select, 1004 add, 28 atan2, 276 divide, 1472 multiply, 1 reduce to a
+#   ik: 2539 compare and select, 1004 add, 28 atan2, 276 divide, 1478 multiply, 1 reduce to a
 #     turn, 3 sincos, 70 sqrt
 #   wrist_length: 25 compare and select, 6 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -4321,62 +4321,65 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1901 = ops.select(failed_3, ops.nan, ops.wrap_cut(t1900))
     t1902 = ops.select(failed_3, ops.nan, ops.wrap(t1305 - t1896))
     t1903 = nowhere | folded | short
+    over = ops.max(d * 64.0, lengths)
+    t1904 = over * over
     square_mid = t79 + M_mid
-    t1904 = M_mid * square_mid
-    t1905 = ops.determined * ops.determined
-    t1906 = t56 * t1905
-    t1907 = square_mid <= t1906
-    t1908 = t1903 | (t1904 <= t1905 * (t56 * gap)) | t1907
-    t1909 = wrist <= al * ops.determined
-    t1910 = t1908 | t1909 | folded_right | short_right | folded_left
-    t1911 = t820 * lengths
-    t1912 = 1125899906842624.0 * (ops.abs(L2 - L_2W) + ops.abs(a3 - a_3W))
-    t1913 = ops.vanishing * (ops.vanishing * (16.0 * t820))
-    t1914 = ops.max(t214, t1913) * 0.5 - (gap - ops.max(t221, 0.0) * 0.5)
-    t1915 = gap + ops.max(t220, 0.0) * 0.5 + ops.max(t213, t1913) * 0.5
-    t1916 = ops.sqrt(ops.max(0.0, t1914) * ops.max(0.0, t1915))
-    t1917 = t1912 * ops.abs(t33 * t1296 + sigma_right * t1916)
-    t1918 = ops.determined * ops.select(t113, t1917, 0.0)
-    t1919 = t1910 | (ops.select(t113, t1911, 1.0) <= t1918)
-    t1920 = ops.status(invalid, unreachable, t1919)
+    t1905 = M_mid * t1904 * square_mid
+    t1906 = ops.determined * ops.determined
+    t1907 = 4096.0 * (t56 * t56)
+    t1908 = t56 * t1906
+    t1909 = square_mid <= t1908
+    t1910 = t1903 | (t1905 <= t1906 * (t1907 * gap)) | t1909
+    t1911 = wrist <= al * ops.determined
+    t1912 = t1910 | t1911 | folded_right | short_right | folded_left
+    t1913 = t820 * lengths
+    t1914 = 1125899906842624.0 * (ops.abs(L2 - L_2W) + ops.abs(a3 - a_3W))
+    t1915 = ops.vanishing * (ops.vanishing * (16.0 * t820))
+    t1916 = ops.max(t214, t1915) * 0.5 - (gap - ops.max(t221, 0.0) * 0.5)
+    t1917 = gap + ops.max(t220, 0.0) * 0.5 + ops.max(t213, t1915) * 0.5
+    t1918 = ops.sqrt(ops.max(0.0, t1916) * ops.max(0.0, t1917))
+    t1919 = t1914 * ops.abs(t33 * t1296 + sigma_right * t1918)
+    t1920 = ops.determined * ops.select(t113, t1919, 0.0)
+    t1921 = t1912 | (ops.select(t113, t1913, 1.0) <= t1920)
+    t1922 = ops.status(invalid, unreachable, t1921)
     square_mid_front_elbow_down_alike = t79 + M_mid_front_elbow_down_alike
-    t1921 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    t1922 = t1921 <= t1905 * (t56 * gap_front_elbow_down_alike)
-    t1923 = square_mid_front_elbow_down_alike <= t1906
-    t1924 = t1903 | t1922 | t1923 | t1909 | folded_right_front_elbow_down_alike
-    t1925 = t1924 | short_right | folded_left_front_elbow_down_alike
-    t1926 = gap_front_elbow_down_alike - ops.max(t813, 0.0) * 0.5
-    t1927 = ops.max(0.0, ops.max(t801, t1913) * 0.5 - t1926)
-    t1928 = gap_front_elbow_down_alike + ops.max(t812, 0.0) * 0.5
-    t1929 = ops.max(0.0, t1928 + ops.max(t800, t1913) * 0.5)
-    t1930 = sigma_right_front_elbow_down_alike * ops.sqrt(t1927 * t1929)
-    astray_front_elbow_down_alike = ops.select(t669, t1912 * ops.abs(t33 * t1489 + t1930), 0.0)
-    t1931 = ops.determined * astray_front_elbow_down_alike
-    t1932 = t1925 | (ops.select(t669, t1911, 1.0) <= t1931)
-    t1933 = ops.status(invalid, unreachable_4, t1932)
-    t1934 = t1921 <= t1905 * (t56 * gap_rear_elbow_up_alike)
-    t1935 = t1903 | t1934 | t1923 | t1909 | folded_right_rear_elbow_up_alike
-    t1936 = t1935 | short_right | folded_left_rear_elbow_up_alike
-    t1937 = gap_rear_elbow_up_alike - ops.max(t419, 0.0) * 0.5
-    t1938 = ops.max(0.0, ops.max(t407, t1913) * 0.5 - t1937)
-    t1939 = gap_rear_elbow_up_alike + ops.max(t418, 0.0) * 0.5
-    t1940 = ops.max(0.0, t1939 + ops.max(t406, t1913) * 0.5)
-    t1941 = sigma_right_rear_elbow_up_alike * ops.sqrt(t1938 * t1940)
-    astray_rear_elbow_up_alike = ops.select(t277, t1912 * ops.abs(t33 * t1672 + t1941), 0.0)
-    t1942 = ops.select(t277, t1911, 1.0) <= ops.determined * astray_rear_elbow_up_alike
-    t1943 = ops.status(invalid, unreachable_2, t1936 | t1942)
-    t1944 = t1904 <= t1905 * (t56 * gap_rear_elbow_down_alike)
-    t1945 = t1903 | t1944 | t1907 | t1909 | folded_right_rear_elbow_down_alike
-    t1946 = t1945 | short_right | folded_left_rear_elbow_down_alike
-    t1947 = gap_rear_elbow_down_alike - ops.max(t614, 0.0) * 0.5
-    t1948 = ops.max(0.0, ops.max(t602, t1913) * 0.5 - t1947)
-    t1949 = gap_rear_elbow_down_alike + ops.max(t613, 0.0) * 0.5
-    t1950 = ops.max(0.0, t1949 + ops.max(t601, t1913) * 0.5)
-    t1951 = sigma_right_rear_elbow_down_alike * ops.sqrt(t1948 * t1950)
-    astray_rear_elbow_down_alike = ops.select(t471, t1912 * ops.abs(t33 * t1855 + t1951), 0.0)
-    t1952 = ops.determined * astray_rear_elbow_down_alike
-    t1953 = t1946 | (ops.select(t471, t1911, 1.0) <= t1952)
-    t1954 = ops.status(invalid, unreachable_3, t1953)
+    t1923 = M_mid_front_elbow_down_alike * t1904 * square_mid_front_elbow_down_alike
+    t1924 = t1923 <= t1906 * (t1907 * gap_front_elbow_down_alike)
+    t1925 = square_mid_front_elbow_down_alike <= t1908
+    t1926 = t1903 | t1924 | t1925 | t1911 | folded_right_front_elbow_down_alike
+    t1927 = t1926 | short_right | folded_left_front_elbow_down_alike
+    t1928 = gap_front_elbow_down_alike - ops.max(t813, 0.0) * 0.5
+    t1929 = ops.max(0.0, ops.max(t801, t1915) * 0.5 - t1928)
+    t1930 = gap_front_elbow_down_alike + ops.max(t812, 0.0) * 0.5
+    t1931 = ops.max(0.0, t1930 + ops.max(t800, t1915) * 0.5)
+    t1932 = sigma_right_front_elbow_down_alike * ops.sqrt(t1929 * t1931)
+    astray_front_elbow_down_alike = ops.select(t669, t1914 * ops.abs(t33 * t1489 + t1932), 0.0)
+    t1933 = ops.determined * astray_front_elbow_down_alike
+    t1934 = t1927 | (ops.select(t669, t1913, 1.0) <= t1933)
+    t1935 = ops.status(invalid, unreachable_4, t1934)
+    t1936 = t1923 <= t1906 * (t1907 * gap_rear_elbow_up_alike)
+    t1937 = t1903 | t1936 | t1925 | t1911 | folded_right_rear_elbow_up_alike
+    t1938 = t1937 | short_right | folded_left_rear_elbow_up_alike
+    t1939 = gap_rear_elbow_up_alike - ops.max(t419, 0.0) * 0.5
+    t1940 = ops.max(0.0, ops.max(t407, t1915) * 0.5 - t1939)
+    t1941 = gap_rear_elbow_up_alike + ops.max(t418, 0.0) * 0.5
+    t1942 = ops.max(0.0, t1941 + ops.max(t406, t1915) * 0.5)
+    t1943 = sigma_right_rear_elbow_up_alike * ops.sqrt(t1940 * t1942)
+    astray_rear_elbow_up_alike = ops.select(t277, t1914 * ops.abs(t33 * t1672 + t1943), 0.0)
+    t1944 = ops.select(t277, t1913, 1.0) <= ops.determined * astray_rear_elbow_up_alike
+    t1945 = ops.status(invalid, unreachable_2, t1938 | t1944)
+    t1946 = t1905 <= t1906 * (t1907 * gap_rear_elbow_down_alike)
+    t1947 = t1903 | t1946 | t1909 | t1911 | folded_right_rear_elbow_down_alike
+    t1948 = t1947 | short_right | folded_left_rear_elbow_down_alike
+    t1949 = gap_rear_elbow_down_alike - ops.max(t614, 0.0) * 0.5
+    t1950 = ops.max(0.0, ops.max(t602, t1915) * 0.5 - t1949)
+    t1951 = gap_rear_elbow_down_alike + ops.max(t613, 0.0) * 0.5
+    t1952 = ops.max(0.0, t1951 + ops.max(t601, t1915) * 0.5)
+    t1953 = sigma_right_rear_elbow_down_alike * ops.sqrt(t1950 * t1952)
+    astray_rear_elbow_down_alike = ops.select(t471, t1914 * ops.abs(t33 * t1855 + t1953), 0.0)
+    t1954 = ops.determined * astray_rear_elbow_down_alike
+    t1955 = t1948 | (ops.select(t471, t1913, 1.0) <= t1954)
+    t1956 = ops.status(invalid, unreachable_3, t1955)
     return (
         t1133,
         t1302,
@@ -4426,14 +4429,14 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t1901,
         t1902,
         t1898,
-        t1920,
-        t1920,
-        t1933,
-        t1933,
-        t1943,
-        t1943,
-        t1954,
-        t1954,
+        t1922,
+        t1922,
+        t1935,
+        t1935,
+        t1945,
+        t1945,
+        t1956,
+        t1956,
     )
 
 
@@ -4487,11 +4490,12 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
       own shoulder (its upper arm is returned parallel to that of the virtual arm).
     - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
-      folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
-      distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where
-      the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR
-      too if an arm is at its limit and rounding bends it to the other side than the virtual
-      arm.
+      folded virtual arm (its reach times its bend times d is less than 2^-10 of the square of
+      its size times half the distance of the tips; if d is less than 1/64 of the sum of all
+      lengths, that replaces d), with a virtual arm shorter than 2^-10 of a stretched one, and
+      where the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is
+      SINGULAR too if an arm is at its limit and rounding bends it to the other side than the
+      virtual arm.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
       yaw and roll follow from displacements of the tips divided by d, so rounding errors are
       divided by d too.

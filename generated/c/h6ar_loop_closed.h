@@ -13,9 +13,9 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 865 compare and select, 642 add, 28 atan2, 161 divide, 912 multiply, 1 reduce to a turn, 3
+ *   ik: 866 compare and select, 642 add, 28 atan2, 161 divide, 918 multiply, 1 reduce to a turn, 3
  *     sincos, 41 sqrt
- *   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 338 multiply,
+ *   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -291,10 +291,12 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
  *   own shoulder (its upper arm is returned parallel to that of the virtual arm).
  * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
- *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
- *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where
- *   the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR too
- *   if an arm is at its limit and rounding bends it to the other side than the virtual arm.
+ *   folded virtual arm (its reach times its bend times d is less than 2^-10 of the square of
+ *   its size times half the distance of the tips; if d is less than 1/64 of the sum of all
+ *   lengths, that replaces d), with a virtual arm shorter than 2^-10 of a stretched one, and
+ *   where the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is
+ *   SINGULAR too if an arm is at its limit and rounding bends it to the other side than the
+ *   virtual arm.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
  *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
  *   divided by d too.

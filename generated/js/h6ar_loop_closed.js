@@ -12,9 +12,9 @@
 //   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 //   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 //   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-//   ik: 865 compare and select, 642 add, 28 atan2, 161 divide, 912 multiply, 1 reduce to a turn, 3
+//   ik: 866 compare and select, 642 add, 28 atan2, 161 divide, 918 multiply, 1 reduce to a turn, 3
 //     sincos, 41 sqrt
-//   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 338 multiply,
+//   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
 //     1 reduce to a turn, 3 sincos, 16 sqrt
 //   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 //   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -3169,57 +3169,60 @@ function _ik(v, o) {
     const t907 = folded_left_rear_elbow_down_alike ? t872 : Math.atan2(t895 + t899, t900 -
         t901);
     const t908 = nowhere || folded || short;
+    const over = Math.max(d * 64.0, lengths);
+    const t909 = over * over;
     const square_mid = t73 + M_mid;
-    const t909 = M_mid * square_mid;
-    const t910 = _runtime.DETERMINED * _runtime.DETERMINED;
-    const t911 = t51 * t910;
-    const t912 = square_mid <= t911;
-    const t913 = wrist <= al * _runtime.DETERMINED;
-    const t914 = t908 || t909 <= t910 * (t51 * gap) || t912 || t913;
-    const t915 = t914 || folded_right || short_right || folded_left;
-    const t916 = t203 * lengths;
-    const t917 = 1125899906842624.0 * (Math.abs(L2 - L_2W) + Math.abs(a3 - a_3W));
-    const t918 = Math.max(0.0, M_right * 0.5 - (gap - M_left * 0.5));
-    const t919 = Math.max(0.0, gap + N_left * 0.5 + N_right * 0.5);
-    const t920 = t41 * t208 + sigma_right * Math.sqrt(t918 * t919);
-    const t921 = _runtime.DETERMINED * (t105 ? t917 * Math.abs(t920) : 0.0);
-    const t922 = invalid ? 3 : unreachable ? 1 : t915 || (t105 ? t916 : 1.0) <= t921 ? 2 : 0;
+    const t910 = M_mid * t909 * square_mid;
+    const t911 = _runtime.DETERMINED * _runtime.DETERMINED;
+    const t912 = 4096.0 * (t51 * t51);
+    const t913 = t51 * t911;
+    const t914 = square_mid <= t913;
+    const t915 = wrist <= al * _runtime.DETERMINED;
+    const t916 = t908 || t910 <= t911 * (t912 * gap) || t914 || t915;
+    const t917 = t916 || folded_right || short_right || folded_left;
+    const t918 = t203 * lengths;
+    const t919 = 1125899906842624.0 * (Math.abs(L2 - L_2W) + Math.abs(a3 - a_3W));
+    const t920 = Math.max(0.0, M_right * 0.5 - (gap - M_left * 0.5));
+    const t921 = Math.max(0.0, gap + N_left * 0.5 + N_right * 0.5);
+    const t922 = t41 * t208 + sigma_right * Math.sqrt(t920 * t921);
+    const t923 = _runtime.DETERMINED * (t105 ? t919 * Math.abs(t922) : 0.0);
+    const t924 = invalid ? 3 : unreachable ? 1 : t917 || (t105 ? t918 : 1.0) <= t923 ? 2 : 0;
     const square_mid_front_elbow_down_alike = t73 + M_mid_front_elbow_down_alike;
-    const t923 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
-    const t924 = t923 <= t910 * (t51 * gap_front_elbow_down_alike);
-    const t925 = square_mid_front_elbow_down_alike <= t911;
-    const t926 = t908 || t924 || t925 || t913 || folded_right_front_elbow_down_alike;
-    const t927 = t926 || short_right || folded_left_front_elbow_down_alike;
-    const t928 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5;
-    const t929 = Math.max(0.0, M_right_front_elbow_down_alike * 0.5 - t928);
-    const t930 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5;
-    const t931 = Math.max(0.0, t930 + N_right_front_elbow_down_alike * 0.5);
-    const t932 = sigma_right_front_elbow_down_alike * Math.sqrt(t929 * t931);
-    const astray_front_elbow_down_alike = t295 ? t917 * Math.abs(t41 * t442 + t932) : 0.0;
-    const t933 = _runtime.DETERMINED * astray_front_elbow_down_alike;
-    const t934 = invalid ? 3 : unreachable_2 ? 1 : t927 || (t295 ? t916 : 1.0) <= t933 ? 2 : 0;
-    const t935 = t923 <= t910 * (t51 * gap_rear_elbow_up_alike);
-    const t936 = t908 || t935 || t925 || t913 || folded_right_rear_elbow_up_alike;
-    const t937 = t936 || short_right || folded_left_rear_elbow_up_alike;
-    const t938 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5;
-    const t939 = Math.max(0.0, M_right_rear_elbow_up_alike * 0.5 - t938);
-    const t940 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5;
-    const t941 = Math.max(0.0, t940 + N_right_rear_elbow_up_alike * 0.5);
-    const t942 = sigma_right_rear_elbow_up_alike * Math.sqrt(t939 * t941);
-    const astray_rear_elbow_up_alike = t517 ? t917 * Math.abs(t41 * t660 + t942) : 0.0;
-    const t943 = _runtime.DETERMINED * astray_rear_elbow_up_alike;
-    const t944 = invalid ? 3 : unreachable_3 ? 1 : t937 || (t517 ? t916 : 1.0) <= t943 ? 2 : 0;
-    const t945 = t909 <= t910 * (t51 * gap_rear_elbow_down_alike);
-    const t946 = t908 || t945 || t912 || t913 || folded_right_rear_elbow_down_alike;
-    const t947 = t946 || short_right || folded_left_rear_elbow_down_alike;
-    const t948 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5;
-    const t949 = Math.max(0.0, M_right_rear_elbow_down_alike * 0.5 - t948);
-    const t950 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5;
-    const t951 = Math.max(0.0, t950 + N_right_rear_elbow_down_alike * 0.5);
-    const t952 = sigma_right_rear_elbow_down_alike * Math.sqrt(t949 * t951);
-    const astray_rear_elbow_down_alike = t734 ? t917 * Math.abs(t41 * t878 + t952) : 0.0;
-    const t953 = _runtime.DETERMINED * astray_rear_elbow_down_alike;
-    const t954 = invalid ? 3 : unreachable_4 ? 1 : t947 || (t734 ? t916 : 1.0) <= t953 ? 2 : 0;
+    const t925 = M_mid_front_elbow_down_alike * t909 * square_mid_front_elbow_down_alike;
+    const t926 = t925 <= t911 * (t912 * gap_front_elbow_down_alike);
+    const t927 = square_mid_front_elbow_down_alike <= t913;
+    const t928 = t908 || t926 || t927 || t915 || folded_right_front_elbow_down_alike;
+    const t929 = t928 || short_right || folded_left_front_elbow_down_alike;
+    const t930 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5;
+    const t931 = Math.max(0.0, M_right_front_elbow_down_alike * 0.5 - t930);
+    const t932 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5;
+    const t933 = Math.max(0.0, t932 + N_right_front_elbow_down_alike * 0.5);
+    const t934 = sigma_right_front_elbow_down_alike * Math.sqrt(t931 * t933);
+    const astray_front_elbow_down_alike = t295 ? t919 * Math.abs(t41 * t442 + t934) : 0.0;
+    const t935 = _runtime.DETERMINED * astray_front_elbow_down_alike;
+    const t936 = invalid ? 3 : unreachable_2 ? 1 : t929 || (t295 ? t918 : 1.0) <= t935 ? 2 : 0;
+    const t937 = t925 <= t911 * (t912 * gap_rear_elbow_up_alike);
+    const t938 = t908 || t937 || t927 || t915 || folded_right_rear_elbow_up_alike;
+    const t939 = t938 || short_right || folded_left_rear_elbow_up_alike;
+    const t940 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5;
+    const t941 = Math.max(0.0, M_right_rear_elbow_up_alike * 0.5 - t940);
+    const t942 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5;
+    const t943 = Math.max(0.0, t942 + N_right_rear_elbow_up_alike * 0.5);
+    const t944 = sigma_right_rear_elbow_up_alike * Math.sqrt(t941 * t943);
+    const astray_rear_elbow_up_alike = t517 ? t919 * Math.abs(t41 * t660 + t944) : 0.0;
+    const t945 = _runtime.DETERMINED * astray_rear_elbow_up_alike;
+    const t946 = invalid ? 3 : unreachable_3 ? 1 : t939 || (t517 ? t918 : 1.0) <= t945 ? 2 : 0;
+    const t947 = t910 <= t911 * (t912 * gap_rear_elbow_down_alike);
+    const t948 = t908 || t947 || t914 || t915 || folded_right_rear_elbow_down_alike;
+    const t949 = t948 || short_right || folded_left_rear_elbow_down_alike;
+    const t950 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5;
+    const t951 = Math.max(0.0, M_right_rear_elbow_down_alike * 0.5 - t950);
+    const t952 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5;
+    const t953 = Math.max(0.0, t952 + N_right_rear_elbow_down_alike * 0.5);
+    const t954 = sigma_right_rear_elbow_down_alike * Math.sqrt(t951 * t953);
+    const astray_rear_elbow_down_alike = t734 ? t919 * Math.abs(t41 * t878 + t954) : 0.0;
+    const t955 = _runtime.DETERMINED * astray_rear_elbow_down_alike;
+    const t956 = invalid ? 3 : unreachable_4 ? 1 : t949 || (t734 ? t918 : 1.0) <= t955 ? 2 : 0;
     o[0] = t200;
     o[1] = t214;
     o[2] = t219;
@@ -3268,14 +3271,14 @@ function _ik(v, o) {
     o[45] = (t907 <= -Math.PI ? Math.PI : t907) + t868;
     o[46] = _runtime.wrap(t216 - t905) + t868;
     o[47] = t906;
-    o[48] = t922;
-    o[49] = t922;
-    o[50] = t934;
-    o[51] = t934;
-    o[52] = t944;
-    o[53] = t944;
-    o[54] = t954;
-    o[55] = t954;
+    o[48] = t924;
+    o[49] = t924;
+    o[50] = t936;
+    o[51] = t936;
+    o[52] = t946;
+    o[53] = t946;
+    o[54] = t956;
+    o[55] = t956;
 }
 
 /** @type {_runtime.Compute} */
@@ -3721,63 +3724,66 @@ function _ik_common(v, o) {
     const t254 = sigma_right * Math.atan2(2.0 * t246, t253);
     const t255 = t97 + t232;
     const t256 = Math.atan2(-(t249 + t248), t251 - t250);
+    const over = Math.max(d * 64.0, lengths);
+    const t257 = over * over;
     const square_mid = t63 + M_mid;
-    const t257 = M_mid * square_mid;
-    const t258 = _runtime.DETERMINED * _runtime.DETERMINED;
-    const t259 = t41 * t258;
-    const t260 = square_mid <= t259;
-    const t261 = wrist <= al * _runtime.DETERMINED;
-    const t262 = 1.0 <= 0.0;
-    const t263 = t257 <= t258 * (t41 * gap) || t260 || t261 || t262;
-    const t264 = invalid ? 3 : unreachable ? 1 : t263 ? 2 : 0;
+    const t258 = t257 * M_mid * square_mid;
+    const t259 = _runtime.DETERMINED * _runtime.DETERMINED;
+    const t260 = 4096.0 * (t41 * t41);
+    const t261 = t41 * t259;
+    const t262 = square_mid <= t261;
+    const t263 = wrist <= al * _runtime.DETERMINED;
+    const t264 = 1.0 <= 0.0;
+    const t265 = t258 <= t259 * (t260 * gap) || t262 || t263 || t264;
+    const t266 = invalid ? 3 : unreachable ? 1 : t265 ? 2 : 0;
     const square_mid_front_elbow_down_alike = t63 + M_mid_front_elbow_down_alike;
-    const t265 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
-    const t266 = t265 <= t258 * (t41 * gap_front_elbow_down_alike);
-    const t267 = square_mid_front_elbow_down_alike <= t259;
-    const t268 = invalid ? 3 : unreachable_2 ? 1 : t266 || t267 || t261 || t262 ? 2 : 0;
-    const t269 = t265 <= t258 * (t41 * gap_rear_elbow_up_alike);
-    const t270 = invalid ? 3 : unreachable_3 ? 1 : t269 || t267 || t261 || t262 ? 2 : 0;
-    const t271 = t257 <= t258 * (t41 * gap_rear_elbow_down_alike);
-    const t272 = invalid ? 3 : unreachable_4 ? 1 : t271 || t260 || t261 || t262 ? 2 : 0;
+    const t267 = t257 * M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
+    const t268 = t267 <= t259 * (t260 * gap_front_elbow_down_alike);
+    const t269 = square_mid_front_elbow_down_alike <= t261;
+    const t270 = invalid ? 3 : unreachable_2 ? 1 : t268 || t269 || t263 || t264 ? 2 : 0;
+    const t271 = t267 <= t259 * (t260 * gap_rear_elbow_up_alike);
+    const t272 = invalid ? 3 : unreachable_3 ? 1 : t271 || t269 || t263 || t264 ? 2 : 0;
+    const t273 = t258 <= t259 * (t260 * gap_rear_elbow_down_alike);
+    const t274 = invalid ? 3 : unreachable_4 ? 1 : t273 || t262 || t263 || t264 ? 2 : 0;
     const stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING;
-    const t273 = h * slack;
-    const tangent = 4.0 * root * t30 - t273 * 0.00390625 <= _runtime.VANISHING * t273;
-    const t274 = stretched || tangent || h <= _runtime.VANISHING * lengths;
-    const t275 = t274 || L1 * fore <= _runtime.VANISHING * t31;
-    const t276 = _runtime.VANISHING * t30;
-    const t277 = t275 || Math.abs(t32) + Math.abs(root) <= t276;
-    const t278 = Math.max(-(margin_right * 9.094947017729282e-13), margin_right);
-    const t279 = _runtime.VANISHING * play_right;
-    const t280 = Math.max(-(margin_left * 9.094947017729282e-13), margin_left);
-    const t281 = t277 || fore <= t276 || t278 <= t279 || t280 <= t279;
-    const t282 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
-    const t283 = t281 || t77 <= _runtime.VANISHING * t41 || Math.abs(h_right_0) + Math.abs(-t59)
-        <= t282;
-    const t284 = t283 || fore_arm <= _runtime.VANISHING * size;
-    const t285 = t284 || Math.abs(h_left_0) + Math.abs(-t69) <= t282;
-    const t286 = margin_right_front_elbow_down_alike * 9.094947017729282e-13;
-    const t287 = Math.max(-t286, margin_right_front_elbow_down_alike);
-    const t288 = margin_left_front_elbow_down_alike * 9.094947017729282e-13;
-    const t289 = Math.max(-t288, margin_left_front_elbow_down_alike);
-    const t290 = Math.abs(-t111) + Math.abs(r_right_0_front_elbow_down_alike);
-    const t291 = t285 || t287 <= t279 || t289 <= t279 || t290 <= t282;
-    const t292 = Math.abs(-t126) + Math.abs(r_left_0_front_elbow_down_alike);
-    const t293 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13;
-    const t294 = Math.max(-t293, margin_right_rear_elbow_up_alike);
-    const t295 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13;
-    const t296 = Math.max(-t295, margin_left_rear_elbow_up_alike);
-    const t297 = t291 || t292 <= t282 || t294 <= t279 || t296 <= t279;
-    const t298 = Math.abs(h_right_0_rear_elbow_up_alike) +
+    const t275 = h * slack;
+    const tangent = 4.0 * root * t30 - t275 * 0.00390625 <= _runtime.VANISHING * t275;
+    const t276 = stretched || tangent || h <= _runtime.VANISHING * lengths;
+    const t277 = t276 || L1 * fore <= _runtime.VANISHING * t31;
+    const t278 = _runtime.VANISHING * t30;
+    const t279 = t277 || Math.abs(t32) + Math.abs(root) <= t278;
+    const t280 = Math.max(-(margin_right * 9.094947017729282e-13), margin_right);
+    const t281 = _runtime.VANISHING * play_right;
+    const t282 = Math.max(-(margin_left * 9.094947017729282e-13), margin_left);
+    const t283 = t279 || fore <= t278 || t280 <= t281 || t282 <= t281;
+    const t284 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
+    const t285 = t283 || t77 <= _runtime.VANISHING * t41 || Math.abs(h_right_0) + Math.abs(-t59)
+        <= t284;
+    const t286 = t285 || fore_arm <= _runtime.VANISHING * size;
+    const t287 = t286 || Math.abs(h_left_0) + Math.abs(-t69) <= t284;
+    const t288 = margin_right_front_elbow_down_alike * 9.094947017729282e-13;
+    const t289 = Math.max(-t288, margin_right_front_elbow_down_alike);
+    const t290 = margin_left_front_elbow_down_alike * 9.094947017729282e-13;
+    const t291 = Math.max(-t290, margin_left_front_elbow_down_alike);
+    const t292 = Math.abs(-t111) + Math.abs(r_right_0_front_elbow_down_alike);
+    const t293 = t287 || t289 <= t281 || t291 <= t281 || t292 <= t284;
+    const t294 = Math.abs(-t126) + Math.abs(r_left_0_front_elbow_down_alike);
+    const t295 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13;
+    const t296 = Math.max(-t295, margin_right_rear_elbow_up_alike);
+    const t297 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13;
+    const t298 = Math.max(-t297, margin_left_rear_elbow_up_alike);
+    const t299 = t293 || t294 <= t284 || t296 <= t281 || t298 <= t281;
+    const t300 = Math.abs(h_right_0_rear_elbow_up_alike) +
         Math.abs(r_right_0_rear_elbow_up_alike);
-    const t299 = Math.abs(h_left_0_rear_elbow_up_alike) +
+    const t301 = Math.abs(h_left_0_rear_elbow_up_alike) +
         Math.abs(r_left_0_rear_elbow_up_alike);
-    const t300 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13;
-    const t301 = Math.max(-t300, margin_right_rear_elbow_down_alike);
-    const t302 = t297 || t298 <= t282 || t299 <= t282 || t301 <= t279;
-    const t303 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13;
-    const t304 = Math.max(-t303, margin_left_rear_elbow_down_alike);
-    const t305 = t302 || t304 <= t279 || Math.abs(-t213) + Math.abs(-t215) <= t282;
-    const t306 = t305 || Math.abs(-t224) + Math.abs(-t225) <= t282;
+    const t302 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13;
+    const t303 = Math.max(-t302, margin_right_rear_elbow_down_alike);
+    const t304 = t299 || t300 <= t284 || t301 <= t284 || t303 <= t281;
+    const t305 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13;
+    const t306 = Math.max(-t305, margin_left_rear_elbow_down_alike);
+    const t307 = t304 || t306 <= t281 || Math.abs(-t213) + Math.abs(-t215) <= t284;
+    const t308 = t307 || Math.abs(-t224) + Math.abs(-t225) <= t284;
     o[0] = t75;
     o[1] = t84;
     o[2] = t87;
@@ -3826,15 +3832,15 @@ function _ik_common(v, o) {
     o[45] = (t256 <= -Math.PI ? Math.PI : t256) + t232;
     o[46] = _runtime.wrap(t85 - t254) + t232;
     o[47] = t255;
-    o[48] = t264;
-    o[49] = t264;
-    o[50] = t268;
-    o[51] = t268;
-    o[52] = t270;
-    o[53] = t270;
-    o[54] = t272;
-    o[55] = t272;
-    o[56] = (t306) ? 1 : 0;
+    o[48] = t266;
+    o[49] = t266;
+    o[50] = t270;
+    o[51] = t270;
+    o[52] = t272;
+    o[53] = t272;
+    o[54] = t274;
+    o[55] = t274;
+    o[56] = (t308) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -3853,8 +3859,8 @@ const _IK = _runtime.kernel({
     size: {
         lengths: [0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14],
         degrees: [],
-        least: 2.938735877055719e-39,
-        most: 1.8092513943330656e+75,
+        least: 2.5849394142282115e-26,
+        most: 9.353610478917779e+49,
     },
 });
 
@@ -3872,10 +3878,12 @@ const _IK = _runtime.kernel({
  * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
  *   own shoulder (its upper arm is returned parallel to that of the virtual arm).
  * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
- *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
- *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where
- *   the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR too
- *   if an arm is at its limit and rounding bends it to the other side than the virtual arm.
+ *   folded virtual arm (its reach times its bend times d is less than 2^-10 of the square of
+ *   its size times half the distance of the tips; if d is less than 1/64 of the sum of all
+ *   lengths, that replaces d), with a virtual arm shorter than 2^-10 of a stretched one, and
+ *   where the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is
+ *   SINGULAR too if an arm is at its limit and rounding bends it to the other side than the
+ *   virtual arm.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
  *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
  *   divided by d too.

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 260 compare and select, 273 add, 23 atan2, 28 divide, 382 multiply, 1 sincos, 31 sqrt
+#   ik: 263 compare and select, 279 add, 23 atan2, 28 divide, 378 multiply, 1 sincos, 31 sqrt
 #   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
@@ -1115,620 +1115,623 @@ def _ik(
     reach = np.sqrt(t13)
     del t13
     t26 = t25 < reach
-    t27 = size * 5.684341886080802e-14
-    t28 = np.maximum(0.0, _runtime.select(t26, t25, 0.0) - t27)
-    low__elbow_1 = t28 * t28
-    del t28
-    t29 = t27 + _runtime.select(t26, size, reach)
-    del t27
-    high__elbow_1 = t29 * t29
-    del t29
-    t30 = c_straight * t24
+    t27 = _runtime.select(t26, -t5, level_s_elbow)
+    t28 = t27 * t24
+    t29 = _runtime.select(t26, level_s_elbow, t5)
+    del level_s_elbow
     s__elbow_1_over_ahead_front = t23 * (2.0 * lever_elbow)
     del t23
-    t31 = s_straight * s__elbow_1_over_ahead_front
-    t32 = t30 + t31
-    t33 = s_straight * t24
-    t34 = c_straight * s__elbow_1_over_ahead_front
-    t35 = t33 - t34
-    qx__elbow_1 = _runtime.select(t26, a5 + a4 * t32 - d3 * t35, d3 * t32 - (d5 - a4 * t35))
-    del t32, t35
-    square__elbow_1 = qx__elbow_1 * qx__elbow_1
-    t36 = np.maximum(low__elbow_1, np.minimum(high__elbow_1, square__elbow_1))
-    t37 = _runtime.select(t26, -t5, level_s_elbow) * t24
-    t38 = _runtime.select(t26, level_s_elbow, t5) * s__elbow_1_over_ahead_front
-    del level_s_elbow
-    t39 = t37 + t38
-    bend__elbow_1 = t39 * t39
-    inner__elbow_1 = t36 * bend__elbow_1
-    t40 = inner__elbow_1 < 0.0
-    t41 = qx__elbow_1 * t39
-    del qx__elbow_1, t39
-    t42 = _runtime.sign(-t41) * np.sqrt(np.maximum(0.0, inner__elbow_1))
+    t30 = t29 * s__elbow_1_over_ahead_front
+    t31 = t28 + t30
+    t32 = c_straight * t24
+    t33 = s_straight * s__elbow_1_over_ahead_front
+    t34 = t32 + t33
+    t35 = s_straight * t24
+    t36 = c_straight * s__elbow_1_over_ahead_front
+    t37 = t35 - t36
+    q__elbow_1 = _runtime.select(t26, a5 + a4 * t34 - d3 * t37, d3 * t34 - (d5 - a4 * t37))
+    del t34, t37
+    size__elbow_1 = np.abs(q__elbow_1)
+    t38 = size * 5.684341886080802e-14
+    t39 = _runtime.select(t26, t25, 0.0) - t38
+    t40 = t38 + _runtime.select(t26, size, reach)
+    del t38
+    t41 = np.maximum(t39, np.minimum(size__elbow_1, t40))
+    t42 = (size__elbow_1 - t41) * _runtime.sign(q__elbow_1)
+    del q__elbow_1, size__elbow_1, t41
+    t43 = t29 * t24
+    del t29
+    t44 = t27 * s__elbow_1_over_ahead_front
+    del t27
+    t45 = t42 - 2.0 * (t43 - t44)
+    inner__elbow_1 = t31 * t31 - t42 * t45
+    t46 = inner__elbow_1 < 0.0
+    t47 = _runtime.sign(-t31) * np.sqrt(np.maximum(0.0, inner__elbow_1))
     del inner__elbow_1
-    below__elbow_1 = _runtime.select(t40, 2.0 * bend__elbow_1, -(2.0 * (t41 - t42)))
-    del bend__elbow_1, t42
-    above__elbow_1 = _runtime.select(t40, -t41, square__elbow_1 - t36)
-    del square__elbow_1, t36, t40, t41
-    t43 = np.abs(below__elbow_1) <= np.abs(above__elbow_1)
-    t44 = _runtime.select(t43, 0.0, above__elbow_1 / below__elbow_1)
-    del above__elbow_1, below__elbow_1, t43
-    t45 = t44 * t44
-    t46 = 1.0 / (1.0 + t45)
-    t47 = 2.0 * t44 * t46
-    del t44
-    t48 = np.abs(span_elbow * 0.5 - t22)
+    t48 = _runtime.select(t46, t45, t31 - t47)
+    del t45, t47
+    t49 = _runtime.select(t46, t31, t42)
+    del t31, t42, t46
+    half__elbow_1 = _runtime.select(np.abs(t48) <= np.abs(t49), 0.0, t49 / t48)
+    del t48, t49
+    t50 = half__elbow_1 * half__elbow_1
+    t51 = 1.0 / (1.0 + t50)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t51
+    del half__elbow_1
+    t52 = np.abs(span_elbow * 0.5 - t22)
     del span_elbow, t22
-    by_c__elbow_1 = t46 * (1.0 - t45)
-    del t45, t46
-    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t47 * t47 / (1.0 + np.abs(by_c__elbow_1)), 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * np.abs(t47) + t48 * versine__elbow_1
+    by_c__elbow_1 = t51 * (1.0 - t50)
+    del t50, t51
+    t53 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + np.abs(by_c__elbow_1))
+    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t53, 1.0 - by_c__elbow_1)
+    del t53
+    cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t52 * versine__elbow_1
     del versine__elbow_1
     whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
     del far
-    t49 = cost__elbow_1 <= whole__elbow_1
+    t54 = cost__elbow_1 <= whole__elbow_1
     del cost__elbow_1
-    cosine__elbow_1 = _runtime.select(t49, by_c__elbow_1, 1.0)
+    cosine__elbow_1 = _runtime.select(t54, by_c__elbow_1, 1.0)
     del by_c__elbow_1
-    sine__elbow_1 = _runtime.select(t49, -t47, 0.0)
-    del t47, t49
-    t50 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t50, t24))
-    del t50
-    t51 = _runtime.select(t6, 0.0, t5 * t7)
+    sine__elbow_1 = _runtime.select(t54, by_s__elbow_1, 0.0)
+    del by_s__elbow_1, t54
+    t55 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t55, t24))
+    del t55
+    t56 = _runtime.select(t6, 0.0, t5 * t7)
     del t5, t6, t7
-    t52 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t57 = s__elbow_1_over_ahead_front * cosine__elbow_1
     del cosine__elbow_1
-    t53 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t52, s__elbow_1_over_ahead_front)
-    del sine__elbow_1, t52
-    selbow = _runtime.select(no_link_elbow, t51, -t53)
-    del t53
-    t54 = c_straight * celbow + s_straight * selbow
+    t58 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t57, s__elbow_1_over_ahead_front)
+    del sine__elbow_1, t57
+    selbow = _runtime.select(no_link_elbow, t56, -t58)
+    del t58
+    t59 = c_straight * celbow + s_straight * selbow
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
     free6 = reach <= t20
-    t55 = s_z * 2.0
-    t56 = c_straight * selbow - s_straight * celbow
+    t60 = s_z * 2.0
+    t61 = c_straight * selbow - s_straight * celbow
     del celbow, selbow
-    t57 = d5 - a4 * t56 + d3 * t54
-    t58 = reach + t57
-    t59 = reach - t57
-    del t57
-    t60 = reach * 0.00390625
-    t61 = reach * _runtime.VANISHING
-    tangent6 = np.sqrt(np.abs(t58 * t59)) - t60 <= t61
-    v_x = a5 - a4 * t54 - d3 * t56
-    t62 = np.abs(v_x)
-    t63 = np.maximum(0.0, -((t25 - t62) * (t25 + t62)))
-    below6 = np.maximum(t58, 0.0)
-    above6 = np.maximum(t59, 0.0)
-    t64 = below6 * above6
-    held6 = _runtime.select(t62 < reach, t63, t64)
-    del t62, t63
-    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t64))
-    del t64
-    t65 = below6 - above6
-    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t65 * t65), below6 + above6)
+    t62 = d5 - a4 * t61 + d3 * t59
+    t63 = reach + t62
+    t64 = reach - t62
+    del t62
+    t65 = reach * 0.00390625
+    t66 = reach * _runtime.VANISHING
+    tangent6 = np.sqrt(np.abs(t63 * t64)) - t65 <= t66
+    v_x = a5 - a4 * t59 - d3 * t61
+    t67 = np.abs(v_x)
+    t68 = np.maximum(0.0, -((t25 - t67) * (t25 + t67)))
+    below6 = np.maximum(t63, 0.0)
+    above6 = np.maximum(t64, 0.0)
+    t69 = below6 * above6
+    held6 = _runtime.select(t67 < reach, t68, t69)
+    del t67, t68
+    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t69))
+    del t69
+    t70 = below6 - above6
+    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t70 * t70), below6 + above6)
     del above6, below6, held6
-    t66 = 1.0 / (reach * span6)
+    t71 = 1.0 / (reach * span6)
     del span6
-    t67 = t55 * kept6 * t66
-    t68 = t66 * (u_x * t65)
-    s6 = _runtime.select(free6, 0.0, t67 - t68)
-    t69 = u_x * 2.0
-    t70 = t66 * (t69 * kept6)
+    t72 = t60 * kept6 * t71
+    t73 = t71 * (u_x * t70)
+    s6 = _runtime.select(free6, 0.0, t72 - t73)
+    t74 = u_x * 2.0
+    t75 = t71 * (t74 * kept6)
     del kept6
-    t71 = t66 * (s_z * t65)
-    del t65, t66
-    c6 = _runtime.select(free6, 1.0, t70 + t71)
+    t76 = t71 * (s_z * t70)
+    del t70, t71
+    c6 = _runtime.select(free6, 1.0, t75 + t76)
     R2_13 = R1_11 * s6 - T13 * c6
-    t72 = np.sqrt(v_x * v_x)
+    t77 = np.sqrt(v_x * v_x)
     w_x = u_x * c6 + s_z * s6
-    t73 = np.sqrt(t12 + w_x * w_x)
-    on_axis_5 = np.minimum(t72, t73) <= t20
+    t78 = np.sqrt(t12 + w_x * w_x)
+    on_axis_5 = np.minimum(t77, t78) <= t20
     dot_5 = v_x * w_x
     del w_x
-    t74 = w_y * v_x
-    t75 = t74 * t74
-    t76 = 1.0 / np.sqrt(t75 + dot_5 * dot_5)
-    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t76)
+    t79 = w_y * v_x
+    t80 = t79 * t79
+    t81 = 1.0 / np.sqrt(t80 + dot_5 * dot_5)
+    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t81)
     del dot_5
     R2_11 = R1_11 * c6 + T13 * s6
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t77 = _runtime.select(on_axis_5, 0.0, t74 * t76)
-    del t76
-    R3_11 = c5 * R2_11 - R1_13 * t77
-    R4_13 = t54 * R2_13 + t56 * R3_11
+    t82 = _runtime.select(on_axis_5, 0.0, t79 * t81)
+    del t81
+    R3_11 = c5 * R2_11 - R1_13 * t82
+    R4_13 = t59 * R2_13 + t61 * R3_11
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R2_23 = R1_21 * s6 - T23 * c6
     R2_21 = R1_21 * c6 + T23 * s6
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    R3_21 = c5 * R2_21 - R1_23 * t77
-    R4_23 = t54 * R2_23 + t56 * R3_21
+    R3_21 = c5 * R2_21 - R1_23 * t82
+    R4_23 = t59 * R2_23 + t61 * R3_21
     h_wrist = np.sqrt(R4_13 * R4_13 + R4_23 * R4_23)
-    t78 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t78
-    t79 = 1.0 / h_wrist
+    t83 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t83
+    t84 = 1.0 / h_wrist
     del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t79)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t79)
-    del t79
-    t80 = np.arctan2(s_wrist, c_wrist)
-    t81 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
-    t82 = t81 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
-    del t81
-    t83 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
-    t84 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t85 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t86 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t87 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t88 = t82 & (0.0 <= d5) & t83 & t84 & t85 & t86 & (t87 <= _runtime.ROTATION)
-    del t82, t83, t84, t85, t86, t87
-    t89 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t90 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t91 = t88 & (t89 <= _runtime.ROTATION) & t90 & (np.abs(T41) <= _runtime.ROTATION)
-    del t88, t89, t90
-    t92 = t91 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t91
-    t93 = t92 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t92
-    invalid = np.logical_not(t93)
-    del t93
-    t94 = _runtime.FEASIBILITY * (size * 0.5)
-    del size
-    t95 = (-t94 <= t14) & (-t94 <= t17) & (-t94 <= t18)
-    del t14, t17, t18
-    t96 = t95 & (-t94 <= t58) & (-t94 <= t59)
-    del t58, t59
-    t97 = np.abs(_runtime.select(tangent6, t73 - t72, 0.0))
-    del t73
-    unreachable = np.logical_not(t96 & (t97 <= t94))
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t84)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t84)
+    del t84
+    t85 = np.arctan2(s_wrist, c_wrist)
+    t86 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
+    t87 = t86 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
+    del t86
+    t88 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
+    t89 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t90 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t91 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t92 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t93 = t87 & (0.0 <= d5) & t88 & t89 & t90 & t91 & (t92 <= _runtime.ROTATION)
+    del t87, t88, t89, t90, t91, t92
+    t94 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t95 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t96 = t93 & (t94 <= _runtime.ROTATION) & t95 & (np.abs(T41) <= _runtime.ROTATION)
+    del t93, t94, t95
+    t97 = t96 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t96
+    t98 = t97 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
     del t97
-    t98 = _runtime.poison(invalid | unreachable)
+    invalid = np.logical_not(t98)
+    del t98
+    t99 = _runtime.FEASIBILITY * (size * 0.5)
+    del size
+    t100 = (-t99 <= t14) & (-t99 <= t17) & (-t99 <= t18)
+    del t14, t17, t18
+    t101 = t100 & (-t99 <= t63) & (-t99 <= t64)
+    del t63, t64
+    t102 = np.abs(_runtime.select(tangent6, t78 - t77, 0.0))
+    del t78
+    unreachable = np.logical_not(t101 & (t102 <= t99))
+    del t102
+    t103 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t99 = t56 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t77)
-    t100 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t54 * (R1_31 * s6 - T33 * c6) + t99)
-    del R4_13, R4_23, t99
-    t101 = s_wrist * (t56 * R2_13 - t54 * R3_11) - c_wrist * (t56 * R2_23 - t54 * R3_21)
+    t104 = t61 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t82)
+    t105 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t59 * (R1_31 * s6 - T33 * c6) + t104)
+    del R4_13, R4_23, t104
+    t106 = s_wrist * (t61 * R2_13 - t59 * R3_11) - c_wrist * (t61 * R2_23 - t59 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t102 = s_wrist * (R2_11 * t77 + R1_13 * c5) - c_wrist * (t77 * R2_21 + R1_23 * c5)
+    t107 = s_wrist * (R2_11 * t82 + R1_13 * c5) - c_wrist * (t82 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t103 = np.arctan2(t101, t102)
-    del t101, t102
-    t104 = _runtime.wrap_cut(np.arctan2(t56, t54))
-    t105 = t104 + t98
-    t106 = _runtime.wrap_cut(-np.arctan2(t77, c5)) + t98
-    del c5, t77
-    t107 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t98
+    t108 = np.arctan2(t106, t107)
+    del t106, t107
+    t109 = _runtime.wrap_cut(np.arctan2(t61, t59))
+    t110 = t109 + t103
+    t111 = _runtime.wrap_cut(-np.arctan2(t82, c5)) + t103
+    del c5, t82
+    t112 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t103
     del c6, s6
-    t108 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t113 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t109 = t108 + t98
+    t114 = t113 + t103
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t110 = _runtime.select(free6, 0.0, t67 + t68)
-    del t67, t68
-    c6_bent_behind_front = _runtime.select(free6, 1.0, t71 - t70)
-    del t70, t71
-    t111 = R1_11 * t110 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t110
-    t112 = w_x_bent_behind_front * w_x_bent_behind_front
-    t113 = np.sqrt(t12 + t112)
-    del t112
-    on_axis_5_bent_behind_front = np.minimum(t72, t113) <= t20
+    t115 = _runtime.select(free6, 0.0, t72 + t73)
+    del t72, t73
+    c6_bent_behind_front = _runtime.select(free6, 1.0, t76 - t75)
+    del t75, t76
+    t116 = R1_11 * t115 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t115
+    t117 = w_x_bent_behind_front * w_x_bent_behind_front
+    t118 = np.sqrt(t12 + t117)
+    del t117
+    on_axis_5_bent_behind_front = np.minimum(t77, t118) <= t20
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t114 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t115 = 1.0 / np.sqrt(t75 + t114)
-    del t114, t75
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t115)
+    t119 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t120 = 1.0 / np.sqrt(t80 + t119)
+    del t119, t80
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t120)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t110
-    t116 = c5_bent_behind_front * R2_11_bent_behind_front
-    t117 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t74 * t115)
-    del t115, t74
-    R3_11_bent_behind_front = t116 - R1_13 * t117
-    del t116
-    t118 = t54 * t111 - t56 * R3_11_bent_behind_front
-    t119 = R1_21 * t110 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t110
-    t120 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t120 - R1_23 * t117
-    del t120
-    t121 = t54 * t119 - t56 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t118 * t118 + t121 * t121)
-    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t78
-    t122 = 1.0 / h_wrist_bent_behind_front
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t115
+    t121 = c5_bent_behind_front * R2_11_bent_behind_front
+    t122 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t79 * t120)
+    del t120, t79
+    R3_11_bent_behind_front = t121 - R1_13 * t122
+    del t121
+    t123 = t59 * t116 - t61 * R3_11_bent_behind_front
+    t124 = R1_21 * t115 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t115
+    t125 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t125 - R1_23 * t122
+    del t125
+    t126 = t59 * t124 - t61 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t123 * t123 + t126 * t126)
+    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t83
+    t127 = 1.0 / h_wrist_bent_behind_front
     del h_wrist_bent_behind_front
-    t123 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t121 * t122)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t118 * t122))
-    del t122
-    t124 = np.arctan2(t123, c_wrist_bent_behind_front)
-    t125 = np.abs(_runtime.select(tangent6, t113 - t72, 0.0))
-    del t113, t72, tangent6
-    unreachable_2 = np.logical_not(t96 & (t125 <= t94))
-    del t125, t96
-    t126 = _runtime.poison(invalid | unreachable_2)
-    t127 = t118 * c_wrist_bent_behind_front - t121 * t123
-    del t118, t121
-    t128 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t110)
-    t129 = t54 * (R1_31 * t110 + T33 * c6_bent_behind_front)
-    t130 = np.arctan2(t127, t56 * (t128 - R1_33 * t117) - t129)
-    del t127, t128, t129
-    t131 = t123 * (t56 * t111 + t54 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t111
-    t132 = c_wrist_bent_behind_front * (t56 * t119 + t54 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t119, t54, t56
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t117 + R1_13 * c5_bent_behind_front
+    t128 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t126 * t127)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t123 * t127))
+    del t127
+    t129 = np.arctan2(t128, c_wrist_bent_behind_front)
+    t130 = np.abs(_runtime.select(tangent6, t118 - t77, 0.0))
+    del t118, t77, tangent6
+    unreachable_2 = np.logical_not(t101 & (t130 <= t99))
+    del t101, t130
+    t131 = _runtime.poison(invalid | unreachable_2)
+    t132 = t123 * c_wrist_bent_behind_front - t126 * t128
+    del t123, t126
+    t133 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t115)
+    t134 = t59 * (R1_31 * t115 + T33 * c6_bent_behind_front)
+    t135 = np.arctan2(t132, t61 * (t133 - R1_33 * t122) - t134)
+    del t132, t133, t134
+    t136 = t128 * (t61 * t116 + t59 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t116
+    t137 = c_wrist_bent_behind_front * (t61 * t124 + t59 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t124, t59, t61
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t122 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t117 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    R3_23_bent_behind_front = t122 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
     del R2_21_bent_behind_front
-    t133 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t138 = c_wrist_bent_behind_front * R3_23_bent_behind_front
     del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t134 = np.arctan2(t131 + t132, -(t123 * R3_13_bent_behind_front + t133))
-    del R3_13_bent_behind_front, t123, t131, t132, t133
-    t135 = t104 + t126
-    del t104
-    t136 = _runtime.wrap_cut(-np.arctan2(t117, c5_bent_behind_front))
-    del c5_bent_behind_front, t117
-    t137 = t136 + t126
-    del t136
-    t138 = _runtime.wrap_cut(-np.arctan2(t110, c6_bent_behind_front))
-    del c6_bent_behind_front, t110
-    t139 = t138 + t126
-    del t138
-    t140 = t108 + t126
+    t139 = np.arctan2(t136 + t137, -(t128 * R3_13_bent_behind_front + t138))
+    del R3_13_bent_behind_front, t128, t136, t137, t138
+    t140 = t109 + t131
+    del t109
+    t141 = _runtime.wrap_cut(-np.arctan2(t122, c5_bent_behind_front))
+    del c5_bent_behind_front, t122
+    t142 = t141 + t131
+    del t141
+    t143 = _runtime.wrap_cut(-np.arctan2(t115, c6_bent_behind_front))
+    del c6_bent_behind_front, t115
+    t144 = t143 + t131
+    del t143
+    t145 = t113 + t131
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t141 = _runtime.wrap(flip_wrist_bent_behind_back - t124)
-    t142 = _runtime.wrap(t134 + flip_wrist_bent_behind_back)
+    t146 = _runtime.wrap(flip_wrist_bent_behind_back - t129)
+    t147 = _runtime.wrap(t139 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t143 = t30 - t31
-    del t30, t31
-    t144 = t33 + t34
-    del t33, t34
-    qx__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t143 - d3 * t144, d3 * t143 - (d5 - a4 * t144))
-    del t143, t144, t26
-    square__elbow_1_over_ahead_front = qx__elbow_1_over_ahead_front * qx__elbow_1_over_ahead_front
-    t145 = np.minimum(high__elbow_1, square__elbow_1_over_ahead_front)
-    del high__elbow_1
-    t146 = np.maximum(low__elbow_1, t145)
-    del low__elbow_1, t145
-    t147 = t37 - t38
-    del t37, t38
-    bend__elbow_1_over_ahead_front = t147 * t147
-    inner__elbow_1_over_ahead_front = t146 * bend__elbow_1_over_ahead_front
-    t148 = inner__elbow_1_over_ahead_front < 0.0
-    t149 = qx__elbow_1_over_ahead_front * t147
-    del qx__elbow_1_over_ahead_front, t147
-    t150 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    t148 = t28 - t30
+    del t28, t30
+    t149 = t32 - t33
+    del t32, t33
+    t150 = t35 + t36
+    del t35, t36
+    q__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t149 - d3 * t150, d3 * t149 - (d5 - a4 * t150))
+    del t149, t150, t26
+    size__elbow_1_over_ahead_front = np.abs(q__elbow_1_over_ahead_front)
+    t151 = np.minimum(size__elbow_1_over_ahead_front, t40)
+    del t40
+    t152 = size__elbow_1_over_ahead_front - np.maximum(t39, t151)
+    del size__elbow_1_over_ahead_front, t151, t39
+    t153 = t152 * _runtime.sign(q__elbow_1_over_ahead_front)
+    del q__elbow_1_over_ahead_front, t152
+    t154 = t153 - 2.0 * (t43 + t44)
+    del t43, t44
+    inner__elbow_1_over_ahead_front = t148 * t148 - t153 * t154
+    t155 = inner__elbow_1_over_ahead_front < 0.0
+    t156 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
     del inner__elbow_1_over_ahead_front
-    t151 = 2.0 * (t149 - _runtime.sign(-t149) * np.sqrt(t150))
-    del t150
-    below__elbow_1_over_ahead_front = _runtime.select(t148, 2.0 * bend__elbow_1_over_ahead_front, -t151)
-    del bend__elbow_1_over_ahead_front, t151
-    above__elbow_1_over_ahead_front = _runtime.select(t148, -t149, square__elbow_1_over_ahead_front - t146)
-    del square__elbow_1_over_ahead_front, t146, t148, t149
-    t152 = np.abs(below__elbow_1_over_ahead_front) <= np.abs(above__elbow_1_over_ahead_front)
-    t153 = above__elbow_1_over_ahead_front / below__elbow_1_over_ahead_front
-    del above__elbow_1_over_ahead_front, below__elbow_1_over_ahead_front
-    t154 = _runtime.select(t152, 0.0, t153)
-    del t152, t153
-    t155 = t154 * t154
-    t156 = 1.0 / (1.0 + t155)
-    t157 = 2.0 * t154 * t156
-    del t154
-    by_c__elbow_1_over_ahead_front = t156 * (1.0 - t155)
-    del t155, t156
-    t158 = t157 * t157 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t158, 1.0 - by_c__elbow_1_over_ahead_front)
-    del t158
-    cost__elbow_1_over_ahead_front = lever_elbow * np.abs(t157) + t48 * versine__elbow_1_over_ahead_front
-    del lever_elbow, t48, versine__elbow_1_over_ahead_front
-    t159 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    t157 = _runtime.select(t155, t154, t148 - _runtime.sign(-t148) * np.sqrt(t156))
+    del t154, t156
+    t158 = _runtime.select(t155, t148, t153)
+    del t148, t153, t155
+    half__elbow_1_over_ahead_front = _runtime.select(np.abs(t157) <= np.abs(t158), 0.0, t158 / t157)
+    del t157, t158
+    t159 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t160 = 1.0 / (1.0 + t159)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t160
+    del half__elbow_1_over_ahead_front
+    t161 = lever_elbow * np.abs(by_s__elbow_1_over_ahead_front)
+    del lever_elbow
+    by_c__elbow_1_over_ahead_front = t160 * (1.0 - t159)
+    del t159, t160
+    t162 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t163 = t162 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
+    del t162
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t163, 1.0 - by_c__elbow_1_over_ahead_front)
+    del t163
+    cost__elbow_1_over_ahead_front = t161 + t52 * versine__elbow_1_over_ahead_front
+    del t161, t52, versine__elbow_1_over_ahead_front
+    t164 = cost__elbow_1_over_ahead_front <= whole__elbow_1
     del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t159, by_c__elbow_1_over_ahead_front, 1.0)
+    cosine__elbow_1_over_ahead_front = _runtime.select(t164, by_c__elbow_1_over_ahead_front, 1.0)
     del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t159, -t157, 0.0)
-    del t157, t159
-    t160 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t161 = t24 * cosine__elbow_1_over_ahead_front + t160
-    del t160
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t161, t24))
-    del t161, t8
-    t162 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t164, by_s__elbow_1_over_ahead_front, 0.0)
+    del by_s__elbow_1_over_ahead_front, t164
+    t165 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t166 = t24 * cosine__elbow_1_over_ahead_front + t165
+    del t165
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t166, t24))
+    del t166, t8
+    t167 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
     del cosine__elbow_1_over_ahead_front
-    t163 = _runtime.select(tangent_elbow, t162 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t162, t24, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, t51, t163)
-    del t163, t51
-    t164 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t165 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t168 = _runtime.select(tangent_elbow, t167 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t167, t24, tangent_elbow
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t56, t168)
+    del t168, t56
+    t169 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t170 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t166 = d5 - a4 * t165 + d3 * t164
-    t167 = reach + t166
-    t168 = reach - t166
-    del t166
-    tangent6_over_ahead_front = np.sqrt(np.abs(t167 * t168)) - t60 <= t61
-    del t60, t61
-    v_x_over_ahead_front = a5 - a4 * t164 - d3 * t165
-    t169 = np.abs(v_x_over_ahead_front)
-    t170 = np.maximum(0.0, -((t25 - t169) * (t25 + t169)))
-    del t25
-    below6_over_ahead_front = np.maximum(t167, 0.0)
-    above6_over_ahead_front = np.maximum(t168, 0.0)
-    t171 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = _runtime.select(t169 < reach, t170, t171)
-    del t169, t170
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t171))
+    t171 = d5 - a4 * t170 + d3 * t169
+    t172 = reach + t171
+    t173 = reach - t171
     del t171
-    t172 = below6_over_ahead_front - above6_over_ahead_front
-    t173 = np.sqrt(4.0 * held6_over_ahead_front + t172 * t172)
+    tangent6_over_ahead_front = np.sqrt(np.abs(t172 * t173)) - t65 <= t66
+    del t65, t66
+    v_x_over_ahead_front = a5 - a4 * t169 - d3 * t170
+    t174 = np.abs(v_x_over_ahead_front)
+    t175 = np.maximum(0.0, -((t25 - t174) * (t25 + t174)))
+    del t25
+    below6_over_ahead_front = np.maximum(t172, 0.0)
+    above6_over_ahead_front = np.maximum(t173, 0.0)
+    t176 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t174 < reach, t175, t176)
+    del t174, t175
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t176))
+    del t176
+    t177 = below6_over_ahead_front - above6_over_ahead_front
+    t178 = np.sqrt(4.0 * held6_over_ahead_front + t177 * t177)
     del held6_over_ahead_front
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t173, width6_over_ahead_front)
-    del t173, width6_over_ahead_front
-    t174 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t178, width6_over_ahead_front)
+    del t178, width6_over_ahead_front
+    t179 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t175 = t55 * kept6_over_ahead_front * t174
-    del t55
-    t176 = t174 * (u_x * t172)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t175 - t176)
-    t177 = t174 * (t69 * kept6_over_ahead_front)
-    del kept6_over_ahead_front, t69
-    t178 = t174 * (s_z * t172)
-    del t172, t174
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t177 + t178)
+    t180 = t60 * kept6_over_ahead_front * t179
+    del t60
+    t181 = t179 * (u_x * t177)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t180 - t181)
+    t182 = t179 * (t74 * kept6_over_ahead_front)
+    del kept6_over_ahead_front, t74
+    t183 = t179 * (s_z * t177)
+    del t177, t179
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t182 + t183)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t179 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t184 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t180 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
-    t181 = np.sqrt(t180)
-    del t180
-    on_axis_5_over_ahead_front = np.minimum(t179, t181) <= t20
+    t185 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
+    t186 = np.sqrt(t185)
+    del t185
+    on_axis_5_over_ahead_front = np.minimum(t184, t186) <= t20
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t182 = w_y * v_x_over_ahead_front
+    t187 = w_y * v_x_over_ahead_front
     del w_y
-    t183 = t182 * t182
-    t184 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t185 = 1.0 / np.sqrt(t183 + t184)
-    del t184
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t185)
+    t188 = t187 * t187
+    t189 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t190 = 1.0 / np.sqrt(t188 + t189)
+    del t189
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t190)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t186 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t182 * t185)
-    del t185
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t186
-    R4_13_over_ahead_front = t164 * R2_13_over_ahead_front + t165 * R3_11_over_ahead_front
-    t187 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t191 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t187 * t190)
+    del t190
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t191
+    R4_13_over_ahead_front = t169 * R2_13_over_ahead_front + t170 * R3_11_over_ahead_front
+    t192 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t186
-    R4_23_over_ahead_front = t164 * R2_23_over_ahead_front + t165 * R3_21_over_ahead_front
-    t188 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t187 + t188)
-    del t187, t188
-    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t78
-    t189 = 1.0 / h_wrist_over_ahead_front
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t191
+    R4_23_over_ahead_front = t169 * R2_23_over_ahead_front + t170 * R3_21_over_ahead_front
+    t193 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t192 + t193)
+    del t192, t193
+    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t83
+    t194 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t189)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t189)
-    del t189
-    t190 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    t191 = t95 & (-t94 <= t167) & (-t94 <= t168)
-    del t167, t168, t95
-    t192 = _runtime.select(tangent6_over_ahead_front, t181 - t179, 0.0)
-    del t181
-    unreachable_3 = np.logical_not(t191 & (np.abs(t192) <= t94))
-    del t192
-    t193 = _runtime.poison(invalid | unreachable_3)
-    t194 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t194)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t194)
+    del t194
+    t195 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    t196 = t100 & (-t99 <= t172) & (-t99 <= t173)
+    del t100, t172, t173
+    t197 = _runtime.select(tangent6_over_ahead_front, t186 - t184, 0.0)
+    del t186
+    unreachable_3 = np.logical_not(t196 & (np.abs(t197) <= t99))
+    del t197
+    t198 = _runtime.poison(invalid | unreachable_3)
+    t199 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t195 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t200 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t186
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t191
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t164 * R2_33_over_ahead_front + t165 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t169 * R2_33_over_ahead_front + t170 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t196 = np.arctan2(t194 + t195, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t194, t195
-    t197 = t165 * R2_13_over_ahead_front - t164 * R3_11_over_ahead_front
+    t201 = np.arctan2(t199 + t200, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t199, t200
+    t202 = t170 * R2_13_over_ahead_front - t169 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t198 = t165 * R2_23_over_ahead_front - t164 * R3_21_over_ahead_front
+    t203 = t170 * R2_23_over_ahead_front - t169 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t199 = s_wrist_over_ahead_front * t197 - c_wrist_over_ahead_front * t198
-    del t197, t198
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t186 + R1_13 * c5_over_ahead_front
+    t204 = s_wrist_over_ahead_front * t202 - c_wrist_over_ahead_front * t203
+    del t202, t203
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t191 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t200 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t205 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t186 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t191 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t201 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t206 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t202 = np.arctan2(t199, t200 - t201)
-    del t199, t200, t201
-    t203 = _runtime.wrap_cut(np.arctan2(t165, t164))
-    t204 = t203 + t193
-    t205 = _runtime.wrap_cut(-np.arctan2(t186, c5_over_ahead_front))
-    del c5_over_ahead_front, t186
-    t206 = t205 + t193
-    del t205
-    t207 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t207 = np.arctan2(t204, t205 - t206)
+    del t204, t205, t206
+    t208 = _runtime.wrap_cut(np.arctan2(t170, t169))
+    t209 = t208 + t198
+    t210 = _runtime.wrap_cut(-np.arctan2(t191, c5_over_ahead_front))
+    del c5_over_ahead_front, t191
+    t211 = t210 + t198
+    del t210
+    t212 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t208 = _runtime.wrap_cut(t207) + t193
-    del t207
-    t209 = t108 + t193
+    t213 = _runtime.wrap_cut(t212) + t198
+    del t212
+    t214 = t113 + t198
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t210 = _runtime.wrap(t190 + flip_wrist_over_ahead_back)
-    t211 = _runtime.wrap(t202 + flip_wrist_over_ahead_back)
+    t215 = _runtime.wrap(t195 + flip_wrist_over_ahead_back)
+    t216 = _runtime.wrap(t207 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t212 = _runtime.select(free6, 0.0, t175 + t176)
-    del t175, t176
-    c6_over_behind_front = _runtime.select(free6, 1.0, t178 - t177)
-    del t177, t178
-    t213 = R1_11 * t212 + T13 * c6_over_behind_front
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t212
+    t217 = _runtime.select(free6, 0.0, t180 + t181)
+    del t180, t181
+    c6_over_behind_front = _runtime.select(free6, 1.0, t183 - t182)
+    del t182, t183
+    t218 = R1_11 * t217 + T13 * c6_over_behind_front
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t217
     del s_z, u_x
-    t214 = w_x_over_behind_front * w_x_over_behind_front
-    t215 = np.sqrt(t12 + t214)
-    del t12, t214
-    on_axis_5_over_behind_front = np.minimum(t179, t215) <= t20
+    t219 = w_x_over_behind_front * w_x_over_behind_front
+    t220 = np.sqrt(t12 + t219)
+    del t12, t219
+    on_axis_5_over_behind_front = np.minimum(t184, t220) <= t20
     del t20
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t216 = dot_5_over_behind_front * dot_5_over_behind_front
-    t217 = 1.0 / np.sqrt(t183 + t216)
-    del t183, t216
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t217)
+    t221 = dot_5_over_behind_front * dot_5_over_behind_front
+    t222 = 1.0 / np.sqrt(t188 + t221)
+    del t188, t221
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t222)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t212
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t217
     del R1_11
-    t218 = c5_over_behind_front * R2_11_over_behind_front
-    t219 = _runtime.select(on_axis_5_over_behind_front, 0.0, t182 * t217)
-    del t182, t217
-    R3_11_over_behind_front = t218 - R1_13 * t219
-    del t218
-    t220 = t164 * t213 - t165 * R3_11_over_behind_front
-    t221 = R1_21 * t212 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t212
+    t223 = c5_over_behind_front * R2_11_over_behind_front
+    t224 = _runtime.select(on_axis_5_over_behind_front, 0.0, t187 * t222)
+    del t187, t222
+    R3_11_over_behind_front = t223 - R1_13 * t224
+    del t223
+    t225 = t169 * t218 - t170 * R3_11_over_behind_front
+    t226 = R1_21 * t217 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t217
     del R1_21
-    t222 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t222 - R1_23 * t219
-    del t222
-    t223 = t164 * t221 - t165 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t220 * t220 + t223 * t223)
-    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t78
-    del t78
-    t224 = 1.0 / h_wrist_over_behind_front
+    t227 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t227 - R1_23 * t224
+    del t227
+    t228 = t169 * t226 - t170 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t225 * t225 + t228 * t228)
+    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t83
+    del t83
+    t229 = 1.0 / h_wrist_over_behind_front
     del h_wrist_over_behind_front
-    t225 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t223 * t224)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t220 * t224))
-    del t224
-    t226 = np.arctan2(t225, c_wrist_over_behind_front)
-    t227 = _runtime.select(tangent6_over_ahead_front, t215 - t179, 0.0)
-    del t179, t215, tangent6_over_ahead_front
-    unreachable_4 = np.logical_not(t191 & (np.abs(t227) <= t94))
-    del t191, t227, t94
-    t228 = _runtime.poison(invalid | unreachable_4)
-    t229 = t220 * c_wrist_over_behind_front - t223 * t225
-    del t220, t223
-    t230 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t212)
-    t231 = t164 * (R1_31 * t212 + T33 * c6_over_behind_front)
+    t230 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t228 * t229)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t225 * t229))
+    del t229
+    t231 = np.arctan2(t230, c_wrist_over_behind_front)
+    t232 = _runtime.select(tangent6_over_ahead_front, t220 - t184, 0.0)
+    del t184, t220, tangent6_over_ahead_front
+    unreachable_4 = np.logical_not(t196 & (np.abs(t232) <= t99))
+    del t196, t232, t99
+    t233 = _runtime.poison(invalid | unreachable_4)
+    t234 = t225 * c_wrist_over_behind_front - t228 * t230
+    del t225, t228
+    t235 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t217)
+    t236 = t169 * (R1_31 * t217 + T33 * c6_over_behind_front)
     del R1_31
-    t232 = np.arctan2(t229, t165 * (t230 - R1_33 * t219) - t231)
-    del R1_33, t229, t230, t231
-    t233 = t225 * (t165 * t213 + t164 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t213
-    t234 = c_wrist_over_behind_front * (t165 * t221 + t164 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t164, t165, t221
-    R3_13_over_behind_front = R2_11_over_behind_front * t219 + R1_13 * c5_over_behind_front
+    t237 = np.arctan2(t234, t170 * (t235 - R1_33 * t224) - t236)
+    del R1_33, t234, t235, t236
+    t238 = t230 * (t170 * t218 + t169 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t218
+    t239 = c_wrist_over_behind_front * (t170 * t226 + t169 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t169, t170, t226
+    R3_13_over_behind_front = R2_11_over_behind_front * t224 + R1_13 * c5_over_behind_front
     del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t219 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    R3_23_over_behind_front = t224 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
     del R1_23, R2_21_over_behind_front
-    t235 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t240 = c_wrist_over_behind_front * R3_23_over_behind_front
     del R3_23_over_behind_front, c_wrist_over_behind_front
-    t236 = np.arctan2(t233 + t234, -(t225 * R3_13_over_behind_front + t235))
-    del R3_13_over_behind_front, t225, t233, t234, t235
-    t237 = t203 + t228
-    del t203
-    t238 = _runtime.wrap_cut(-np.arctan2(t219, c5_over_behind_front))
-    del c5_over_behind_front, t219
-    t239 = t238 + t228
-    del t238
-    t240 = _runtime.wrap_cut(-np.arctan2(t212, c6_over_behind_front))
-    del c6_over_behind_front, t212
-    t241 = t240 + t228
-    del t240
-    t242 = t108 + t228
-    del t108
+    t241 = np.arctan2(t238 + t239, -(t230 * R3_13_over_behind_front + t240))
+    del R3_13_over_behind_front, t230, t238, t239, t240
+    t242 = t208 + t233
+    del t208
+    t243 = _runtime.wrap_cut(-np.arctan2(t224, c5_over_behind_front))
+    del c5_over_behind_front, t224
+    t244 = t243 + t233
+    del t243
+    t245 = _runtime.wrap_cut(-np.arctan2(t217, c6_over_behind_front))
+    del c6_over_behind_front, t217
+    t246 = t245 + t233
+    del t245
+    t247 = t113 + t233
+    del t113
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t243 = _runtime.wrap(flip_wrist_over_behind_back - t226)
-    t244 = _runtime.wrap(t236 + flip_wrist_over_behind_back)
+    t248 = _runtime.wrap(flip_wrist_over_behind_back - t231)
+    t249 = _runtime.wrap(t241 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t245 = no_link_elbow | free6
+    t250 = no_link_elbow | free6
     del free6, no_link_elbow
-    t246 = _runtime.status(invalid, unreachable, t245 | on_axis_5 | aligned_wrist)
+    t251 = _runtime.status(invalid, unreachable, t250 | on_axis_5 | aligned_wrist)
     del aligned_wrist, on_axis_5, unreachable
-    t247 = t245 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t252 = t250 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t248 = _runtime.status(invalid, unreachable_2, t247)
-    del t247, unreachable_2
-    t249 = t245 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t253 = _runtime.status(invalid, unreachable_2, t252)
+    del t252, unreachable_2
+    t254 = t250 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t250 = _runtime.status(invalid, unreachable_3, t249)
-    del t249, unreachable_3
-    t251 = t245 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t245
-    t252 = _runtime.status(invalid, unreachable_4, t251)
-    del invalid, t251, unreachable_4
+    t255 = _runtime.status(invalid, unreachable_3, t254)
+    del t254, unreachable_3
+    t256 = t250 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t250
+    t257 = _runtime.status(invalid, unreachable_4, t256)
+    del invalid, t256, unreachable_4
     return (
-        _runtime.wrap_cut(t80) + t98,
-        _runtime.wrap_cut(t100) + t98,
-        _runtime.wrap_cut(t103) + t98,
-        t105,
-        t106,
-        t107,
-        t109,
-        _runtime.wrap(t80 + flip_wrist) + t98,
-        _runtime.wrap_cut(-t100) + t98,
-        _runtime.wrap(t103 + flip_wrist) + t98,
-        t105,
-        t106,
-        t107,
-        t109,
-        _runtime.wrap_cut(-t124) + t126,
-        _runtime.wrap_cut(-t130) + t126,
-        _runtime.wrap_cut(t134) + t126,
-        t135,
-        t137,
-        t139,
+        _runtime.wrap_cut(t85) + t103,
+        _runtime.wrap_cut(t105) + t103,
+        _runtime.wrap_cut(t108) + t103,
+        t110,
+        t111,
+        t112,
+        t114,
+        _runtime.wrap(t85 + flip_wrist) + t103,
+        _runtime.wrap_cut(-t105) + t103,
+        _runtime.wrap(t108 + flip_wrist) + t103,
+        t110,
+        t111,
+        t112,
+        t114,
+        _runtime.wrap_cut(-t129) + t131,
+        _runtime.wrap_cut(-t135) + t131,
+        _runtime.wrap_cut(t139) + t131,
         t140,
-        t141 + t126,
-        _runtime.wrap_cut(t130) + t126,
-        t142 + t126,
-        t135,
-        t137,
-        t139,
+        t142,
+        t144,
+        t145,
+        t146 + t131,
+        _runtime.wrap_cut(t135) + t131,
+        t147 + t131,
         t140,
-        _runtime.wrap_cut(t190) + t193,
-        _runtime.wrap_cut(t196) + t193,
-        _runtime.wrap_cut(t202) + t193,
-        t204,
-        t206,
-        t208,
+        t142,
+        t144,
+        t145,
+        _runtime.wrap_cut(t195) + t198,
+        _runtime.wrap_cut(t201) + t198,
+        _runtime.wrap_cut(t207) + t198,
         t209,
-        t210 + t193,
-        _runtime.wrap_cut(-t196) + t193,
-        t211 + t193,
-        t204,
-        t206,
-        t208,
+        t211,
+        t213,
+        t214,
+        t215 + t198,
+        _runtime.wrap_cut(-t201) + t198,
+        t216 + t198,
         t209,
-        _runtime.wrap_cut(-t226) + t228,
-        _runtime.wrap_cut(-t232) + t228,
-        _runtime.wrap_cut(t236) + t228,
-        t237,
-        t239,
-        t241,
+        t211,
+        t213,
+        t214,
+        _runtime.wrap_cut(-t231) + t233,
+        _runtime.wrap_cut(-t237) + t233,
+        _runtime.wrap_cut(t241) + t233,
         t242,
-        t243 + t228,
-        _runtime.wrap_cut(t232) + t228,
-        t244 + t228,
-        t237,
-        t239,
-        t241,
+        t244,
+        t246,
+        t247,
+        t248 + t233,
+        _runtime.wrap_cut(t237) + t233,
+        t249 + t233,
         t242,
+        t244,
         t246,
-        t246,
-        t248,
-        t248,
-        t250,
-        t250,
-        t252,
-        t252,
+        t247,
+        t251,
+        t251,
+        t253,
+        t253,
+        t255,
+        t255,
+        t257,
+        t257,
     )
 
 

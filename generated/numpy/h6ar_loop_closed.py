@@ -12,9 +12,9 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 865 compare and select, 642 add, 28 atan2, 161 divide, 912 multiply, 1 reduce to a turn, 3
+#   ik: 866 compare and select, 642 add, 28 atan2, 161 divide, 918 multiply, 1 reduce to a turn, 3
 #     sincos, 41 sqrt
-#   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 338 multiply,
+#   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -4006,111 +4006,116 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t880, t903, t907, t908, t909
     t916 = nowhere | folded | short
     del folded, nowhere, short
+    over = np.maximum(d * 64.0, lengths)
+    t917 = over * over
+    del over
     square_mid = t74 + M_mid
-    t917 = M_mid * square_mid
+    t918 = M_mid * t917 * square_mid
     del M_mid
-    t918 = _runtime.DETERMINED * _runtime.DETERMINED
-    t919 = t52 * t918
-    t920 = square_mid <= t919
+    t919 = _runtime.DETERMINED * _runtime.DETERMINED
+    t920 = 4096.0 * (t52 * t52)
+    t921 = t52 * t919
+    del t52
+    t922 = square_mid <= t921
     del square_mid
-    t921 = wrist <= al * _runtime.DETERMINED
+    t923 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t922 = t916 | (t917 <= t918 * (t52 * gap)) | t920 | t921
-    t923 = t922 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t922
-    t924 = t212 * lengths
+    t924 = t916 | (t918 <= t919 * (t920 * gap)) | t922 | t923
+    t925 = t924 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t924
+    t926 = t212 * lengths
     del lengths, t212
-    t925 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
+    t927 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
     del L_2W, a_3W
-    t926 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
+    t928 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
     del M_left, M_right
-    t927 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
+    t929 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
     del N_left, N_right, gap
-    t928 = t43 * t217 + sigma_right * np.sqrt(t926 * t927)
-    del sigma_right, t217, t926, t927
-    astray = _runtime.select(t107, t925 * np.abs(t928), 0.0)
-    del t928
-    t929 = _runtime.select(t107, t924, 1.0) <= _runtime.DETERMINED * astray
+    t930 = t43 * t217 + sigma_right * np.sqrt(t928 * t929)
+    del sigma_right, t217, t928, t929
+    astray = _runtime.select(t107, t927 * np.abs(t930), 0.0)
+    del t930
+    t931 = _runtime.select(t107, t926, 1.0) <= _runtime.DETERMINED * astray
     del astray, t107
-    t930 = _runtime.status(invalid, unreachable, t923 | t929)
-    del t923, t929, unreachable
+    t932 = _runtime.status(invalid, unreachable, t925 | t931)
+    del t925, t931, unreachable
     square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
     del t74
-    t931 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    del M_mid_front_elbow_down_alike
-    t932 = t931 <= t918 * (t52 * gap_front_elbow_down_alike)
-    t933 = square_mid_front_elbow_down_alike <= t919
-    del square_mid_front_elbow_down_alike, t919
-    t934 = t916 | t932 | t933 | t921 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t932
-    t935 = t934 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t934
-    t936 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
+    t933 = M_mid_front_elbow_down_alike * t917 * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike, t917
+    t934 = t933 <= t919 * (t920 * gap_front_elbow_down_alike)
+    t935 = square_mid_front_elbow_down_alike <= t921
+    del square_mid_front_elbow_down_alike, t921
+    t936 = t916 | t934 | t935 | t923 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t934
+    t937 = t936 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t936
+    t938 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
     del M_left_front_elbow_down_alike
-    t937 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t936)
-    del M_right_front_elbow_down_alike, t936
-    t938 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
+    t939 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t938)
+    del M_right_front_elbow_down_alike, t938
+    t940 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
     del N_left_front_elbow_down_alike, gap_front_elbow_down_alike
-    t939 = np.maximum(0.0, t938 + N_right_front_elbow_down_alike * 0.5)
-    del N_right_front_elbow_down_alike, t938
-    t940 = sigma_right_front_elbow_down_alike * np.sqrt(t937 * t939)
-    del sigma_right_front_elbow_down_alike, t937, t939
-    astray_front_elbow_down_alike = _runtime.select(t303, t925 * np.abs(t43 * t450 + t940), 0.0)
-    del t450, t940
-    t941 = _runtime.DETERMINED * astray_front_elbow_down_alike
+    t941 = np.maximum(0.0, t940 + N_right_front_elbow_down_alike * 0.5)
+    del N_right_front_elbow_down_alike, t940
+    t942 = sigma_right_front_elbow_down_alike * np.sqrt(t939 * t941)
+    del sigma_right_front_elbow_down_alike, t939, t941
+    astray_front_elbow_down_alike = _runtime.select(t303, t927 * np.abs(t43 * t450 + t942), 0.0)
+    del t450, t942
+    t943 = _runtime.DETERMINED * astray_front_elbow_down_alike
     del astray_front_elbow_down_alike
-    t942 = t935 | (_runtime.select(t303, t924, 1.0) <= t941)
-    del t303, t935, t941
-    t943 = _runtime.status(invalid, unreachable_2, t942)
-    del t942, unreachable_2
-    t944 = t931 <= t918 * (t52 * gap_rear_elbow_up_alike)
-    del t931
-    t945 = t916 | t944 | t933 | t921 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t933, t944
-    t946 = t945 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t945
-    t947 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
+    t944 = t937 | (_runtime.select(t303, t926, 1.0) <= t943)
+    del t303, t937, t943
+    t945 = _runtime.status(invalid, unreachable_2, t944)
+    del t944, unreachable_2
+    t946 = t933 <= t919 * (t920 * gap_rear_elbow_up_alike)
+    del t933
+    t947 = t916 | t946 | t935 | t923 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t935, t946
+    t948 = t947 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t947
+    t949 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
     del M_left_rear_elbow_up_alike
-    t948 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t947)
-    del M_right_rear_elbow_up_alike, t947
-    t949 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
+    t950 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t949)
+    del M_right_rear_elbow_up_alike, t949
+    t951 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
     del N_left_rear_elbow_up_alike, gap_rear_elbow_up_alike
-    t950 = np.maximum(0.0, t949 + N_right_rear_elbow_up_alike * 0.5)
-    del N_right_rear_elbow_up_alike, t949
-    t951 = sigma_right_rear_elbow_up_alike * np.sqrt(t948 * t950)
-    del sigma_right_rear_elbow_up_alike, t948, t950
-    astray_rear_elbow_up_alike = _runtime.select(t525, t925 * np.abs(t43 * t668 + t951), 0.0)
-    del t668, t951
-    t952 = _runtime.DETERMINED * astray_rear_elbow_up_alike
+    t952 = np.maximum(0.0, t951 + N_right_rear_elbow_up_alike * 0.5)
+    del N_right_rear_elbow_up_alike, t951
+    t953 = sigma_right_rear_elbow_up_alike * np.sqrt(t950 * t952)
+    del sigma_right_rear_elbow_up_alike, t950, t952
+    astray_rear_elbow_up_alike = _runtime.select(t525, t927 * np.abs(t43 * t668 + t953), 0.0)
+    del t668, t953
+    t954 = _runtime.DETERMINED * astray_rear_elbow_up_alike
     del astray_rear_elbow_up_alike
-    t953 = t946 | (_runtime.select(t525, t924, 1.0) <= t952)
-    del t525, t946, t952
-    t954 = _runtime.status(invalid, unreachable_3, t953)
-    del t953, unreachable_3
-    t955 = t917 <= t918 * (t52 * gap_rear_elbow_down_alike)
-    del t52, t917, t918
-    t956 = t916 | t955 | t920 | t921 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t916, t920, t921, t955
-    t957 = t956 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t956
-    t958 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
+    t955 = t948 | (_runtime.select(t525, t926, 1.0) <= t954)
+    del t525, t948, t954
+    t956 = _runtime.status(invalid, unreachable_3, t955)
+    del t955, unreachable_3
+    t957 = t918 <= t919 * (t920 * gap_rear_elbow_down_alike)
+    del t918, t919, t920
+    t958 = t916 | t957 | t922 | t923 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t916, t922, t923, t957
+    t959 = t958 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t958
+    t960 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
     del M_left_rear_elbow_down_alike
-    t959 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t958)
-    del M_right_rear_elbow_down_alike, t958
-    t960 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
+    t961 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t960)
+    del M_right_rear_elbow_down_alike, t960
+    t962 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
     del N_left_rear_elbow_down_alike, gap_rear_elbow_down_alike
-    t961 = np.maximum(0.0, t960 + N_right_rear_elbow_down_alike * 0.5)
-    del N_right_rear_elbow_down_alike, t960
-    t962 = sigma_right_rear_elbow_down_alike * np.sqrt(t959 * t961)
-    del sigma_right_rear_elbow_down_alike, t959, t961
-    astray_rear_elbow_down_alike = _runtime.select(t742, t925 * np.abs(t43 * t886 + t962), 0.0)
-    del t43, t886, t925, t962
-    t963 = _runtime.DETERMINED * astray_rear_elbow_down_alike
+    t963 = np.maximum(0.0, t962 + N_right_rear_elbow_down_alike * 0.5)
+    del N_right_rear_elbow_down_alike, t962
+    t964 = sigma_right_rear_elbow_down_alike * np.sqrt(t961 * t963)
+    del sigma_right_rear_elbow_down_alike, t961, t963
+    astray_rear_elbow_down_alike = _runtime.select(t742, t927 * np.abs(t43 * t886 + t964), 0.0)
+    del t43, t886, t927, t964
+    t965 = _runtime.DETERMINED * astray_rear_elbow_down_alike
     del astray_rear_elbow_down_alike
-    t964 = t957 | (_runtime.select(t742, t924, 1.0) <= t963)
-    del t742, t924, t957, t963
-    t965 = _runtime.status(invalid, unreachable_4, t964)
-    del invalid, t964, unreachable_4
+    t966 = t959 | (_runtime.select(t742, t926, 1.0) <= t965)
+    del t742, t926, t959, t965
+    t967 = _runtime.status(invalid, unreachable_4, t966)
+    del invalid, t966, unreachable_4
     return (
         t209,
         t223,
@@ -4160,14 +4165,14 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap_cut(t915) + t876,
         _runtime.wrap(t225 - t913) + t876,
         t914,
-        t930,
-        t930,
-        t943,
-        t943,
-        t954,
-        t954,
-        t965,
-        t965,
+        t932,
+        t932,
+        t945,
+        t945,
+        t956,
+        t956,
+        t967,
+        t967,
     )
 
 
@@ -4761,102 +4766,106 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t98
     t256 = _runtime.wrap_cut(np.arctan2(-(t249 + t248), t251 - t250))
     del t248, t249, t250, t251
+    over = np.maximum(d * 64.0, lengths)
+    t257 = over * over
+    del over
     square_mid = t64 + M_mid
-    t257 = M_mid * square_mid
+    t258 = t257 * M_mid * square_mid
     del M_mid
-    t258 = _runtime.DETERMINED * _runtime.DETERMINED
-    t259 = t42 * t258
-    t260 = square_mid <= t259
+    t259 = _runtime.DETERMINED * _runtime.DETERMINED
+    t260 = 4096.0 * (t42 * t42)
+    t261 = t42 * t259
+    t262 = square_mid <= t261
     del square_mid
-    t261 = wrist <= al * _runtime.DETERMINED
-    t262 = 1.0 <= 0.0
-    t263 = (t257 <= t258 * (t42 * gap)) | t260 | t261 | t262
+    t263 = wrist <= al * _runtime.DETERMINED
+    t264 = 1.0 <= 0.0
+    t265 = (t258 <= t259 * (t260 * gap)) | t262 | t263 | t264
     del gap
-    t264 = _runtime.status(invalid, unreachable, t263)
-    del t263, unreachable
+    t266 = _runtime.status(invalid, unreachable, t265)
+    del t265, unreachable
     square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
     del t64
-    t265 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    del M_mid_front_elbow_down_alike
-    t266 = t265 <= t258 * (t42 * gap_front_elbow_down_alike)
+    t267 = t257 * M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike, t257
+    t268 = t267 <= t259 * (t260 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t267 = square_mid_front_elbow_down_alike <= t259
-    del square_mid_front_elbow_down_alike, t259
-    t268 = _runtime.status(invalid, unreachable_2, t266 | t267 | t261 | t262)
-    del t266, unreachable_2
-    t269 = t265 <= t258 * (t42 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t265
-    t270 = _runtime.status(invalid, unreachable_3, t269 | t267 | t261 | t262)
-    del t267, t269, unreachable_3
-    t271 = t257 <= t258 * (t42 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t257, t258
-    t272 = _runtime.status(invalid, unreachable_4, t271 | t260 | t261 | t262)
-    del invalid, t260, t261, t262, t271, unreachable_4
+    t269 = square_mid_front_elbow_down_alike <= t261
+    del square_mid_front_elbow_down_alike, t261
+    t270 = _runtime.status(invalid, unreachable_2, t268 | t269 | t263 | t264)
+    del t268, unreachable_2
+    t271 = t267 <= t259 * (t260 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t267
+    t272 = _runtime.status(invalid, unreachable_3, t271 | t269 | t263 | t264)
+    del t269, t271, unreachable_3
+    t273 = t258 <= t259 * (t260 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t258, t259, t260
+    t274 = _runtime.status(invalid, unreachable_4, t273 | t262 | t263 | t264)
+    del invalid, t262, t263, t264, t273, unreachable_4
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     del wrist
-    t273 = h * slack
+    t275 = h * slack
     del slack
-    tangent = 4.0 * root * t32 - t273 * 0.00390625 <= _runtime.VANISHING * t273
-    del t273
-    t274 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t32 - t275 * 0.00390625 <= _runtime.VANISHING * t275
+    del t275
+    t276 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, stretched, tangent
-    t275 = t274 | (L1 * fore <= _runtime.VANISHING * t33)
-    del t274, t33
-    t276 = _runtime.VANISHING * t32
+    t277 = t276 | (L1 * fore <= _runtime.VANISHING * t33)
+    del t276, t33
+    t278 = _runtime.VANISHING * t32
     del t32
-    t277 = t275 | (np.abs(t34) + np.abs(root) <= t276) | (fore <= t276)
-    del fore, root, t275, t276, t34
-    t278 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    t279 = t277 | (np.abs(t34) + np.abs(root) <= t278) | (fore <= t278)
+    del fore, root, t277, t278, t34
+    t280 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
     del margin_right
-    t279 = _runtime.VANISHING * play_right
+    t281 = _runtime.VANISHING * play_right
     del play_right
-    t280 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    t282 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
     del margin_left
-    t281 = t277 | (t278 <= t279) | (t280 <= t279) | (t78 <= _runtime.VANISHING * t42)
-    del t277, t278, t280, t42, t78
-    t282 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t283 = t281 | (np.abs(h_right_0) + np.abs(-t60) <= t282)
-    del h_right_0, t281, t60
-    t284 = t283 | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t283
-    t285 = t284 | (np.abs(h_left_0) + np.abs(-t70) <= t282)
-    del h_left_0, t284, t70
-    t286 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
-    t287 = np.maximum(-t286, margin_right_front_elbow_down_alike)
-    del margin_right_front_elbow_down_alike, t286
-    t288 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
-    t289 = np.maximum(-t288, margin_left_front_elbow_down_alike)
-    del margin_left_front_elbow_down_alike, t288
-    t290 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
+    t283 = t279 | (t280 <= t281) | (t282 <= t281) | (t78 <= _runtime.VANISHING * t42)
+    del t279, t280, t282, t42, t78
+    t284 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t285 = t283 | (np.abs(h_right_0) + np.abs(-t60) <= t284)
+    del h_right_0, t283, t60
+    t286 = t285 | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t285
+    t287 = t286 | (np.abs(h_left_0) + np.abs(-t70) <= t284)
+    del h_left_0, t286, t70
+    t288 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, margin_right_front_elbow_down_alike)
+    del margin_right_front_elbow_down_alike, t288
+    t290 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t291 = np.maximum(-t290, margin_left_front_elbow_down_alike)
+    del margin_left_front_elbow_down_alike, t290
+    t292 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
     del r_right_0_front_elbow_down_alike, t112
-    t291 = t285 | (t287 <= t279) | (t289 <= t279) | (t290 <= t282)
-    del t285, t287, t289, t290
-    t292 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
+    t293 = t287 | (t289 <= t281) | (t291 <= t281) | (t292 <= t284)
+    del t287, t289, t291, t292
+    t294 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
     del r_left_0_front_elbow_down_alike, t126
-    t293 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t294 = np.maximum(-t293, margin_right_rear_elbow_up_alike)
-    del margin_right_rear_elbow_up_alike, t293
-    t295 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t296 = np.maximum(-t295, margin_left_rear_elbow_up_alike)
-    del margin_left_rear_elbow_up_alike, t295
-    t297 = t291 | (t292 <= t282) | (t294 <= t279) | (t296 <= t279)
-    del t291, t292, t294, t296
-    t298 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t295 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t296 = np.maximum(-t295, margin_right_rear_elbow_up_alike)
+    del margin_right_rear_elbow_up_alike, t295
+    t297 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t298 = np.maximum(-t297, margin_left_rear_elbow_up_alike)
+    del margin_left_rear_elbow_up_alike, t297
+    t299 = t293 | (t294 <= t284) | (t296 <= t281) | (t298 <= t281)
+    del t293, t294, t296, t298
+    t300 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t299 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    t301 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t300 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t301 = np.maximum(-t300, margin_right_rear_elbow_down_alike)
-    del margin_right_rear_elbow_down_alike, t300
-    t302 = t297 | (t298 <= t282) | (t299 <= t282) | (t301 <= t279)
-    del t297, t298, t299, t301
-    t303 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t304 = np.maximum(-t303, margin_left_rear_elbow_down_alike)
-    del margin_left_rear_elbow_down_alike, t303
-    t305 = t302 | (t304 <= t279) | (np.abs(-t213) + np.abs(-t215) <= t282)
-    del t213, t215, t279, t302, t304
-    t306 = t305 | (np.abs(-t224) + np.abs(-t225) <= t282)
-    del t224, t225, t282, t305
+    t302 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t303 = np.maximum(-t302, margin_right_rear_elbow_down_alike)
+    del margin_right_rear_elbow_down_alike, t302
+    t304 = t299 | (t300 <= t284) | (t301 <= t284) | (t303 <= t281)
+    del t299, t300, t301, t303
+    t305 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t306 = np.maximum(-t305, margin_left_rear_elbow_down_alike)
+    del margin_left_rear_elbow_down_alike, t305
+    t307 = t304 | (t306 <= t281) | (np.abs(-t213) + np.abs(-t215) <= t284)
+    del t213, t215, t281, t304, t306
+    t308 = t307 | (np.abs(-t224) + np.abs(-t225) <= t284)
+    del t224, t225, t284, t307
     return (
         t76,
         t85,
@@ -4906,15 +4915,15 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t256 + t232,
         _runtime.wrap(t86 - t254) + t232,
         t255,
-        t264,
-        t264,
-        t268,
-        t268,
+        t266,
+        t266,
         t270,
         t270,
         t272,
         t272,
-        t306,
+        t274,
+        t274,
+        t308,
     )
 
 
@@ -4926,7 +4935,7 @@ _IK = _runtime.Kernel(
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
     common=_ik_common,
-    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -4972,11 +4981,12 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
       own shoulder (its upper arm is returned parallel to that of the virtual arm).
     - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
-      folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
-      distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and where
-      the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is SINGULAR
-      too if an arm is at its limit and rounding bends it to the other side than the virtual
-      arm.
+      folded virtual arm (its reach times its bend times d is less than 2^-10 of the square of
+      its size times half the distance of the tips; if d is less than 1/64 of the sum of all
+      lengths, that replaces d), with a virtual arm shorter than 2^-10 of a stretched one, and
+      where the wrist links are nearly stretched (l_W is less than 2^-10 al). A posture is
+      SINGULAR too if an arm is at its limit and rounding bends it to the other side than the
+      virtual arm.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
       yaw and roll follow from displacements of the tips divided by d, so rounding errors are
       divided by d too.

@@ -268,7 +268,8 @@ class Algorithm:
             total: root
             for total in value.atoms(sp.Add)
             for root in total.free_symbols & roots.keys()
-            if sp.expand(total * root - roots[root]) == 0
+            if total.free_symbols == {root, *roots[root].free_symbols}  # expanding takes long
+            and sp.expand(total * root - roots[root]) == 0
         }
         value = value.xreplace(squares)
         found = {}

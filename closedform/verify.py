@@ -360,13 +360,13 @@ class Field:
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:
         """The largest monomial of the unknowns (graded reverse lexicographic), its coefficient."""
-        grouped: dict[Monomial, dict[Monomial, fmpq]] = {}
-        slots = [len(self.kinds) - 1 - i for i in self.unknowns]
-        for m, a in p.terms():
-            rest = tuple(0 if j in slots else n for j, n in enumerate(m))
-            grouped.setdefault(tuple(m[j] for j in slots), {})[rest] = a
-        lead = max(grouped, key=lambda m: (sum(m), [-n for n in m]))
-        return lead, self.context.from_dict(grouped[lead])
+        slots, monomials = [len(self.kinds) - 1 - i for i in self.unknowns], p.monoms()
+        found = [tuple([m[j] for j in slots]) for m in monomials]
+        lead = max(set(found), key=lambda m: (sum(m), [-n for n in m]))
+        without = dict.fromkeys(slots, 0)
+        terms = [(m, p.coefficient(k)) for k, m in enumerate(monomials) if found[k] == lead]
+        rests = ((tuple([without.get(j, n) for j, n in enumerate(m)]), a) for m, a in terms)
+        return lead, self.context.from_dict(dict(rests))
 
     def value(self, k: int) -> Fraction:
         """The value of a node."""

@@ -121,12 +121,16 @@ class _Buchberger:
 
     def _content(self, polynomials: Iterable[Polynomial]) -> Polynomial:
         """The greatest common divisor of the coefficients, which are polynomials in parameters."""
-        result, constant = 0 * self.one, (0,) * len(self.field.unknowns)
+        result = 0 * self.one
+        slots = [len(self.field.kinds) - 1 - i for i in self.field.unknowns]
         for p in polynomials:
-            while p != 0 and not result.is_one():
-                lead, coefficient = self.field.leading(p)
-                result = result.gcd(coefficient)
-                p = p - shifted(self.field, (constant, coefficient, coefficient), lead)
+            coefficients: dict[Monomial, dict[Monomial, Any]] = {}
+            for m, a in p.terms():
+                rest = tuple([0 if j in slots else n for j, n in enumerate(m)])
+                coefficients.setdefault(tuple([m[j] for j in slots]), {})[rest] = a
+            for terms in coefficients.values():
+                if not result.is_one():
+                    result = result.gcd(self.field.context.from_dict(terms))
         return result
 
     def written(self, basis: Sequence[int]) -> tuple[list[Any], list[int]]:

@@ -101,7 +101,6 @@ from closedform.model.claims import Gravity as Gravity
 from closedform.model.claims import Reading as Reading
 from closedform.model.derivation import Derivation as Derivation
 from closedform.model.derivation import Solved as Solved
-from closedform.model.derivation import Step as Step
 from closedform.model.derivation import Table as Table
 from closedform.model.functions import SINGLE as SINGLE
 from closedform.model.functions import Bound as Bound
@@ -123,6 +122,7 @@ from closedform.model.notation import Relation as Relation
 from closedform.model.pair import Pair as Pair
 from closedform.model.paper import Paper as Paper
 from closedform.model.paper import Work as Work
+from closedform.model.step import Step as Step
 from closedform.pipeline.scripts import find as find
 from closedform.pipeline.scripts import load as load
 from closedform.proof.checks.completeness import Cases as Cases

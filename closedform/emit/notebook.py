@@ -15,10 +15,11 @@ import sympy as sp
 from closedform.emit.backends.latex.article import Page
 from closedform.emit.backends.latex.prose import escape, mixed
 from closedform.model.claims import Claim, Erratum
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.display import prints
 from closedform.model.functions import Bound, Let
 from closedform.model.lemma import Lemma, Theorem
+from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
 

@@ -13,8 +13,9 @@ from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.emit.errata import gathered, part
 from closedform.emit.text import citation
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
+from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
 WIDTH = 100

@@ -26,9 +26,10 @@ from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import SINGLE, Branches, Program, branches, real
 from closedform.model.inverse import Inverse
+from closedform.model.step import Step
 
 POSITION = {+1: "positive", -1: "negative"}
 """Names of assembly modes that differ from those of working modes."""

@@ -14,7 +14,8 @@ from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_le
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail
 from closedform.model.alike import INDEX, Alike, alike, renamed
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
+from closedform.model.step import Step
 
 _Item = TypeVar("_Item")
 

@@ -12,8 +12,8 @@ from closedform.lemmas.hand import Hand, square
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
 from closedform.lemmas.parallelogram import Parallelogram, parallelogram
 from closedform.model.alike import INDEX
-from closedform.model.derivation import Step
 from closedform.model.functions import real
+from closedform.model.step import Step
 
 LEFT_OUT = (
     "Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in "

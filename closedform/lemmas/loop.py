@@ -36,7 +36,7 @@ from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     SINGLE,
     Branches,
@@ -45,6 +45,7 @@ from closedform.model.functions import (
     real,
 )
 from closedform.model.inverse import Inverse, Link
+from closedform.model.step import Step
 
 AXES = "xyz"
 

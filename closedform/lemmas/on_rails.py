@@ -18,11 +18,12 @@ from closedform.lemmas.modes import NO_MODE, export
 from closedform.lemmas.rails import Rail, named_number
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program, branches, choose, real
 from closedform.model.inverse import Combination, Degenerate, Inverse, Link
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
+from closedform.model.step import Step
 
 TASK = ("x", "y", "yaw")
 POLE = "rails"

@@ -34,9 +34,10 @@ from closedform.lemmas.missed import MOVED, SHARE, loosened
 from closedform.lemmas.modes import NO_MODE, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse
+from closedform.model.step import Step
 
 POLE = "rods in line"
 MEET = "the second rod points to the near end of the first"

@@ -25,8 +25,9 @@ from closedform.lemmas.on_rails import on_rails
 from closedform.lemmas.rails import Rail
 from closedform.mechanics.frames import hat, pose_symbols, require_pose, rotation
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, real
+from closedform.model.step import Step
 
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""

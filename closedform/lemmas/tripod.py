@@ -22,8 +22,9 @@ from closedform.lemmas.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_mo
 from closedform.lemmas.legs import Crank, Slide, Stretch, vector
 from closedform.lemmas.tripod_legs import Placed, Tripod, Upright
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, Vanishes, choose, real
+from closedform.model.step import Step
 
 DEGREE = 16
 """Of the forward problem of a tripod in general: three circles that carry a triangle."""

@@ -171,7 +171,7 @@ class Serial:
             return self.pose if task is None else task.values
         self.require_regular(d.name)
         pose = linkwise.pose(d.program(), links)
-        long = by_axes(d, self.pose, self.geometric, self.moves)
+        long = by_axes(d, self.pose, self.moves, q)
         turns = self.pose.atoms(sp.sin, sp.cos)
         d.step(
             "Pose",
@@ -182,7 +182,7 @@ class Serial:
             proves=(
                 "T is the product of the motions, and what the printed code computes link by link."
             ),
-            equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
+            equal=lambda: [(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
         d.explain({f"A_{i}": "motion from link to link" for i in range(1, len(self.moves) + 1)})
         _export(d, ("pose", POSE), q, {"T": pose}, equation="T")
@@ -192,7 +192,24 @@ class Serial:
         space = linkwise.space_jacobian(d.program(), links, q)
         body = linkwise.body_jacobian(d.program(), links, q)
         spelled = max(sp.count_ops(self.space), sp.count_ops(self.body)) <= SPELLED
-        twists = [] if spelled else from_geometric(self.pose, self.geometric, self.space, self.body)
+
+        def equal() -> list[tuple[Any, Any]]:
+            pose, J, J_s, J_b = self.pose, self.geometric, self.space, self.body
+            found = [
+                *(() if spelled else from_geometric(pose, J, J_s, J_b)),
+                *(long.equal(pose, J) if long else ()),
+                (J[:3, :], self.position.jacobian(q)),
+                (J[3:, :], J_s[3:, :]),
+                (geometric.explicit, J),
+                (space.explicit, J_s),
+                (body.explicit, J_b),
+            ]
+            for i, joint in enumerate(q):
+                moved = pose.diff(joint)
+                found.append((moved, twist_matrix(J_s[:, i]) * pose))
+                found.append((moved, pose * twist_matrix(J_b[:, i])))
+            return found
+
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints in this posture.  The twist of a "
@@ -208,24 +225,7 @@ class Serial:
                 "also T times its column of J_b."
                 + ("" if spelled else "  Both follow from J as stated.")
             ),
-            equal=[
-                *twists,
-                *(long.equal if long else ()),
-                (self.geometric[:3, :], self.position.jacobian(q)),
-                (self.geometric[3:, :], self.space[3:, :]),
-                (geometric.explicit, self.geometric),
-                (space.explicit, self.space),
-                (body.explicit, self.body),
-                *(
-                    pair
-                    for i, joint in enumerate(q)
-                    for moved in (self.pose.diff(joint),)
-                    for pair in (
-                        (moved, twist_matrix(self.space[:, i]) * self.pose),
-                        (moved, self.pose * twist_matrix(self.body[:, i])),
-                    )
-                ),
-            ],
+            equal=equal,
         )
         if task is None:
             self._export_pose_task(d, pose, geometric)

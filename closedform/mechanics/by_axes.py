@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-import numpy as np
 import sympy as sp
 
+from closedform.mechanics.frames import twist_matrix
 from closedform.model.derivation import Derivation
 
 ENTRIES = 1000
@@ -17,35 +18,41 @@ MEANINGS = {"w_i": "axis of joint i", "o_i": "point on the axis of joint i"}
 AXIS = r"\begin{bmatrix} \ast & \ast & \mathbf{w}_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"
 COLUMN = r"\begin{bmatrix} \mathbf{w}_i \times (p - \mathbf{o}_i) \\ \mathbf{w}_i \end{bmatrix}"
 
+TURN = twist_matrix(sp.Matrix([0, 0, 0, 0, 0, 1]))
+"""The rate of a turn about the z axis."""
+
 
 @dataclass(frozen=True)
 class ByAxes:
-    """The pose as a product, column i of the geometric Jacobian, and what proves them."""
+    """The pose as a product, and column i of the geometric Jacobian."""
 
     pose: str
     jacobian: dict[str, str]
-    equal: list[tuple[sp.Matrix, sp.Matrix]]
+    frames: Callable[[], list[sp.Matrix]]
+    """Gives for each joint the frame whose z axis it turns about."""
+
+    def equal(self, pose: sp.Matrix, geometric: sp.Matrix) -> list[tuple[sp.Matrix, sp.Matrix]]:
+        """Each column by the axis of its joint, beside that of the Jacobian."""
+        return [
+            (sp.Matrix([w.cross(pose[:3, 3] - frame[:3, 3]), w]), geometric[:, i])
+            for i, frame in enumerate(self.frames())
+            for w in (frame[:3, 2],)
+        ]
 
 
 def by_axes(
-    d: Derivation, pose: sp.Matrix, geometric: sp.Matrix, moves: Sequence[sp.Matrix]
+    d: Derivation, pose: sp.Matrix, moves: Sequence[sp.Matrix], joints: Sequence[sp.Symbol]
 ) -> ByAxes | None:
     """The pose of a long arm and its Jacobian, by the axes of its joints; None for a short one.
 
     Each motion has to turn one joint about the z axis of the frame before it, or of the frame after
     it as in a modified table.  The meanings of the names are added to ``d``.
     """
-    n = geometric.cols
+    n = len(joints)
     if sp.count_ops(pose) <= ENTRIES or len(moves) != n:
         return None
     for after, last in ((0, "i-1"), (1, "i")):
-        frames = [sp.prod(moves[: i + after], start=sp.eye(4)) for i in range(n)]
-        columns = [
-            sp.Matrix([w.cross(pose[:3, 3] - frame[:3, 3]), w])
-            for frame in frames
-            for w in (frame[:3, 2],)
-        ]
-        if _agree(sp.Matrix.hstack(*columns), geometric):
+        if all(_turns(A, joint, after) for A, joint in zip(moves, joints, strict=True)):
             for name, meaning in MEANINGS.items():
                 d.write(name, rf"\mathbf{{{name[0]}}}_{{i}}", meaning)
             d.explain({"J_i": "column i of J"})
@@ -56,18 +63,19 @@ def by_axes(
                     "J_i": COLUMN,
                     "J": rf"\begin{{bmatrix}} J_1 & J_2 & \cdots & J_{n} \end{{bmatrix}}",
                 },
-                equal=[(column, geometric[:, i]) for i, column in enumerate(columns)],
+                frames=partial(_frames, moves, after),
             )
     return None
 
 
-def _agree(first: sp.Matrix, second: sp.Matrix) -> bool:
-    """Whether two matrices have the same values at a point; the proof decides."""
-    symbols = sorted(first.free_symbols | second.free_symbols, key=str)
-    # In floats, because SymPy's own evaluation takes longer than the rest of a derivation.
-    point = [(7 * k + 3) / 11 for k in range(len(symbols))]
-    a, b = sp.lambdify(symbols, [first, second], "numpy")(*point)
-    return bool(np.abs(a - b).max() < 1e-9)
+def _turns(A: sp.Matrix, joint: sp.Symbol, after: int) -> bool:
+    """Whether a motion turns with a joint about the z axis of the frame before or after it."""
+    moved = A * TURN if after else TURN * A
+    return bool((A.diff(joint) - moved).expand().is_zero_matrix)
+
+
+def _frames(moves: Sequence[sp.Matrix], after: int) -> list[sp.Matrix]:
+    return [sp.prod(moves[: i + after], start=sp.eye(4)) for i in range(len(moves))]
 
 
 __all__ = ["AXES", "ByAxes", "by_axes"]

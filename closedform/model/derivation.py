@@ -25,7 +25,6 @@ from closedform.model.functions import (
     Program,
     array,
     real,
-    reject_floats,
 )
 from closedform.model.inverse import Inverse
 from closedform.model.lemma import Lemma
@@ -42,6 +41,7 @@ from closedform.model.names import (
 from closedform.model.notation import Notation
 from closedform.model.paper import Paper as Paper
 from closedform.model.skeleton import Skeleton
+from closedform.model.step import Pairs, Step, check_exact, differences
 
 
 @dataclass(frozen=True)
@@ -79,28 +79,6 @@ class Joint:
     @property
     def name(self) -> str:
         return str(self.symbol.name)
-
-
-@dataclass(frozen=True)
-class Step(Shown):
-    """One step: its reason, the derived expressions, and the differences that must vanish.
-
-    The left-hand sides in ``shown`` are LaTeX; the other texts are plain.
-    """
-
-    title: str
-    reason: str
-    shown: tuple[tuple[str, Any], ...]
-    published: tuple[str, ...] = ()
-    vanishes: tuple[Any, ...] = ()
-    nonnegative: tuple[sp.Expr, ...] = ()
-    rows: tuple[tuple[Any, ...], ...] = ()
-    """The rows of a table; the first is its head.  A cell is a sentence, an expression or an
-    increasing chain of expressions, such as ``(0, x, 1)`` for 0 <= x <= 1."""
-    proves: str = ""
-    """What the vanishing differences mean, in sentences."""
-    uses: tuple[Step, ...] = ()
-    """Earlier steps whose equations this one rests on."""
 
 
 @dataclass(frozen=True)
@@ -310,7 +288,7 @@ class Derivation(Shown):
         shown: Mapping[str, Any],
         *,
         published: Sequence[str] = (),
-        equal: Sequence[tuple[Any, Any]] = (),
+        equal: Pairs | Callable[[], Pairs] = (),
         nonnegative: Sequence[sp.Expr] = (),
         rows: Sequence[Sequence[Any]] = (),
         proves: str = "",
@@ -327,7 +305,8 @@ class Derivation(Shown):
         published
             the numbers of the equations of the paper
         equal
-            pairs that are proved to be equal; the build fails if the proof does
+            pairs that are proved to be equal; the build fails if the proof does.  Pairs that take
+            long to compute are given by a function, which is called when they are needed
         nonnegative
             expressions of which the proof may assume that they are not negative
         rows
@@ -337,20 +316,20 @@ class Derivation(Shown):
         uses
             the steps, as ``step`` returned them, to whose equations the text refers
         """
-        for value in (*shown.values(), *(e for pair in equal for e in pair)):
-            self._reject_floats(value, f"{self.name}, step {title!r}")
         where = f"{self.name}, step {title!r}"
+        check_exact([*shown.values()], where)
         check_text(f"{self.name}, title of a step", title)
         check_text(where, reason, proves, lines=True)
         if any(step not in self.steps for step in uses):
             raise ValueError(f"{where}: it can only use earlier steps of {self.name}")
         check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
+        given = equal if callable(equal) else differences(equal, where)  # errors tell the line
         step = Step(
             title=title,
             reason=reason,
             shown=tuple(shown.items()),
             published=tuple(published),
-            vanishes=tuple(a - b for a, b in equal),
+            differences=lambda: differences(given(), where) if callable(given) else given,
             nonnegative=tuple(nonnegative),
             rows=tuple(map(tuple, rows)),
             proves=proves,
@@ -511,16 +490,6 @@ class Derivation(Shown):
             if function.name == name:
                 return function
         raise KeyError(f"{self.name} has no function {name}")
-
-    def _reject_floats(self, value: Any, where: str) -> None:
-        for part in value if isinstance(value, list | tuple) else [value]:
-            if isinstance(part, float):
-                raise TypeError(
-                    f"{where}: {part} is a float; write an integer or sympy.Rational('{part}')"
-                )
-            if isinstance(part, sp.Basic | sp.MatrixBase):
-                for entry in part if isinstance(part, sp.MatrixBase) else [part]:
-                    reject_floats(entry, where)
 
     def __setattr__(self, attribute: str, value: Any) -> None:
         """Check names and texts on every assignment, not only in the constructor."""

@@ -24,7 +24,8 @@ from closedform.emit.errata import gathered, part
 from closedform.emit.render import render
 from closedform.emit.text import describe_operations
 from closedform.model.claims import HOLDS
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
+from closedform.model.step import Step
 from closedform.site import maps, published
 from closedform.site.graph import rests_on
 from closedform.site.labels import label

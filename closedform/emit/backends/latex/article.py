@@ -45,10 +45,11 @@ from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.vectors import in_vectors
 from closedform.emit.backends.latex.wide import Equation
-from closedform.model.derivation import Derivation, Joint, Step
+from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
 from closedform.model.inverse import Inverse, Rank
 from closedform.model.lemma import Lemma
+from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document", "indexed", "tied"]

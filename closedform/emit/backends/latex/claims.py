@@ -13,7 +13,8 @@ from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
+from closedform.model.step import Step
 from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import Proof
 

@@ -7,8 +7,9 @@ import re
 import sympy as sp
 from sympy.core.alphabets import greeks
 
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
+from closedform.model.step import Step
 
 GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
 SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}

@@ -64,6 +64,19 @@ def test_inverse_and_forward_map_invert_each_other(loop: ModuleType) -> None:
         assert np.all(np.linalg.norm(again - target[:, None], axis=-1).min(axis=-1) < 1e-12 * 3)
 
 
+def test_the_workspace_is_where_an_answer_exists(loop: ModuleType) -> None:
+    v = loop.Parameters()
+    p = np.random.default_rng(3).uniform(-1.1, 1.1, (10_000, 2)) * sum(v)
+    inside = loop.workspace_contains(p)
+    assert (inside == (loop.ik(p).status != UNREACHABLE).any(axis=-1)).all()
+    assert 500 < inside.sum() < 9500
+
+
+def test_the_condition_number_is_that_of_a(loop: ModuleType) -> None:
+    q = postures(loop, 100)
+    assert np.allclose(loop.condition_number(q), np.linalg.cond(loop.jacobian_parallel(q)))
+
+
 def test_the_second_rod_is_drawn_where_it_ends(tmp_path: Path, loop: ModuleType) -> None:
     points = loop.skeleton(postures(loop, 20))
     at = dict(zip(loop.SKELETON.points, np.moveaxis(points, -2, 0), strict=True))

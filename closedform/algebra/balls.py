@@ -252,6 +252,8 @@ class _Program:
             return self._constant(lambda: arb(fmpq(int(e.p), int(e.q))))
         if e is sp.pi:
             return self._constant(arb.pi)
+        if e is sp.nan or e is sp.zoo:  # a case that a flag always excludes, such as 1/0
+            return self._constant(lambda: arb("nan"))
         if e.is_Pow:
             return self._step(_power(e), [self._compile(e.base)])
         if isinstance(e, sp.sin | sp.cos | sp.tan):

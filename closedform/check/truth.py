@@ -168,12 +168,14 @@ class Solutions:
         revolute = {j.symbol for j in derivation.joints if j.kind == "revolute"}
         self.angular = np.array([u in revolute for u in inverse.unknowns])
         place = (*inverse.unknowns, *function.symbols, *parameters)
-        self._equations = RowEvaluator(place, inverse.equations)
+        self.stated = not inverse.passive
+        """Whether the equations contain only what the function takes and returns."""
+        self._equations = RowEvaluator(place, inverse.equations if self.stated else ())
         pairs = list(zip(inverse.forward, inverse.targets, strict=True))
         self._is_turn = [
             t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
         ]
-        lengths = [f for f, x in pairs if x not in inverse.angles]
+        lengths = [f for f, x in pairs if x not in inverse.angles and self.stated]
         self._scales = Magnitudes(place, lengths)
         explicit = tuple(inverse.targets) == function.symbols
         self.has_images = explicit or bool(inverse.images)
@@ -273,10 +275,13 @@ class Solutions:
     ) -> float:
         """The largest violation of an equation, relative to the largest natural scale.
 
-        The sine and the cosine of an angle have a scale of their own, which is 1.
+        The sine and the cosine of an angle have a scale of their own, which is 1.  If the equations
+        contain passive unknowns, it is how far the image misses the target.
         """
         if not np.isfinite(solution).all():
             return math.inf
+        if not self.stated:
+            return self.exact_miss(solution, given, parameters)
         point = [*map(float, solution), *map(float, given), *map(float, parameters)]
         scale = max(self._scales(np.array([point]))[0], default=1.0) or 1.0
         errors = [abs(to_float(e)) for e in self._equations.exactly(point)]

@@ -155,6 +155,7 @@ def two_circles(
     scale: sp.Expr,
     share: sp.Rational = SHARE,
     free: Sequence[sp.Symbol] = (),
+    suffix: str = "",
 ) -> Meeting:
     """The points at two distances from two points, as :func:`circle_intersection` gives them.
 
@@ -176,18 +177,28 @@ def two_circles(
         what the point may miss a circle by, as a share of the scale
     free
         the joints that are free if the point is
+    suffix
+        what the names end in
     """
     p, (r1, r2), (origin, other) = program, radii, centres
     span = sp.Matrix(
         [
-            e if e.is_Symbol or e == 0 else p.let(f"u_{i}", e)
+            e if e.is_Symbol or e == 0 else p.let(f"u_{i}{suffix}", e)
             for i, e in zip("xy", other - origin, strict=True)
         ]
     )
     start = len(p.body)
     x, y = first = real("from_x"), real("from_y")
     lemma, chord = circle_intersection(
-        p, (span[0], span[1]), (r1, r2), first, sigma, scale=scale, share=share, free=tuple(free)
+        p,
+        (span[0], span[1]),
+        (r1, r2),
+        first,
+        sigma,
+        scale=scale,
+        share=share,
+        free=tuple(free),
+        suffix=suffix,
     )
     placed = {u: x - o for u, x, o in zip(first, unknowns, origin, strict=True)}
     shifted = replace(

@@ -167,6 +167,8 @@ class Inverse:
     glue: Rank | Combination | None = None
     nonnegative: tuple[sp.Symbol, ...] = ()
     """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
+    passive: tuple[sp.Symbol, ...] = ()
+    """Further unknowns that the links solve for, and that the function does not return."""
     weights: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The weight of the angle of a target, in the unknowns, if it is undefined somewhere."""
     condition: sp.Expr = sp.S.Zero

@@ -58,20 +58,21 @@ class Proof:
         )
         claims = ", ".join(f"{n} {kind}" for kind, n in self.verdicts().items())
         parts = [f"{len(self.steps)} steps ({self.identities} identities)"]
-        parts.append(inverses or self.outcome())
+        parts.append(inverses if inverses and not self.without_inverse else self.outcome())
         return "; ".join(p for p in [*parts, f"claims: {claims}" if claims else ""] if p)
 
     def outcome(self) -> str:
         """The number of proved branches, or the reason why there is no inverse."""
+        none = f"no inverse, because {self.without_inverse or 'the script has none'}"
         if not self.inverses:
-            return f"no inverse, because {self.without_inverse or 'the script has none'}"
+            return none
         alone = len(self.inverses) == 1
         counts = (
             f"{i.branches} branch{'es' if i.branches > 1 else ''}"
             + ("" if alone else f" of {i.function}")
             for i in self.inverses
         )
-        return f"{', '.join(counts)} proved"
+        return f"{', '.join(counts)} proved" + f"; {none}" * bool(self.without_inverse)
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -100,7 +101,8 @@ class Proof:
 
 def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
     """Prove every step and inverse of a derivation, and judge its claims."""
-    if derivation.inverses and derivation.without_inverse:
+    given = [i for i in derivation.inverses if derivation[i.function].result == "Solutions"]
+    if given and derivation.without_inverse:
         raise ProofError(
             f"{derivation.name}: the script gives an inverse, but says that there is none, because "
             f"{derivation.without_inverse}: remove the call of d.no_inverse"

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.algebra.formulas import number
+from closedform.scaffold.linkages import LinkageLines, linkage
 from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
 from closedform.scaffold.on_rod import on_rod
 from closedform.scaffold.source import file_name, literal
@@ -25,44 +26,55 @@ FUNCTIONS = {"Rational", "Abs"}
 
 def loop_script(name: str, loop: Loop, origin: str) -> str:
     """The derivation of a loop, as Python."""
-    origin = file_name(origin)
-    found, at = Legs(loop), ""
-    follower = loop.joints.get(loop.hand)
-    if follower and not follower.driven:
-        legs, task = _coupled(found, follower), [loop.hand]
-    elif carried := on_rod(found):
-        (legs, at), task = carried, list(AXES[:2])
-        found.check_all_used()
-    else:
-        points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
-        if follower:
-            raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
-        if loop.hand not in points:
-            raise loop.error(
-                f"the hand {loop.hand} is not a point of a body, nor where a joint is, nor a joint"
-            )
-        driven, struts = found.legs(), found.struts()
-        found.check_all_used()
-        legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
-        if found.turning and not (loop.dimensions == 2 and _held(loop)):
-            upright = [] if struts or loop.parallelograms else uprights(found)
-            if not upright:
-                _check_turning(found, driven, struts)
-            legs, task = upright or legs, []
-        elif len(legs) != loop.dimensions:
-            on_sphere = " beside its strut" if struts else ""
-            held = f"; the parallelogram {_held(loop)[0]} keeps it from turning" * bool(_held(loop))
-            raise loop.error(
-                f"{len(driven)} joints are driven, but a hand that does not turn needs "
-                f"{loop.dimensions - len(struts)}{on_sphere}{held}"
-            )
-    table = Table()
-    for leg in legs:
-        if leg.joint.driven:
-            kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
-            add_joint(table, leg.joint.name, kind, loop.file)
-    way = _Way(legs, task, at)
+    origin, way, table = file_name(origin), _way(Legs(loop)), Table()
+    for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
+        if joint.driven:
+            kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+            add_joint(table, joint.name, kind, loop.file)
     return "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
+
+
+def _way(found: Legs) -> _Way:
+    """What derives the loop, by the first of the kinds that it is of."""
+    loop = found.loop
+    follower = loop.joints.get(loop.hand)
+    if lines := linkage(loop):
+        if follower:
+            return _Way([], [loop.hand], linkage=lines)
+        return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+    if follower and not follower.driven:
+        return _Way(_coupled(found, follower), [loop.hand])
+    if carried := on_rod(found):
+        found.check_all_used()
+        return _Way(carried[0], list(AXES[:2]), carried[1])
+    points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
+    if follower:
+        raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
+    if loop.hand not in points:
+        raise loop.error(
+            f"the hand {loop.hand} is not a point of a body, nor where a joint is, nor a joint"
+        )
+    return _on_legs(found)
+
+
+def _on_legs(found: Legs) -> _Way:
+    """A hand that legs carry."""
+    loop, driven, struts = found.loop, found.legs(), found.struts()
+    found.check_all_used()
+    legs = [*struts, *driven]
+    if found.turning and not (loop.dimensions == 2 and _held(loop)):
+        upright = [] if struts or loop.parallelograms else uprights(found)
+        if not upright:
+            _check_turning(found, driven, struts)
+        return _Way(upright or legs, [])
+    if len(legs) != loop.dimensions:
+        on_sphere = " beside its strut" if struts else ""
+        held = f"; the parallelogram {_held(loop)[0]} keeps it from turning" * bool(_held(loop))
+        raise loop.error(
+            f"{len(driven)} joints are driven, but a hand that does not turn needs "
+            f"{loop.dimensions - len(struts)}{on_sphere}{held}"
+        )
+    return _Way(legs, list(AXES[: loop.dimensions]))
 
 
 def _held(loop: Loop) -> list[str]:
@@ -138,15 +150,21 @@ def _beyond(loop: Loop, joint: Joint) -> Joint:
 
 @dataclass(frozen=True)
 class _Way:
-    """What derives the loop: its legs, its task, and where the second rod ends on the first."""
+    """What derives the loop: its legs, its task, and where the second rod ends on the first.
+
+    A linkage has bodies instead of legs.
+    """
 
     legs: Sequence[LoopLeg]
     task: Sequence[str]
     at: str = ""
+    linkage: LinkageLines | None = None
 
     @property
     def name(self) -> str:
         """The function that is called; a hand that turns sets its task itself."""
+        if self.linkage:
+            return "linkage"
         if self.legs[0].call.startswith("Upright"):
             return "tripod"
         if self.at:
@@ -156,10 +174,25 @@ class _Way:
     @property
     def arguments(self) -> list[str]:
         """Those after the derivation and the task."""
+        if self.linkage:
+            bodies = [f"        {body}," for body in self.linkage.bodies]
+            return ["    {", *bodies, "    },", *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
         if self.name in ("coupled", "on_rod"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
         return ["    [", *(f"        {leg}," for leg in legs), "    ],"]
+
+    @property
+    def parts(self) -> Sequence[str]:
+        """The legs or the bodies, as they are written."""
+        return self.linkage.bodies if self.linkage else [leg.call for leg in self.legs]
+
+    @property
+    def words(self) -> str:
+        """What the mechanism consists of."""
+        if self.linkage:
+            return self.linkage.words
+        return "  ".join(f"{_sentence(leg)}." for leg in self.legs)
 
 
 def _sentence(leg: LoopLeg) -> str:
@@ -170,15 +203,12 @@ def _sentence(leg: LoopLeg) -> str:
 
 
 def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
-    legs, task = way.legs, way.task
+    task = way.task
     title = name.replace("_", " ").capitalize()
-    words = "  ".join(f"{_sentence(leg)}." for leg in legs)
-    calls = sorted({c for leg in legs for c in re.findall(r"([A-Z]\w+)\(", leg.call)} - FUNCTIONS)
+    calls = sorted({c for e in way.parts for c in re.findall(r"\b([A-Z]\w+)\(", e)} - FUNCTIONS)
     names = sorted([*calls, "Derivation", "Paper", way.name, *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
-    used = " ".join([*(leg.call for leg in legs), way.at]) + "Rational(" * any(
-        f.denominator != 1 for f in fractions
-    )
+    used = " ".join([*way.parts, way.at]) + "Rational(" * any(f.denominator != 1 for f in fractions)
     functions = [f for f in ("Abs", "Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
     functions += ["pi"] * bool(re.search(r"\bpi\b", used))
     lines = [
@@ -191,7 +221,7 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
         f'    "{name}",',
         f'    "{title}",',
         f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
-        *wrapped_literal(words),
+        *wrapped_literal(way.words),
         *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
         ")",
     ]
@@ -222,9 +252,10 @@ def _body(table: Table, way: _Way) -> list[str]:
     for leg in way.legs:
         if leg.passive:
             lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
-    if way.name == "coupled":
+    if way.name == "coupled" or (way.linkage and len(way.task) == 1):
         (x,) = way.task
-        lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
+        hand = [f"    ({x},),"] * bool(way.linkage)
+        lines += [f'{x} = real("{x}")', f"{way.name}(", "    d,", *hand]
     else:
         coordinates = ", ".join(f"real({literal(x)})" for x in way.task)
         lines += [f"{way.name}(", "    d,", *[f"    ({coordinates}),"] * bool(way.task)]

@@ -53,10 +53,11 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod"}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod", "linkage"}
 USED |= {
     "Derivation",
     "Paper",
+    "Body",
     "Crank",
     "Parallelogram",
     "Rail",

@@ -59,7 +59,8 @@ def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
     found = []
     for s in solved:
         others = {o.unknown for o in solved if o is not s}
-        joints = [u for u in s.lemma.solution if u in inverse.unknowns and u not in others]
+        sought = {*inverse.unknowns, *inverse.passive}
+        joints = [u for u in s.lemma.solution if u in sought and u not in others]
         unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
         equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
         found.append(Solving(s.lemma, equations, unknowns))

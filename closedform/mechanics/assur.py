@@ -1,0 +1,108 @@
+"""The order in which a planar linkage of pinned bodies is solved: one dyad after the other.
+
+A dyad is two bodies with a pin in common, each of which has one more point that is known.  The pin
+is where two circles meet, and with it all points of both bodies are known.  Such groups are of
+class II in Assur's order; others lead to equations of a degree above four.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+
+@dataclass(frozen=True)
+class Dyad:
+    """Two bodies and their common ``pin``; the points in ``near`` are known before."""
+
+    pin: str
+    bodies: tuple[str, str]
+    near: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Held:
+    """A body of which two points are known, or more: their distances have to be right."""
+
+    body: str
+    points: tuple[str, ...]
+
+
+@dataclass
+class Order:
+    """The steps in which the bodies become known, and the bodies that are left."""
+
+    steps: list[Dyad | Held] = field(default_factory=list)
+    left: list[str] = field(default_factory=list)
+
+    @property
+    def dyads(self) -> list[Dyad]:
+        return [s for s in self.steps if isinstance(s, Dyad)]
+
+    @property
+    def held(self) -> list[Held]:
+        return [s for s in self.steps if isinstance(s, Held)]
+
+
+def order(
+    bodies: Mapping[str, Iterable[str]],
+    known: Iterable[str],
+    points: Iterable[str] = (),
+    *,
+    sought: Iterable[str] = (),
+) -> Order:
+    """The order for bodies with named points, of which some are ``known``.
+
+    Bodies that have a point of the same name are pinned together there.  ``points`` are known
+    besides those of the known bodies.  Dyads with the ``sought`` bodies come as early as they can.
+    """
+    on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
+    there = {p for name in known for p in on[name]} | set(points)
+    found = Order(left=[name for name in on if name not in set(known)])
+    while step := _next(on, found.left, there, {*sought}):
+        solved = step.bodies if isinstance(step, Dyad) else (step.body,)
+        found.steps.append(step)
+        found.left = [name for name in found.left if name not in solved]
+        there |= {p for name in solved for p in on[name]}
+    return found
+
+
+def _next(
+    on: Mapping[str, Sequence[str]], left: Sequence[str], there: set[str], sought: set[str]
+) -> Dyad | Held | None:
+    near = {name: tuple(p for p in on[name] if p in there) for name in left}
+    for name in left:
+        if len(near[name]) > 1:
+            return Held(name, near[name])
+    dyads = [
+        Dyad(p, (a, b), (near[a][0], near[b][0]))
+        for a, b in combinations([name for name in left if near[name]], 2)
+        for p in on[a]
+        if p in on[b] and p not in there
+    ]
+    return min(dyads, key=lambda dyad: not sought & {*dyad.bodies}, default=None)
+
+
+def needed_for(
+    steps: Sequence[Dyad], bodies: Mapping[str, Iterable[str]], last: Dyad
+) -> list[Dyad]:
+    """The dyads that ``last`` depends on, in their order, and this one."""
+    wanted, kept = set(last.near), [last]
+    for dyad in reversed(steps[: steps.index(last)]):
+        if wanted & {p for name in dyad.bodies for p in bodies[name]} - set(dyad.near):
+            wanted |= set(dyad.near)
+            kept.insert(0, dyad)
+    return kept
+
+
+def freedoms(bodies: Mapping[str, Iterable[str]]) -> int:
+    """The number of joints that have to be driven, by the count of bodies and pins."""
+    holders: dict[str, int] = {}
+    for at in bodies.values():
+        for p in dict.fromkeys(at):
+            holders[p] = holders.get(p, 0) + 1
+    return 3 * (len(bodies) - 1) - 2 * sum(n - 1 for n in holders.values())
+
+
+__all__ = ["Dyad", "Held", "Order", "freedoms", "needed_for", "order"]

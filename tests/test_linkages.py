@@ -16,9 +16,9 @@ from loop_files import derived, script_of
 from closedform.scaffold.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
-NAMES = ("watt", "watt_two", "klann", "jansen", "peaucellier")
-ANGLE, NO_INVERSE = ("watt_two",), ("watt",)
-MODES = {"watt": 4, "watt_two": 4, "klann": 4, "jansen": 8, "peaucellier": 8}
+MODES = {"watt": 4, "watt_two": 4, "klann": 4, "jansen": 8, "peaucellier": 8, "two_cranks": 4}
+NAMES = tuple(MODES)
+ANGLE, NO_INVERSE, TWO = ("watt_two",), ("watt",), ("two_cranks",)
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 LINES = 40
 
@@ -57,8 +57,8 @@ class Poses:
             }
         self.moving = [body for body in self.bodies if body != "ground"]
         self.joints = [(*j["between"], j["at"]) for j in data["joints"].values()]
-        (driven,) = (j for j in data["joints"].values() if j.get("driven"))
-        self.driven = next(b for b in driven["between"] if b != "ground")
+        driven = [j for j in data["joints"].values() if j.get("driven")]
+        self.driven = [b for j in driven for b in j["between"] if b != "ground"]
         follower = data["joints"].get(self.hand)
         self.follower = follower and next(b for b in follower["between"] if b != "ground")
 
@@ -72,12 +72,12 @@ class Poses:
         c, s = np.cos(phi), np.sin(phi)
         return np.stack([x + c * local[0] - s * local[1], y + s * local[0] + c * local[1]], -1)
 
-    def missed(self, poses: np.ndarray, q: float) -> np.ndarray:
+    def missed(self, poses: np.ndarray, q: np.ndarray) -> np.ndarray:
         gaps = [self.at(poses, a, p) - self.at(poses, b, p) for a, b, p in self.joints]
-        turned = poses[..., 3 * self.moving.index(self.driven) + 2] - q
-        return np.concatenate([*gaps, turned[..., None]], axis=-1)
+        turned = poses[..., [3 * self.moving.index(b) + 2 for b in self.driven]] - q
+        return np.concatenate([*gaps, turned], axis=-1)
 
-    def found(self, q: float, starts: np.ndarray) -> np.ndarray:
+    def found(self, q: np.ndarray, starts: np.ndarray) -> np.ndarray:
         """The hand in the postures that Newton's method finds from some starts."""
         x, h = starts.copy(), 1e-6
         steps = h * np.eye(x.shape[-1])
@@ -113,9 +113,9 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
     poses, rng = Poses(name_of(loop)), np.random.default_rng(1)
     assert len(loop.ASSEMBLY_MODES) == MODES[name_of(loop)]
     count = 0
-    for q in rng.uniform(-3, 3, 8):
+    for q in rng.uniform(-3, 3, (8, len(loop.JOINTS))):
         starts = rng.uniform(-2, 2, (80, 3 * len(poses.moving)))
-        p, status = loop.fk([q])
+        p, status = loop.fk(q)
         for hand in poses.found(q, starts):
             free = (status == SINGULAR).any()  # where two pins are one, the hand is on a circle
             assert free or np.nanmin(gaps(loop, p, hand)) < 1e-6
@@ -126,7 +126,7 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
 def test_all_postures_keep_the_bodies(loop: ModuleType) -> None:
     """Each body is its drawing, turned and moved, and not its mirror image."""
     poses, rng = Poses(name_of(loop)), np.random.default_rng(2)
-    q = rng.uniform(-np.pi, np.pi, (10_000, 1))
+    q = rng.uniform(-np.pi, np.pi, (10_000, len(loop.JOINTS)))
     points = loop.skeleton(q)
     at = dict(zip(loop.SKELETON.points, np.moveaxis(points[..., :2], -2, 0), strict=True))
     p, status = loop.fk(q)
@@ -156,12 +156,14 @@ def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
         assert not hasattr(loop, "ik")
         return
     rng = np.random.default_rng(3)
-    q = np.concatenate([rng.uniform(-np.pi, np.pi, (10_000, 1)), limits(loop)])
+    q = rng.uniform(-np.pi, np.pi, (10_000, len(loop.JOINTS)))
+    if name_of(loop) not in TWO:
+        q = np.concatenate([q, limits(loop)])
     p, status = loop.fk(q)
     rows, modes = np.nonzero(status == OK)
     assert len(rows) > 1000
     answers, told = loop.ik(p[rows, modes])
-    off = np.abs(np.angle(np.exp(1j * (answers[..., 0] - q[rows]))))
+    off = np.abs(np.angle(np.exp(1j * (answers - q[rows, None])))).max(axis=-1)
     factors = np.abs(loop.singularities(q[rows]))[np.arange(len(rows)), modes]
     near = (factors / np.nanmax(factors, axis=0)).min(axis=-1)
     with np.errstate(all="ignore"):
@@ -195,7 +197,7 @@ def limits(loop: ModuleType) -> np.ndarray:
 
 
 def test_a_target_beside_the_curve_is_out_of_reach(loop: ModuleType) -> None:
-    if name_of(loop) in (*NO_INVERSE, *ANGLE):
+    if name_of(loop) in (*NO_INVERSE, *ANGLE, *TWO):
         return
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (300, 1))
     p, status = loop.fk(q)
@@ -208,18 +210,19 @@ def test_a_target_beside_the_curve_is_out_of_reach(loop: ModuleType) -> None:
 
 
 def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
-    q, step = np.random.default_rng(5).uniform(-np.pi, np.pi, (2000, 1)), 1e-6
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (5000, len(loop.JOINTS)))
     factors = np.abs(loop.singularities(q))
     with np.errstate(all="ignore"):
         kept = (factors > 0.1 * np.nanmax(factors, axis=(0, 1))).all(axis=-1)
     assert kept.sum() > 20
-    rates = (loop.fk(q + step).p - loop.fk(q - step).p) / (2 * step)
-    J = loop.jacobian(q)[..., 0]
+    J, step = loop.jacobian(q), 1e-6
+    ends = [(loop.fk(q + e).p - loop.fk(q - e).p) / (2 * step) for e in step * np.eye(q.shape[1])]
+    rates = np.stack(ends, axis=-1)
     assert np.allclose(J[kept], rates[kept], rtol=1e-5, atol=1e-7)
     A, B = loop.jacobian_parallel(q)[kept], loop.jacobian_serial(q)[kept]
     pins = np.linalg.solve(A, B)
-    assert np.allclose(pins[:, -J.shape[-1] :, 0], J[kept], rtol=1e-9, atol=1e-9)
-    volumes = loop.singularities(q)[kept][:, -A.shape[-1] // 2 :]
+    assert np.allclose(pins[:, -J.shape[-2] :], J[kept], rtol=1e-9, atol=1e-9)
+    volumes = loop.singularities(q)[kept][:, -((A.shape[-1] + 1) // 2) :]
     assert np.allclose(np.abs(np.prod(volumes, axis=-1)), np.abs(np.linalg.det(A)), rtol=1e-9)
 
 
@@ -277,3 +280,23 @@ e = {between = ["rod", "output"], at = "F"}
 """
     with pytest.raises(TableError, match="degree 6; it can be solved if theta or rho is driven"):
         script_of("t", file.replace('hand = "psi"', 'hand = "D"'), tmp_path)
+
+
+def test_lengths_in_numbers_are_proved(tmp_path: Path) -> None:
+    """The curve of a coupler."""
+    file = """hand = "P"
+[bodies]
+ground = {O = [0, 0], C = [4, 0]}
+crank = {O = [0, 0], A = [1, 0]}
+plate = {A = [0, 0], B = [3, 0], P = [1, 2]}
+rocker = {length = 3}
+[joints]
+theta = {between = ["ground", "crank"], at = "O", driven = true}
+rho = {between = ["ground", "rocker"], at = "C"}
+a = {between = ["crank", "plate"], at = "A"}
+b = {between = ["plate", "rocker"], at = "B"}
+"""
+    loop = derived("coupler", script_of("coupler", file, tmp_path), tmp_path)
+    p, status = loop.fk([0.7])
+    assert not status.any()
+    assert (np.nanmin(np.abs(loop.ik(p).q - 0.7), axis=(1, 2)) < 1e-9).all()

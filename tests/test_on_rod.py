@@ -77,6 +77,15 @@ def test_the_condition_number_is_that_of_a(loop: ModuleType) -> None:
     assert np.allclose(loop.condition_number(q), np.linalg.cond(loop.jacobian_parallel(q)))
 
 
+def test_lengths_in_numbers_are_proved_too(tmp_path: Path) -> None:
+    numbers = text("minitaur").replace('"l2 + t"', "0.235")
+    numbers = numbers.replace('"l1"', "0.1").replace('"l2"', "0.2")
+    numbers = numbers[: numbers.index("[parameters]")] + numbers[numbers.index("[bodies]") :]
+    loop = derived("leg_in_numbers", script_of("leg_in_numbers", numbers, tmp_path), tmp_path)
+    p = loop.fk([0.3, 2]).p[0]
+    assert np.abs(loop.ik(p).q - [0.3, 2]).max(axis=-1).min() < 1e-9
+
+
 def test_the_second_rod_is_drawn_where_it_ends(tmp_path: Path, loop: ModuleType) -> None:
     points = loop.skeleton(postures(loop, 20))
     at = dict(zip(loop.SKELETON.points, np.moveaxis(points, -2, 0), strict=True))

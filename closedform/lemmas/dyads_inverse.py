@@ -57,8 +57,11 @@ def inverse(m: Linkage, loop: Step) -> None:
 
 def _why(found: Order) -> str:
     left = ", ".join(found.left)
-    degree = " of class III, which leads to an equation of degree 6" if len(found.left) == 4 else ""
-    return f"with the hand held, no two of the bodies {left} are a dyad; they are a group{degree}"
+    four = len(found.left) == 4
+    group = "class III, which leads to an equation of degree 6" if four else "a class above II"
+    return (
+        f"with the hand held, no two of the bodies {left} are a dyad; they are a group of {group}"
+    )
 
 
 @dataclass
@@ -94,10 +97,14 @@ class _Reverse:
         for k, step in enumerate(self.order.steps, 1):
             if isinstance(step, Held):
                 self._hold(step, k)
-            elif driven := [b for b in step.bodies if b in self.m.driven]:
-                self._crank(step, driven[0], k)
             else:
+                driven = [body for body in step.bodies if body in self.m.driven]
+                if len(driven) == 1:
+                    self._crank(step, driven[0], k)
+                    continue
                 self._circles(step, k)
+                for body in driven:
+                    self._angle(body, self.m.pivot(body), step.pin)
         self._determined()
         self._write()
 
@@ -116,10 +123,12 @@ class _Reverse:
         i = step.bodies.index(body)
         other, near = step.bodies[1 - i], step.near[1 - i]
         rod = m.length(other, near, step.pin)
-        crank = m.crank(body, step.pin, rod)
+        names = Naming(p, self.size, f"_{k}")
+        drawn = m.crank(body, step.pin, rod)
+        crank = drawn.named(names)
         self.signs.append(sigma := real(f"sigma_{body}"))
         w = self.at[near] - crank.base
-        solved = crank.solve(Naming(p, self.size, f"_{k}"), w, sigma)
+        solved = crank.solve(names, w, sigma)
         start = len(p.body)
         place = named(p, f"p{step.pin}", self.at[near] - solved.rod)
         link = replace(
@@ -132,8 +141,8 @@ class _Reverse:
         self.found.append(solved)
         self.values[crank.joint] = solved.value
         self.missed.append(solved.missed)
-        self.equations.append(square(crank.end() - self.meant[near]) - rod**2)
-        self.at[step.pin], self.meant[step.pin] = place, crank.end()
+        self.equations.append(square(drawn.end() - self.meant[near]) - rod**2)
+        self.at[step.pin], self.meant[step.pin] = place, drawn.end()
         self._lose(step)
         self._carry(body, m.pivot(body), step.pin)
         self._carry(other, near, step.pin)

@@ -16,7 +16,7 @@ A :class:`Strut` has no joint: its rod leads from a point of the ground, so the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import sympy as sp
@@ -193,6 +193,11 @@ class Crank:
 
     def end(self) -> sp.Matrix:
         return self.base + self._turned(Pair(sp.sin(self.joint), sp.cos(self.joint)))
+
+    def named(self, chain: Naming) -> Crank:
+        """The same crank with names for lengths that are not symbols, as its lemma has them."""
+        length = chain.coefficient("l", self.length, nonnegative=True)
+        return replace(self, length=length)
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         p, q = chain.program, self.joint

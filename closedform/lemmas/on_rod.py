@@ -419,6 +419,8 @@ def _inverse(m: OnRod, loop: Step) -> None:
     moved = tuple(m.hand) if m.moved else ()
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, moved)))
     first, second = m.legs
+    if isinstance(m.first, Crank):
+        first = cast("Leg", m.first.named(solved.naming(1)))
     solved.solve(1, first, m.hand - first.base)
     span = solved.found[0].rod
     start = len(g.body)

@@ -81,6 +81,7 @@ def meanings(function: Function, inverse: Inverse, glue: Combination) -> dict[Ex
     roots: list[Expr] = list(glue.joints.values())
     for link in inverse.links:
         known |= link.means
+        roots += link.means.values()
         inside |= {id(s) for s in link.body}
         roots += link.equations
         if link.lemma:
@@ -99,7 +100,10 @@ def meanings(function: Function, inverse: Inverse, glue: Combination) -> dict[Ex
     known |= flags
     for symbol in [s for s in values if s in needed]:
         known[symbol] = substitute(values[symbol], known)
-    return known
+    # what a lemma returns may mean something in its coefficients, such as a length
+    means = [meaning for link in inverse.links for meaning in link.means.values()]
+    coefficients = {s: known[s] for s in free_symbols(means) if s in values}
+    return {s: substitute(e, coefficients) for s, e in known.items()}
 
 
 def outcomes(expr: Expr) -> Iterator[Expr]:

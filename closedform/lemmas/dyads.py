@@ -20,9 +20,10 @@ from closedform.lemmas.missed import SHARE, loosened
 from closedform.lemmas.modes import NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Step
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse, Link
+from closedform.model.step import Step
 
 STILL = "hand stands still"
 

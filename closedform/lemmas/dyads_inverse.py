@@ -24,10 +24,10 @@ from closedform.lemmas.leg_by_leg import (
 from closedform.lemmas.legs import Naming, Solution
 from closedform.lemmas.linkage import GROUND, Linkage
 from closedform.mechanics.assur import Dyad, Held, Order, order
-from closedform.model.derivation import Step
 from closedform.model.functions import SINGLE, Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
 from closedform.model.lemma import Lemma
+from closedform.model.step import Step
 
 
 def known_points(m: Linkage, p: Program, bodies: Sequence[str]) -> dict[str, sp.Matrix]:

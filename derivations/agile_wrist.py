@@ -67,7 +67,7 @@ for k in (1, 2, 3):
 d.write("u", r"\mathbf u", "first axis of a leg")
 d.write("p", r"\mathbf p", "cross product of u and w of a leg")
 d.write("gap", r"\Delta", "determinant of A in every assembly mode")
-stated = d.step(
+d.loop = stated = d.step(
     "The loop",
     "The last axis v of each leg is an axis of the hand, and a column of R.  It is at right angles "
     "to the middle axis w, which the driven joint places.",

@@ -127,7 +127,7 @@ invariant = arm(m, theta2A, theta23A)
 off, fore = invariant - midpoint(m), sqrt(m.L2**2 + m.a3**2)
 short_upper, short_fore = m.L1 * (1 - cos(alpha)), fore * (1 - cos(beta))
 bent = (m.L2 * sin(theta23A - theta2A) + m.a3 * cos(theta23A - theta2A)) / fore
-d.step(
+leaning = d.step(
     "Yaw and roll",
     "Eqs. (3) to (5) compare the tips: d tan(psi) is half the distance by which the right tip is "
     "ahead of the left one, and d tan(phi) half the distance by which it is above.  In terms of "
@@ -184,7 +184,7 @@ orientation = (
     * rotation("x", psi)
     * rotation("y", theta)
 )
-d.step(
+placed = d.step(
     "Tip",
     "The wrist is a serial chain on the virtual fore-arm: roll about the fore-arm, yaw about the "
     "rolled x axis, the wrist, pitch about the y axis, and the last link.  So the rotation of the "
@@ -194,6 +194,7 @@ d.step(
     proves="Position and rotation of the tip are those of the serial chain with the virtual arm.",
     equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
 )
+d.given_by = {**dict.fromkeys(("x", "y", "z"), placed), "psi": leaning, "phi": leaning}
 d.step(
     "Length of the wrist",
     "The wrist and a wrist link form a right triangle; its third side is half the base line minus "

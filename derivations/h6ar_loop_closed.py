@@ -131,7 +131,7 @@ d.step(
     ),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
-d.step(
+leaning = d.step(
     "Yaw and roll from the tips",
     "The base line of the wrist is along the y axis after roll and yaw.  Half of it has the "
     "component d across the mid-plane, so its length is d / (cos(psi) cos(phi)), which replaces d "
@@ -145,6 +145,7 @@ d.step(
     ),
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
 )
+d.given_by = {"psi": leaning, "phi": leaning}
 axis = rotation("z", phi) * rotation("x", psi)
 length = real("wrist", positive=True)
 link = axis * sp.Matrix([0, m.gs, length]) - wrist_line

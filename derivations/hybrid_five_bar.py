@@ -68,7 +68,7 @@ loop = [
 by_c, by_d = c + bar(L2, theta4), d_point + bar(L2, theta5)
 rho = L1 * sin(theta2) + L2 * sin(theta4)
 leg_c, leg_d = (dict(zip(p, point, strict=True)) for point in (by_c, by_d))
-the_loop = d.step(
+d.loop = the_loop = d.step(
     "The loop",
     "P lies in the plane of the linkage, whose normal is k, at the distance L2 from C and from D.  "
     "By the leg over C, the signed distance of P from the axis is rho.  The leg over D must lead "

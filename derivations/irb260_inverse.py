@@ -1,5 +1,7 @@
 """The inverse kinematics of the IRB 260, which the paper does not give, and its workspace."""
 
+from dataclasses import replace
+
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
 
@@ -53,21 +55,27 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         theta3: choose(no_link, -pi / 2, triangle[elbow] - pi / 2),
         theta5: hand[theta5],
     }
-    wrist = py * cos(theta1) - px * sin(theta1) - l1 - l6
-    height = pz - l2 + l5
-    along3, across3 = l3 - l4 * sin(theta3), l4 * cos(theta3)
+    told_elbow = replace(
+        triangle,
+        solution={theta3: triangle[elbow] - pi / 2},
+        roles=(*triangle.roles, (r"\theta", theta3 + pi / 2)),
+    )
+    told_shoulder = replace(
+        shoulder,
+        solution={theta2: shoulder[theta2] - triangle[alpha]},
+        roles=(("x", theta2 + alpha), ("f", u), ("g", h)),
+    )
+    arms = {
+        u: l3 * sin(theta2) + l4 * cos(theta2 + theta3),
+        h: l3 * cos(theta2) - l4 * sin(theta2 + theta3),
+        alpha: atan2(l4 * cos(theta3), l3 - l4 * sin(theta3)),
+    }
+    law = u**2 + h**2 - l3**2 - l4**2 + 2 * l3 * l4 * sin(theta3)
+    toward = h * sin(theta2 + alpha) - u * cos(theta2 + alpha)
     d.solved += [
         Solved("ik", theta1, turret, px * cos(theta1) + py * sin(theta1)),
-        Solved(
-            "ik", theta3, triangle, wrist**2 + height**2 - l3**2 - l4**2 + 2 * l3 * l4 * sin(theta3)
-        ),
-        Solved(
-            "ik",
-            theta2,
-            shoulder,
-            sin(theta2) * (height * along3 + wrist * across3)
-            - cos(theta2) * (wrist * along3 - height * across3),
-        ),
+        Solved("ik", theta3, told_elbow, law, arms),
+        Solved("ik", theta2, told_shoulder, toward, arms),
         Solved("ik", theta5, hand, sin(theta1 + theta5 - psi)),
     ]
     d.step(

@@ -149,9 +149,10 @@ def arm_plane(
             (r"\sigma", sp.sympify(sense, strict=True)),
         ),
         vectors=(
-            "The algorithm uses polar coordinates of $w$ and $v$, and forms the vectors $f_i$ "
-            "from the sines and cosines of their angles.  It needs "
-            r"$t = \sigma(\cos\psi\,f_1 + \sin\psi\,f_2)$ too, which is in the plane of the arm."
+            "The polar angles of $w$ give the vectors $f_i$, and "
+            r"$t = \sigma(\cos\psi\,f_1 + \sin\psi\,f_2)$ is at right angles to $f_3$ in the plane "
+            "of the arm.  With the angle of $v$ in its plane, the columns of $M$ are combinations "
+            r"of $f_3$, $t$ and $\sigma M e_3$:"
         ),
         letters={e: f"t_{axis}" for axis, e in zip("xyz", in_plane, strict=True) if e.is_Symbol},
         matrix="M",

@@ -60,7 +60,7 @@ def coupled(
     d.singularities, d.poles = ("driver", "follower"), ("follower",)
     loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod, strict=True) ** 2
     keeps = "is the driver" if isinstance(driver, Stretch) else "keeps its length"
-    stated = d.step(
+    d.loop = stated = d.step(
         "The loop",
         "The driver determines the point B1 at one end of the rod, and the follower the point B2 "
         f"at the other end.  The rod {keeps}.",

@@ -81,7 +81,7 @@ def parallel(
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), mechanism.pole)
         d.poles = (mechanism.pole,)
-    loop = mechanism.state_loop()
+    mechanism.d.loop = loop = mechanism.state_loop()
     state_held(mechanism, loop)
     posture = _forward(mechanism, modes, loop)
     if passive:

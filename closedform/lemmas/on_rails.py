@@ -110,7 +110,7 @@ def on_rails(d: Derivation, legs: Sequence[Rail], modes: Choice = SIGN) -> None:
     m = OnRails(d, tuple(legs))
     if not d.singularities:
         d.singularities, d.poles = (POLE,), (POLE,)
-    loop = d.step(
+    d.loop = loop = d.step(
         "The loop",
         "The joint of leg i moves the rail, which passes through b and has the normal n.  The "
         "point e of the hand, in its frame, is on the rail: n is at right angles to p + R*e - b.",

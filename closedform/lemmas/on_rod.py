@@ -74,7 +74,7 @@ def on_rod(
     """
     mechanism = OnRod(d, sp.Matrix(hand), first, second, vector(at))
     d.singularities, d.poles = ("leg 1", "leg 2", POLE), (POLE,)
-    loop = _state_loop(mechanism)
+    mechanism.d.loop = loop = _state_loop(mechanism)
     posture = _forward(mechanism, modes, loop)
     _draw(mechanism, posture)
     _velocity(mechanism, posture, loop)

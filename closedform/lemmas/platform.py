@@ -61,7 +61,7 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
     m = Platform(d, tuple(legs))
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in m.numbered), "all legs")
-    loop = m.state_loop()
+    m.d.loop = loop = m.state_loop()
     degree = _forward(m, loop)
     _velocity(m, loop)
     _export(m)

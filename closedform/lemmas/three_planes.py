@@ -97,8 +97,10 @@ def axes_in_three_planes(
         solution |= {axes[k, k]: x[k], axes[i, k]: -s[k] * y[k], axes[j, k]: c[k] * y[k]}
     lemma = Lemma(
         "axes in three planes",
-        r"\mathbf v_k = \tau_k(x_k\mathbf u_k + y_k\mathbf p_k),\quad y_k = "
-        r"(C - S)/(\rho_{k+1}\rho_{k+2})",
+        r"\mathbf w_k\cdot\mathbf v_k = 0,\ \mathbf v_k \ne \pm\mathbf u_k\;\Rightarrow\;"
+        r"\mathbf v_k = \tau_k(x_k\mathbf u_k + y_k\mathbf p_k),\quad x_k = "
+        r"\frac{c_{k+2}s_{k+1} + s_ks_{k+2}c_kc_{k+1}}{\rho_{k+1}\rho_{k+2}},"
+        r"\quad y_k = \frac{C - S}{\rho_{k+1}\rho_{k+2}}",
         tuple(equations),
         solution,
         4,
@@ -108,6 +110,7 @@ def axes_in_three_planes(
             *((rf"c_{k}", sp.cos(q)) for k, q in enumerate(joints, 1)),
             *((rf"s_{k}", sp.sin(q)) for k, q in enumerate(joints, 1)),
         ),
+        matrix="R",
     )
     cases = []
     for k in range(3):

@@ -23,7 +23,7 @@ from closedform.lemmas.legs import Crank, Slide, Stretch, vector
 from closedform.lemmas.tripod_legs import Placed, Tripod, Upright
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Program, Vanishes, choose, real
+from closedform.model.functions import Let, Program, Vanishes, choose, real
 from closedform.model.step import Step
 
 DEGREE = 16
@@ -78,11 +78,18 @@ def _place(m: Tripod) -> Step:
     placed = m.placed(p)
     side, (c, s) = sp.Integer(m.side), at.turn
     f, g = (side * m.balance(turned) for turned in (False, True))
+    made = {let.symbol: let.value for let in p.body if isinstance(let, Let)}
+    shown = {*placed.rotation, *(e for arm in placed.arms for e in arm), *placed.turn}
+    unshown = {s: e for s, e in made.items() if s not in shown | {placed.delta}}
     far = [at.position + arm for arm in at.arms]
     aside = [leg.normal.dot(e[:2, 0]) for leg, e in zip(m.legs, far, strict=True)]
     d.write("psi", r"\psi", "twist of the hand about its own z axis")
     d.explain({"f": "coefficient of cos(psi) in the equation of the twist"})
     d.explain({"g": "coefficient of sin(psi) in the equation of the twist"})
+    d.explain({r"\delta": "amplitude of the equation of the twist", "R": "rotation of the hand"})
+    d.explain({"c": "cosine of the twist", "s": "sine of the twist"})
+    d.explain({r"\mathbf p": "position of the point of the hand"})
+    d.explain({rf"\mathbf h_{k}": "from there to the corner of a leg" for k, _ in m.numbered})
     step = d.step(
         "Pose of the hand",
         "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and "
@@ -98,8 +105,12 @@ def _place(m: Tripod) -> Step:
             r"R\,R_z(\psi)^{-1}": m.tilted,
             "f": f,
             "g": g,
-            r"\cos\psi": sp.Symbol("g") / sp.Symbol("delta"),
-            r"\sin\psi": -sp.Symbol("f") / sp.Symbol("delta"),
+            r"\delta": made[placed.delta],
+            r"c = \cos\psi": made[placed.turn[0]],
+            r"s = \sin\psi": made[placed.turn[1]],
+            "R": placed.rotation.xreplace(made),
+            **{rf"\mathbf h_{k}": arm.xreplace(made) for k, arm in enumerate(placed.arms, 1)},
+            r"\mathbf p": placed.position.xreplace(made).xreplace(unshown),
         },
         proves="The weighted normals add up to zero.  The corners of two legs are in their planes, "
         "and for that of the third the distance from its plane, times its weight, is "
@@ -133,7 +144,7 @@ def _close(m: Tripod, placed: Step) -> Step:
         (str(k), sp.Matrix(u.leg.end()).T, sp.sympify(u.leg.rod, strict=True))
         for k, u in m.numbered
     )
-    loop = m.d.step(
+    m.d.loop = loop = m.d.step(
         "The loop",
         "In the plane of leg i, with the distance from the z axis and the height as coordinates, "
         "its joint determines the near end b of the rod.  The corner of the hand is the far end.  "

@@ -152,6 +152,10 @@ class Derivation(Shown):
     """Symbols that are not written as their name says, or whose meaning no equation gives."""
     explained: dict[str, str] = field(default_factory=dict)
     """What names of equations mean (plain text), by their LaTeX."""
+    loop: Step | None = None
+    """The step that states the equations of the loop, which the inverses solve."""
+    given_by: dict[str, Step] = field(default_factory=dict)
+    """The step with the equations for a coordinate of the task, if none has it on its left side."""
     alike: Alike | None = None
     """The legs, if they differ in the names of their symbols alone."""
     without_inverse: str = ""

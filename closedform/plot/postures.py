@@ -195,7 +195,8 @@ def branches(
             shade = colour(names.index(name))
             draw(diagram, r, points, shade, label=spoken(name), faint=faint, about=about)
         diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
-        ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
+        if len(names) > 1:
+            ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
         _settle(ax)
         return ax
     columns = 4 if len(found) > 4 else 2

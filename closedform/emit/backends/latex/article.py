@@ -22,7 +22,6 @@ from closedform.emit.backends.latex.angles import in_angles
 from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
-    Numbers,
     canonical,
     listed,
     names_in,
@@ -85,7 +84,6 @@ class Page(Sheet):
     def __init__(self, derivation: Derivation, proof: Proof):
         super().__init__(derivation)
         self.proof = proof
-        self.numbers = Numbers(derivation.name)
         self.labels: list[list[str]] = []
         """The labels of the equations of each step."""
         self.claims = Claims(derivation, proof, self.labels)

@@ -81,12 +81,16 @@ class Numbers:
     defined: dict[str, str] = field(default_factory=dict)
     """The label of the equation that defines a name, by the canonical form of the name."""
     values: dict[tuple[str, str], str] = field(default_factory=dict)
+    lefts: dict[str, list[str]] = field(default_factory=dict)
+    """The labels of the equations with a left-hand side, in canonical form."""
     right: dict[str, str] = field(default_factory=dict)
     """The label of the first equation with a right-hand side."""
 
-    def number(self, equations: Iterable[Sequence[Line]]) -> list[Numbered]:
-        """Label equations, each at its last line."""
-        return [line for run in equations for line in self._labelled(run)]
+    def number(
+        self, equations: Iterable[Sequence[Line]], *, defining: bool = True
+    ) -> list[Numbered]:
+        """Label equations, each at its last line; their left sides are what they define, or not."""
+        return [line for run in equations for line in self._labelled(run, defining)]
 
     def is_shown(self, run: Sequence[Line]) -> str:
         """The label of this very equation if it stands in the document, or nothing."""
@@ -95,20 +99,21 @@ class Numbers:
     def of(self, left: str) -> str:
         """The label of the equation that defines a name, or has this left-hand side, or nothing."""
         name = canonical(left)
-        lefts = {own: label for (own, _), label in reversed(self.values.items())}
-        return (self.defined.get(name) or lefts.get(name, "")) if name else ""
+        return (self.defined.get(name) or self.lefts.get(name, [""])[0]) if name else ""
 
     def _content(self, run: Sequence[Line]) -> tuple[str, str]:
         return canonical(run[0][0]), " ".join(right for _, right in run)
 
-    def _labelled(self, run: Sequence[Line]) -> Iterator[Numbered]:
+    def _labelled(self, run: Sequence[Line], defining: bool) -> Iterator[Numbered]:
         self.count += 1
         label = f"eq:{self.robot}:{self.count}"
         content = self._content(run)
         self.values.setdefault(content, label)
-        self.right.setdefault(content[1], label)
+        self.lefts.setdefault(content[0], []).append(label)
         left = run[0][0]
-        for part in [] if left.endswith(":") else left.split("="):
+        if defining:
+            self.right.setdefault(content[1], label)
+        for part in left.split("=") if defining and not left.endswith(":") else []:
             if is_name(part.strip()):
                 self.defined.setdefault(without_power(canonical(part)), label)
         for k, (left, right) in enumerate(run, 1):
@@ -144,12 +149,22 @@ def skeleton(name: str) -> str:
     return re.sub(r"\\(?:mathrm|mathit|mathbf)|[{}_^, ]", "", name)
 
 
-def reference(labels: Sequence[str]) -> str:
-    """``(3)``, ``(3) and (4)`` or ``(3)--(6)`` for neighbours."""
-    marks = [rf"\eqref{{{label}}}" for label in labels]
-    if len(marks) < 3:
-        return " and ".join(marks)
-    return f"{marks[0]}--{marks[-1]}"
+def reference(labels: Iterable[str]) -> str:
+    """``(3)``, ``(3) and (4)``, or ``(3)--(6) and (9)``: three or more neighbours are a range."""
+    groups: list[list[str]] = []
+    for label in sorted({*labels}, key=_place):
+        if groups and _place(label) == _place(groups[-1][-1]) + 1:
+            groups[-1].append(label)
+        else:
+            groups.append([label])
+    marks = [[rf"\eqref{{{label}}}" for label in group] for group in groups]
+    told = [[f"{m[0]}--{m[-1]}"] if len(m) > 2 else m for m in marks]
+    return listed([text for texts in told for text in texts])
+
+
+def _place(label: str) -> int:
+    """The number of an equation in its document."""
+    return int(label.rpartition(":")[2])
 
 
 def listed(texts: Sequence[str]) -> str:

@@ -50,7 +50,7 @@ class Told:
             "stages": self.stages.context(),
             "order": self.order(),
             "each": self.subject.each,
-            "several": sum(len(s.unknowns) for s in self.stages.solvings) > 1,
+            "several": sum(len(self.stages.sought(s)) for s in self.stages.solvings) > 1,
             "joints": blocks(self.joints()),
             "lines": lines,
             "lines_kept": lines_kept(lines),

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.emit.backends.latex.equations import Numbered
+from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.names import (
     Quantities,
@@ -34,6 +34,7 @@ class Sheet:
 
     def __init__(self, derivation: Derivation):
         self.derivation = derivation
+        self.numbers = Numbers(derivation.name)
         self.printer = Printer({j.symbol for j in derivation.joints})
         self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
         self.printer.parameters = frozenset(p.name for p in derivation.parameters)

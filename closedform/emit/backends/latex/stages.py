@@ -14,13 +14,21 @@ import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.cases import Cases
-from closedform.emit.backends.latex.equations import canonical, skeleton
+from closedform.emit.backends.latex.equations import (
+    Numbered,
+    canonical,
+    reference,
+    runs,
+    skeleton,
+)
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import mixed
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.emit.backends.latex.sources import Stated, of_the_loop, of_the_target
+from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
     Array,
@@ -85,6 +93,9 @@ class Stages:
                 self.steps.append([solving])
         self.told: set[sp.Symbol] = set()
         """Names that a step has defined."""
+        self.stated = Stated(page)
+        self.seen = list[str]()
+        """The numbers of the equations of the derivation that define names in a step."""
 
     def context(self) -> list[dict[str, Any]]:
         return [self.stage(k, step) for k, step in enumerate(self.steps, 1)]
@@ -112,39 +123,67 @@ class Stages:
         """One step: from which equations, what the lemma gives, where it degenerates."""
         page, lemma = self.page, step[0].lemma
         page.lines.clear()
+        self.seen.clear()
         earlier = [s for s in self.steps[: number - 1] if s[0].lemma.name == lemma.name]
-        rows, shown = list[tuple[str, str]](), list[sp.Expr]()
+        solved, shown = list[list[Equation]](), list[sp.Expr]()
+        definitions = list[Equation]()
         for solving in step:
             system = self.system(solving)
             shown += system
             held = {s for e in system for s in e.free_symbols}
-            rows += [r for e in system for r in self.equation(e, solving)]
-            rows += self.definitions(held, solving)
+            solved += [self.equation(e, solving) for e in system]
+            definitions += self.definitions(held, solving)
         origin, roles = self.origin(shown, step), self.roles(step)
-        if self.algorithm.vectors:  # the lemma has the equations, in vectors
-            rows, origin = [], origin.removesuffix(":") + "."
-        solution = [] if lemma.vectors else [r for s in step for r in self.solution(s)]
+        if self.algorithm.vectors or lemma.vectors:  # the lemma has the equations, in vectors
+            solved, definitions = [], []
+        rows, labels = self.numbered(solved)
+        if not rows and not definitions:
+            origin = origin.removesuffix(":") + "."
+        if lemma.matrix:
+            solution = self.matrix_of(step[0])
+        else:
+            solution = [] if lemma.vectors else [r for s in step for r in self.solution(s)]
         return {
             "number": number,
-            "solves": "each of them" if len(step) > 1 else "them" if len(shown) > 1 else "it",
+            "solves": "each of " * (len(step) > 1) + (reference(labels) or "them"),
             "unknowns": enumeration([u for s in step for u in self.sought(s)]),
             "from": origin,
             "blocks": blocks(rows),
+            "definitions": blocks(definitions),
             "lemma": titled(lemma.name),
             "label": label(lemma.name),
-            "matrix": self.matrix(shown),
+            "matrix": self.matrix(shown, step),
             "statement": [] if earlier else statement(lemma),
             **roles,
             "count": self.count(step),
             "vectors": mixed(lemma.vectors),
             "solution": blocks(solution),
+            "seen": reference(self.seen),
             "exists": ", ".join(dict.fromkeys(e for s in step if (e := self.exists(s)))),
             "degenerate": "; ".join(dict.fromkeys(e for s in step if (e := self.degenerate(s)))),
         }
 
+    def numbered(self, solved: Sequence[list[Equation]]) -> tuple[list[Numbered], list[str]]:
+        """The equations that a lemma solves, with numbers, and the numbers; names for parts follow.
+
+        Of an equation that was displayed before, only the number is given.
+        """
+        rows, labels = list[Numbered](), list[str]()
+        for equation in solved:
+            main, *parts = runs(equation)
+            label = self.page.numbers.is_shown(main)
+            if not label:
+                rows += self.page.numbers.number([main], defining=False)
+                label = rows[-1].label
+                rows += [Numbered(*line) for part in parts for line in part]
+            labels.append(label)
+        return rows, labels
+
     def system(self, solving: Solving) -> list[sp.Expr]:
         """The equations that determine the unknowns: of many, the shortest for each of them."""
         left, width = list(solving.equations), self.page.lines.width
+        if solving.lemma.matrix:  # that it is a rotation is said in words
+            left = [e for e in left if self.named(e).free_symbols - {*solving.unknowns}]
         if len(left) <= 2:
             return left
         unknowns, known, chosen = list(solving.unknowns), set[sp.Symbol](), list[sp.Expr]()
@@ -209,12 +248,14 @@ class Stages:
             r for a in angles for r in self.page.equations(a, self.inverse.rank.defined[a])
         ]
 
-    def matrix(self, equations: Sequence[sp.Expr]) -> str:
+    def matrix(self, equations: Sequence[sp.Expr], step: Sequence[Solving]) -> str:
         """What is said of the matrix whose entries the equations hold."""
         if any(is_turned(s) for e in equations for s in self.named(e).free_symbols):
             return f"Here ${self.algorithm.product}$."
         held = {str(s) for e in equations for s in self.named(e).free_symbols}
         found = sorted({m[1] + m[2] for n in held if (m := MATRIX_ENTRY.fullmatch(n))})
+        if letter := step[0].lemma.matrix:
+            return f"Here ${letter}$ is a rotation."
         if not found:
             return ""
         names = enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
@@ -244,8 +285,9 @@ class Stages:
         before = list(dict.fromkeys(f"${letters.get(j) or page.math(j)}$" for j in known))
         where = self.parts(parts)
         source = f"From {where} of the forward map" if where else "From the forward map"
-        if page.derivation.assembly_modes:
-            source = "From the equations of the loop"
+        source += of_the_target(page, self.function, self.inverse, parts)
+        if page.derivation.loop:
+            source = f"From the equations of the loop{of_the_loop(page)}"
         verb = "follow equations" if len(equations) > 1 else "follows an equation"
         sought = [u for s in step for u in self.sought(s)]
         unknowns = enumeration(sought + [f"${page.math(u)}$" for u in later])
@@ -255,6 +297,10 @@ class Stages:
             told = f"{source} follows one equation in each of {unknowns}"
         if later:
             told += f", of which {enumeration(found)}"
+        matrices = [j for j in before if j.strip("$") in letters.values()]
+        if not where and matrices == before and len(before) == 1:  # the target is in the matrix
+            label = self.page.numbers.of(before[0].strip("$"))
+            return f"{told.replace(source, f'From {before[0]} in {reference([label])}', 1)} alone:"
         if before:
             verb = "is" if len(before) == 1 else "are"
             return f"{told}, where {enumeration(before)} {verb} known:"
@@ -315,7 +361,7 @@ class Stages:
         text = f"{start} {number} solution{'s' * (n != 1)}"
         if told and n > 1:
             text += f", for {told}"
-        if step[0].lemma.excluded:
+        if step[0].lemma.excluded and n == 1:
             text += " with the sign that is required"
         return text
 
@@ -401,6 +447,15 @@ class Stages:
         values += [self.vanishing(flag) for flag in self.freeing(solving)]
         return self.made_before(values) + rows
 
+    def matrix_of(self, solving: Solving) -> list[Equation]:
+        """The matrix that the lemma finds, and the quantities in it."""
+        page, algorithm, lemma = self.page, self.algorithm, solving.lemma
+        found = [self.named(lemma.solution[u]) for u in sorted(solving.unknowns, key=str)]
+        self.told |= {e for e in found if e.is_Symbol}
+        entries = [algorithm.value(e) if e in algorithm.values else e for e in found]
+        rows = self.made_before(entries)
+        return rows + page.equations(lemma.matrix, sp.Matrix(3, 3, entries))
+
     def sums_with(self, solving: Solving) -> list[sp.Symbol]:
         """The joints that are sums of angles which are all known with those of a lemma."""
         assert self.inverse
@@ -442,14 +497,19 @@ class Stages:
                 value = algorithm.value(symbol)
                 pending += [s for s in self.atoms(value) if s in shown]
         self.told |= found
-        return [
-            row
-            for s in algorithm.values
-            if s in found and not is_turned(s) and not MATRIX_ENTRY.fullmatch(str(s.name))
-            if algorithm.known.get(s) != algorithm.value(s)
-            for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
-            if row[0] != row[1]
-        ]
+        rows = list[Equation]()
+        for s in algorithm.values:
+            if s not in found or is_turned(s) or MATRIX_ENTRY.fullmatch(str(s.name)):
+                continue
+            value = algorithm.value(s)
+            if algorithm.known.get(s) == value:
+                continue
+            own = self.page.equations(algorithm.known.get(s, s), value)
+            if label := self.stated.of(own, value):
+                self.seen.append(label)
+            else:
+                rows += [row for row in own if row[0] != row[1]]
+        return rows
 
     def atoms(self, value: sp.Expr) -> list[sp.Expr]:
         """The symbols of an expression, and its sines and cosines of auxiliary angles."""

@@ -12,9 +12,9 @@ from closedform.emit.backends.latex.equations import canonical, reference, skele
 from closedform.emit.backends.latex.prose import upright
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.wide import Equation
-from closedform.model.derivation import Step
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
+from closedform.model.step import Step
 
 
 def of_the_loop(page: Sheet) -> str:

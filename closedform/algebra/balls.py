@@ -342,8 +342,12 @@ def _execute(block: Sequence[Step], registers: Registers) -> None:
                 registers[target] = function(registers)
                 continue
             operands = [registers[i] for i in args]
-            undefined = any(x is _UNDEFINED for x in operands)
-            registers[target] = _UNDEFINED if undefined else function(*operands)
+            for x in operands:  # not by any(), which would take as long as the function
+                if x is _UNDEFINED:
+                    registers[target] = _UNDEFINED
+                    break
+            else:
+                registers[target] = function(*operands)
         except _Undefined:
             registers[target] = _UNDEFINED
 

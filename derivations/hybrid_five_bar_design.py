@@ -5,7 +5,7 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import cos, pi, sin, sqrt
 
-from closedform import Derivation, Program, degree, eliminate, lens, positive_form, real
+from closedform import Derivation, Program, degree, eliminate, lens, normal, positive_form, real
 
 L0, L1, L2 = lengths = tuple(real(name, positive=True) for name in ("L0", "L1", "L2"))
 y, rho = plane = real("y"), real("rho")
@@ -171,7 +171,7 @@ def distinct(c: sp.Expr, s: sp.Expr, denominator: sp.Expr) -> int:
     signs = ((a, b) for a in (1, -1) for b in (1, -1))
     return len(
         {
-            sp.expand(by_cramer(sp.sympify(a * c), sp.sympify(b * s), sp.sympify(denominator)))
+            normal(by_cramer(sp.sympify(a * c), sp.sympify(b * s), sp.sympify(denominator)))
             for a, b in signs
         }
     )
@@ -219,7 +219,7 @@ def loci(d: Derivation) -> Loci:
             "The resultants are the stated curves, Cramer's rule gives them too, they are "
             "symmetric, and for L0 = 0 the second one factors as shown."
         ),
-        equal=[
+        equal=lambda: [
             (same.curve, sp.expand(circles)),
             (L0**2 * same.curve, by_cramer(sp.S.One, sp.S.Zero)),
             (opposite.curve, by_cramer(-sp.S.One, sp.S.Zero)),
@@ -254,7 +254,7 @@ def loci(d: Derivation) -> Loci:
             "rule gives, their mirror images belong to the other sign, and the curve factors for "
             "L0 = 0."
         ),
-        equal=[
+        equal=lambda: [
             (square.curve, by_cramer(sp.S.Zero, sp.S.One)),
             (square.curve.subs(mirror), by_cramer(sp.S.Zero, -sp.S.One)),
             (general.curve, by_cramer(k2 - 1, 2 * kappa, n)),

@@ -111,7 +111,6 @@ self_motion = sp.Matrix(
     ]
 )
 others = [[k for k in range(7) if k != j] for j in range(7)]
-minors = [determinant(arm.middle[:, columns]) for columns in others]
 d.explain({r"\dot q": "joint rates that do not move the hand"})
 d.step(
     "Self-motion",
@@ -123,9 +122,12 @@ d.step(
     {r"\dot q": self_motion},
     proves="J times these rates is zero, and these rates times d_se d_ew sin(theta4) are the "
     "minors of J.",
-    equal=[
+    equal=lambda: [
         (arm.middle * self_motion, sp.zeros(6, 1)),
-        *((m, (-1) ** k * d_se * d_ew * s4 * self_motion[k]) for k, m in enumerate(minors)),
+        *(
+            (determinant(arm.middle[:, columns]), (-1) ** k * d_se * d_ew * s4 * self_motion[k])
+            for k, columns in enumerate(others)
+        ),
     ],
 )
 distance = sqrt(line.dot(line))

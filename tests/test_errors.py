@@ -259,6 +259,30 @@ def test_a_float() -> None:
             act()
 
 
+def test_identities_that_are_computed_later_are_proved_all_the_same() -> None:
+    """A function gives them when the proof asks for them, and no earlier."""
+    asked = []
+
+    def pairs(right: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
+        asked.append(right)
+        return [(sp.sin(THETA1) ** 2, right)]
+
+    for right, identities in ((1 - sp.cos(THETA1) ** 2, 1), (sp.cos(THETA1), 0)):
+        d = derivation()
+        step = d.step("S", "", {"x": THETA1}, equal=lambda right=right: pairs(right))
+        assert asked == []
+        if identities:
+            assert prove(d).identities == identities and len(step.vanishes) == 1
+        else:
+            with pytest.raises(ProofError, match="'S': the sides of an equation differ"):
+                prove(d)
+        assert asked == [right]
+        asked.clear()
+    step = derivation().step("S", "", {}, equal=lambda: [(THETA1, 0.5 * THETA1)])
+    with pytest.raises(TypeError, match=r"step 'S'.*0\.5"):
+        _ = step.vanishes
+
+
 def test_a_zyz_lemma_on_what_is_no_such_rotation() -> None:
     """Rz Rx Rz is not a ZYZ rotation: the proof names the lemma, and says where it fails."""
     d = Derivation("wrist", "Wrist", Paper("toy", "Toys", ("A.",)), "A wrist.", task=["T"])

@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 from closedform.generated.numpy import puma560
 
+from closedform.algebra.normal_form import equal
 from closedform.emit.backends.latex import symbols
 from closedform.emit.backends.latex.article import Page, document, indexed, tied
 from closedform.emit.backends.latex.claims import Claims
@@ -21,7 +22,9 @@ from closedform.emit.backends.latex.sheet import Block
 from closedform.emit.backends.latex.stages import same_angle
 from closedform.emit.backends.latex.wide import Lines
 from closedform.emit.render import render
-from closedform.model.derivation import Derivation
+from closedform.mechanics import by_axes
+from closedform.mechanics.arm import from_dh
+from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import real
 from closedform.proof.prove import Proof
 
@@ -185,6 +188,21 @@ def test_an_arm_of_six_joints_tells_its_twists_by_the_geometric_jacobian() -> No
     turn = np.block([[R.T, np.zeros((3, 3))], [np.zeros((3, 3)), R.T]])
     assert np.allclose(puma560.jacobian_space(q), shift @ J, rtol=0, atol=1e-14)
     assert np.allclose(puma560.jacobian_body(q), turn @ J, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("modified", "sign", "last"), [(0, 1, "i-1"), (1, 1, "i"), (0, -1, "")])
+def test_columns_follow_from_axes_that_the_motions_turn_about(modified, sign, last, monkeypatch):
+    """Of a joint that turns against its axis, the column has another sign."""
+    monkeypatch.setattr(by_axes, "ENTRIES", 0)
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    q = [d.joint("theta1"), d.joint("theta2")]
+    rows = [(1, sp.pi / 3, 2, sign * q[0]), (3, sp.pi / 5, 1, sign * q[1])]
+    arm = from_dh(d, rows, modified=bool(modified))
+    found = by_axes.by_axes(d, arm.pose, arm.moves, q)
+    assert (found is not None) == bool(last)
+    if found:
+        assert found.jacobian[by_axes.AXIS].endswith(rf"A_{{{last}}}")
+        assert all(bool(equal(a, b)) for a, b in found.equal(arm.pose, arm.geometric))
 
 
 def test_the_book_explains_a_status_once() -> None:

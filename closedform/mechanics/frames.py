@@ -133,11 +133,12 @@ def angular_velocity_matrix(R: sp.Matrix, joints: Sequence[sp.Symbol], frame: st
 
 def reduce_circle(value: sp.Matrix) -> sp.Matrix:
     """Rewrite even powers of sines and cosines by ``s^2 + c^2 = 1`` where the result is shorter."""
+    return value.applyfunc(_shorter)
 
-    def shorter(entry: sp.Expr) -> sp.Expr:
-        return min((entry, normal(entry)), key=sp.count_ops)
 
-    return value.applyfunc(shorter)
+@cache
+def _shorter(entry: sp.Expr) -> sp.Expr:
+    return min((entry, normal(entry)), key=sp.count_ops)
 
 
 def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:

@@ -16,12 +16,15 @@ from extension_toy.build import compile_toy, loaded
 from hypothesis import settings
 from sharing import compile_quickly, shared
 
+from closedform.pipeline.memory import spend_memory
+
 if TYPE_CHECKING:  # most processes that run pytest need no SymPy for it
     from closedform.check.crosscheck import Finding
 
 # The same examples on every run: a failure can be repeated, and a build is stable.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+spend_memory()
 
 ROOT = Path(__file__).parents[1]
 FINDINGS = pytest.StashKey["list[Finding]"]()

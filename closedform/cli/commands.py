@@ -22,6 +22,7 @@ from closedform.cli.console import Progress
 from closedform.pipeline import folders, scripts, versions
 from closedform.pipeline import run as pipeline
 from closedform.pipeline.disk import locked
+from closedform.pipeline.memory import spend_memory
 from closedform.pipeline.store import default_store
 from closedform.pipeline.workers import WorkerError
 
@@ -45,6 +46,7 @@ class CommandError(Exception):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     console.open_streams()
+    spend_memory()
     try:
         options = _parsed(arguments)
         command: Callable[[argparse.Namespace], None] = options.command

@@ -16,6 +16,8 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from closedform.pipeline.memory import spend_memory
+
 GRACE = 5.0
 """Seconds that a process has to end, once it was told to; then it is killed."""
 
@@ -99,6 +101,7 @@ class _Worker:
 
 def _work(connection: Connection, job: Callable[..., Any]) -> None:
     """The main loop of a process; it ends with its parent, however that ends."""
+    spend_memory()
     parent = multiprocessing.parent_process()
     assert parent is not None
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()

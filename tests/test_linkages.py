@@ -249,6 +249,9 @@ def test_peaucellier_draws_a_line(tmp_path: Path) -> None:
         ("klann", 'ja = {between = ["ground", "lower"], at = "A"}', "", "the rod lower must be"),
         ("watt", 'jf = {between = ["lid", "rod"], at = "F"}',
          'jf = {between = ["crank", "rod"], at = "A"}', "rod is joined to E and A, which"),
+        ("watt_two", 'psi = {between = ["ground", "output"], at = "G"}',
+         'psi = {between = ["ground", "output"], at = "G", kind = "prismatic", axis = [1, 0]}',
+         "linkage of 5 moving bodies, in which psi slides; .* take the point"),
     ],
 )  # fmt: skip
 def test_a_file_that_does_not_fit_says_why(

@@ -28,6 +28,8 @@ def linkage(loop: Loop) -> LinkageLines | None:
     """The lines of a linkage; None if the file is of another kind."""
     driven = [j for j in loop.joints.values() if j.driven]
     follower = loop.joints.get(loop.hand)
+    moving = len(loop.bodies) - 1
+    _check_slides(loop, driven, moving)
     if (
         loop.dimensions != 2
         or len(driven) not in FEW
@@ -37,7 +39,6 @@ def linkage(loop: Loop) -> LinkageLines | None:
         or (follower and (follower.driven or GROUND not in follower.between))
     ):
         return None
-    moving = len(loop.bodies) - 1
     point_of_one = len(driven) == 1 and not follower
     if moving < FEW[len(driven)] or (moving == FEW[len(driven)] and not point_of_one):
         return None
@@ -51,6 +52,18 @@ def linkage(loop: Loop) -> LinkageLines | None:
         raise loop.error(f"the hand {loop.hand} is neither a point of a body nor a joint")
     bodies = tuple(_line(loop, name, at, turning) for name, at in points.items())
     return LinkageLines(bodies, "" if follower else _safe(loop.hand), _words(driven, found))
+
+
+def _check_slides(loop: Loop, driven: Sequence[Joint], moving: int) -> None:
+    """Refuse slides in a linkage of one driven joint that is more than a single loop."""
+    slides = [j.name for j in loop.joints.values() if j.kind == "prismatic"]
+    if loop.dimensions == 2 and len(driven) == 1 and moving > FEW[1] and slides:
+        raise loop.error(
+            f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
+            f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is known with "
+            f"revolute joints alone.  If a slide only ends the linkage, leave it and its rod out, "
+            f"and take the point that drives the rod as the hand"
+        )
 
 
 def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:

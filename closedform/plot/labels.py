@@ -54,15 +54,17 @@ def place(figure: Any) -> None:
         ax.apply_aspect()
         for label in mine:
             label.text.set_transform(label.inside)
-        lines = _lines(ax)
+        lines, thick = _lines(ax)
         placed = np.zeros((0, 2, 2))
         for label in mine:
-            box = _place_one(figure, ax, label, lines, placed)
+            box = _place_one(figure, ax, label, (lines, thick), placed)
             placed = np.concatenate([placed, box[None]])
             label.box = box
 
 
-def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: Array) -> Array:
+def _place_one(
+    figure: Any, ax: Any, label: Label, lines: tuple[Array, Array], placed: Array
+) -> Array:
     scale = figure.dpi / POINTS_PER_INCH
     at = pixels(ax, label.at[None])[0]
     box = label.text.get_window_extent(figure._get_renderer())
@@ -81,11 +83,13 @@ def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: Array) 
     return np.array([centre - half, centre + half])
 
 
-def _cost(centres: Array, half: Array, lines: Array, placed: Array, ax: Any) -> Array:
+def _cost(centres: Array, half: Array, lines: tuple[Array, Array], placed: Array, ax: Any) -> Array:
     """What a label would cover at each place: points of lines, other labels, the border."""
     frame = ax.get_window_extent()
-    near = lines[(np.abs(lines - centres.mean(0)) < half + np.ptp(centres, axis=0)).all(1)]
-    covered = (np.abs(near - centres[:, None]) < half).all(-1).sum(-1)
+    points, thick = lines
+    reach = half + thick[:, None]
+    close = (np.abs(points - centres.mean(0)) < reach + np.ptp(centres, axis=0)).all(1)
+    covered = (np.abs(points[close] - centres[:, None]) < reach[close]).all(-1).sum(-1)
     low, high = centres - half, centres + half
     sides = np.minimum(high[:, None], placed[:, 1]) - np.maximum(low[:, None], placed[:, 0])
     shared = np.prod(np.clip(sides, 0, None), axis=-1).sum(-1)
@@ -94,9 +98,9 @@ def _cost(centres: Array, half: Array, lines: Array, placed: Array, ax: Any) -> 
     return np.asarray(0.35 * covered + 0.2 * shared + 0.05 * outside)
 
 
-def _lines(ax: Any) -> Array:
-    """Points along everything that is drawn as a line, in pixels, some three pixels apart."""
-    found = []
+def _lines(ax: Any) -> tuple[Array, Array]:
+    """Points along all that is drawn as a line, some three pixels apart; half of its thickness."""
+    found, thick = [], list[float]()
     for line in ax.lines:
         data = line.get_data_3d() if hasattr(line, "get_data_3d") else line.get_data()
         points = np.array([np.ravel(d) for d in data], dtype=float).T
@@ -109,7 +113,9 @@ def _lines(ax: Any) -> Array:
                 found.append(a + np.linspace(0, 1, n)[:, None] * (b - a))
         if len(ends) == 1:
             found.append(ends[0] + np.array([[0, 0], [3, 0], [-3, 0], [0, 3], [0, -3]]))
-    return np.vstack(found) if found else np.zeros((0, 2))
+        half = line.get_linewidth() / 2 * ax.figure.dpi / POINTS_PER_INCH
+        thick += [half] * (sum(map(len, found)) - len(thick))
+    return np.vstack(found) if found else np.zeros((0, 2)), np.array(thick)
 
 
 def pixels(ax: Any, points: Array) -> Array:
@@ -130,7 +136,7 @@ def drawn_box(figure: Any, margin: float) -> Bbox:
             continue
         boxes += [Bbox(label.box) for label in getattr(ax, "_closedform_labels", [])]
         boxes += [ax.title.get_window_extent(renderer)] * bool(ax.title.get_text())
-        lines = _lines(ax)
+        lines, _ = _lines(ax)
         if len(lines):
             boxes.append(Bbox([lines.min(0), lines.max(0)]))
     scale = Affine2D().scale(1 / figure.dpi)

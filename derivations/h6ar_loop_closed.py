@@ -53,6 +53,7 @@ from closedform import (
     Inverse,
     Link,
     Program,
+    Solved,
     branches,
     choose,
     elbow_squares,
@@ -226,8 +227,8 @@ d.step(
 )
 
 
-def stand(p: Program) -> Posture:
-    """The posture, from the middle of the tips and the virtual arm."""
+def stand(p: Program, function: str) -> Posture:
+    """The posture, from the middle of the tips and the virtual arm, in a function."""
     second = p.let("fore", forearm_length, nonnegative=True)
     squares, bent = {}, {}
     for name, angle in (("right", theta3R), ("left", theta3L)):
@@ -252,6 +253,7 @@ def stand(p: Program) -> Posture:
         suffix="_virtual",
         rest=pair(theta2R),
     )
+    d.solved.append(Solved(function, theta2A, virtual, virtual.equations[0]))
     upper, fore = (virtual.pair(angle) for angle in (theta2A, theta23A))
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
     p.let("width", across_fore.xreplace(seen))
@@ -265,7 +267,7 @@ def stand(p: Program) -> Posture:
 
 
 p = Program()
-here = stand(p)
+here = stand(p, "fk")
 fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
 notes = (
     "NaN if the tips are farther apart than the wrist links can span, or if the virtual arm cannot "
@@ -287,7 +289,7 @@ d.function(
     "pose",
     "Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.",
     {"q": q},
-    {"T": pose_matrix(m, p, stand(p))},
+    {"T": pose_matrix(m, p, stand(p, "pose"))},
     program=p,
     source="eq. (9) and its frames",
     notes=notes,
@@ -300,7 +302,7 @@ draw(
     m,
     q,
     p,
-    stand(p),
+    stand(p, "skeleton"),
     posture=angles,
     tip=tip(m, angles),
     arms={"right": (theta2R, theta2R + theta3R), "left": (theta2L, theta2L + theta3L)},
@@ -383,7 +385,7 @@ def factors(here: Posture) -> list[sp.Expr]:
 
 
 p = Program()
-here = stand(p)
+here = stand(p, "jacobian")
 tilted = real("tilted", nonnegative=True)
 by_virtual = p.matrix("virtual", named(point_by.adjugate(), here, q))
 mid_rates = p.matrix("mid", middle.jacobian(q))
@@ -411,7 +413,7 @@ d.function(
     notes=(*notes, STEEP),
 )
 p = Program()
-here = stand(p)
+here = stand(p, "determinant")
 f = factors(here)
 turning = m.d / (tilted * here.base**2)
 d.function(
@@ -423,7 +425,7 @@ d.function(
     notes=notes,
 )
 p = Program()
-here = stand(p)
+here = stand(p, "singularities")
 d.function(
     "singularities",
     "The factors of the determinant, its pole, and the length of the wrist.",

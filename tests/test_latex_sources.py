@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.article import document
+from closedform.emit.backends.latex.algorithm import Algorithm
+from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.equations import Numbers, reference
 from closedform.model.derivation import Derivation
+from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.proof.prove import Proof
 
 GENERATED = Path(__file__).parents[1] / "generated" / "latex"
@@ -100,3 +102,54 @@ def test_an_equation_that_is_solved_defines_nothing() -> None:
     assert not numbers.defined and numbers.is_shown([("r", "1")]) == "eq:x:1"
     numbers.number([[("r", "2")]])
     assert numbers.defined == {"r": "eq:x:2"}
+
+
+FORWARD = ("0.3", "1.05", "-0.2", "1.1", "-0.25", "0.4")
+"""Joints of the H6AR at which its loop closes."""
+
+
+@pytest.mark.parametrize("name", ["h6ar", "h6ar_loop_closed"])
+@pytest.mark.parametrize("function", ["fk", "pose"])
+def test_the_lines_of_a_forward_map_compute_it(name: str, function: str) -> None:
+    """Also those of the pose, which goes on in the angles that the forward map has found."""
+    d = derivation(name)
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    first = page.algorithm(d["fk"])
+    at = {p.symbol: sp.Rational(p.value) for p in d.parameters}
+    at |= dict(zip(d.actuated, map(sp.Rational, FORWARD), strict=True))
+    known = dict(at)
+    computed(first, known)
+    algorithm = page.algorithm(d[function])
+    found = computed(algorithm, known)
+    wanted = run(d[function], at)
+    assert all(abs(e - w) < 1e-25 for e, w in zip(found, wanted, strict=True))
+    text = " ".join(line.text for line in algorithm.lines())
+    assert r"\psi" in text and "c_{\\psi}" not in text
+
+
+def run(function: Function, at: dict) -> list[sp.Expr]:
+    """What the program of a function returns, statement by statement."""
+    values = dict(at)
+    for statement in function.body:
+        if isinstance(statement, Vanishes):
+            values[statement.symbol] = sp.false
+        elif isinstance(statement, Let | Bound):
+            values[statement.symbol] = sp.N(substitute(statement.value, values), 40)
+    return [sp.N(substitute(e, values), 30) for a in function.outputs for e in a.entries]
+
+
+def computed(algorithm: Algorithm, known: dict) -> list[sp.Expr]:
+    """What the printed lines compute, which come to be ``known``."""
+    algorithm.lines()
+    for symbol in algorithm.values:
+        if symbol in algorithm.printed and symbol not in known:
+            known[symbol] = sp.N(algorithm.value(symbol).xreplace(known), 40)
+    return [sp.N(algorithm.shown(e).xreplace(known), 30) for e in algorithm.outputs]
+
+
+def test_what_depends_on_a_branch_is_computed_for_each() -> None:
+    d = derivation("agile_wrist")
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    lines = [line.text for line in page.algorithm(d["jacobian_parallel"]).lines()]
+    [branches] = [k for k, text in enumerate(lines) if "for each" in text]
+    assert all("R_{13}" not in text for text in lines[:branches])

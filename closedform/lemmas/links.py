@@ -161,28 +161,28 @@ def turn(
 
 theorem(
     "two-link arm",
-    statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$, $l_1, l_2 > 0$ and $(x, y) \ne 0$.
+    statement=r"""Let $u(\lambda) = (\cos\lambda, \sin\lambda)$, $l_1, l_2 > 0$ and $(x, y) \ne 0$.
 With $r = \sqrt{x^2 + y^2}$ and the factors $\mathcal S = l_1 + l_2 + r$, $\mathcal A = l_1 + l_2 -
 r$, $\mathcal B = r + l_1 - l_2$ and $\mathcal C = r - l_1 + l_2$ of the triangle with these sides,
-the equation $l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y)$ has a solution if and only if
+the equation $l_1 u(\lambda) + l_2 u(\lambda + \mu) = (x, y)$ has a solution if and only if
 $\mathcal A$, $\mathcal B$ and $\mathcal C$ are not negative.  The solutions are
-$$(\cos\varphi, \sin\varphi) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\
+$$(\cos\mu, \sin\mu) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\
 2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal B\mathcal C + \mathcal S\mathcal
-A}, \qquad \theta = \operatorname{atan2}(y, x) - \alpha,$$
+A}, \qquad \lambda = \operatorname{atan2}(y, x) - \alpha,$$
 $$(\cos\alpha, \sin\alpha) = \frac{(\mathcal S\mathcal B - \mathcal A\mathcal C,\
 2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal S\mathcal B + \mathcal A\mathcal
 C}, \qquad \sigma = \pm 1.$$
 A second link that is cranked, $(b - i a)\, e^{i y}$ instead of $l_2 e^{i y}$ in the complex
 plane, is a straight one of length $\sqrt{a^2 + b^2}$ at the angle $y - \operatorname{atan2}(a,
 b)$.""",
-    proof=r"""Turn the plane by $-\theta$: the first link is then at the angle $0$, the second at
-$\varphi$, and $(x, y)$ at $\alpha = \operatorname{atan2}(y, x) - \theta$.  These are the
+    proof=r"""Turn the plane by $-\lambda$: the first link is then at the angle $0$, the second at
+$\mu$, and $(x, y)$ at $\alpha = \operatorname{atan2}(y, x) - \lambda$.  These are the
 equations of the two-link triangle.  Its tangents of half angles are those of the stated sines and
-cosines, by $(\cos\varphi, \sin\varphi) = (1 - t^2,\ 2 t)/(1 + t^2)$ with $t = \tan(\varphi/2)$,
+cosines, by $(\cos\mu, \sin\mu) = (1 - t^2,\ 2 t)/(1 + t^2)$ with $t = \tan(\mu/2)$,
 and likewise for $\alpha$.  For the cranked link, $b - i a = \sqrt{a^2 + b^2}\,
 e^{-i\operatorname{atan2}(a, b)}$.""",
-    exception=r"""If $(x, y) = 0$, which needs $l_1 = l_2$, the arm is folded and $\theta$ is
-free.  If a link has no length, $\varphi$ is free, and a stretched arm is returned.""",
+    exception=r"""If $(x, y) = 0$, which needs $l_1 = l_2$, the arm is folded and $\lambda$ is
+free.  If a link has no length, $\mu$ is free, and a stretched arm is returned.""",
     rests_on=("two-link triangle",),
 )
 
@@ -266,11 +266,11 @@ def two_links(
     lift, more = named(chain, first, bearing - off.known_as(p, f"_base_{name}"))
     lemma = Lemma(
         "two-link arm",
-        r"l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y) \;\Rightarrow\; "
-        r"(\cos\varphi, \sin\varphi) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ "
+        r"l_1 u(\lambda) + l_2 u(\lambda + \mu) = (x, y) \;\Rightarrow\; "
+        r"(\cos\mu, \sin\mu) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ "
         r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
         r"{\mathcal B\mathcal C + \mathcal S\mathcal A},\ "
-        r"\theta = \operatorname{atan2}(y, x) - \alpha,\quad "
+        r"\lambda = \operatorname{atan2}(y, x) - \alpha,\quad "
         r"(\cos\alpha, \sin\alpha) = \frac{(\mathcal S\mathcal B - \mathcal A\mathcal C,\ "
         r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
         r"{\mathcal S\mathcal B + \mathcal A\mathcal C}",
@@ -283,8 +283,8 @@ def two_links(
         roles=(
             ("l_1", l1),
             ("l_2", l2),
-            (r"\theta", first),
-            (r"\varphi", second),
+            (r"\lambda", first),
+            (r"\mu", second),
             ("x", x),
             ("y", y),
         ),

@@ -106,6 +106,7 @@ class Algorithm:
         self.uses = self._uses()
         if self.model:
             self.known |= self.model.known
+            self.known |= {n: e for n, e in self.model.replaced.items() if n in self.values}
             self.names |= self.model.names
             self.printed |= self.model.printed
         unneeded = self.letters.keys() & self.values.keys() - self.needed
@@ -294,9 +295,8 @@ class Algorithm:
         return value
 
     def _sums_of_angles(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr]:
-        """Sums that are the sine or the cosine of a sum of two joints."""
-        joints = {j.symbol for j in self.page.derivation.joints}
-        angles = sorted({f.args[0] for f in value.atoms(sp.sin)} & joints, key=str)
+        """Sums that are the sine or the cosine of a sum of two angles."""
+        angles = sorted({f.args[0] for f in value.atoms(sp.sin)}, key=str)
         found: dict[sp.Basic, sp.Expr] = {}
         for a, b in combinations(angles, 2):
             for sign in (1, -1):
@@ -337,6 +337,8 @@ class Algorithm:
                 branched.add(statement.symbol)
                 if self.is_pair(statement.symbol):  # the angle has the branches of its sine
                     branched |= self.means[statement.symbol].free_symbols
+                if self.model and statement.symbol in self.model.replaced:
+                    branched |= self.model.replaced[statement.symbol].free_symbols
             (each if used & branched else common).extend(parts)
         kind = "return" if sp.true in self.outputs else "let"
         answer = [(kind, text, "") for text in self._answers()]

@@ -229,6 +229,9 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         return rf"\{function}{power} {full}"
 
     def _print_atan(self, expr: sp.Expr, exp: str | None = None) -> str:
+        y, x = sp.fraction(sp.together(expr.args[0]))
+        if x != 1:  # SymPy makes it of an atan2 whose second argument is positive
+            return self._print_atan2(sp.atan2(y, x, evaluate=False))
         return rf"\arctan\left({self._print(expr.args[0])}\right)"
 
     def _print_atan2(self, expr: sp.Expr) -> str:

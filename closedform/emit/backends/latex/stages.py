@@ -210,6 +210,9 @@ class Stages:
         rest = [-t for t in terms if not t.free_symbols & held]
         if unknown and all(t.as_coeff_Mul()[0].is_negative for t in unknown):
             unknown, rest = [-t for t in unknown], [-t for t in rest]
+        negative = [t for t in unknown if t.as_coeff_Mul()[0].is_negative]
+        if len(unknown) == 2 and len(negative) == 1 and not rest:  # two terms are equal
+            unknown, rest = [t for t in unknown if t not in negative], [-negative[0]]
         left = self.page.lines.tidy(sp.Add(*unknown))
         text = self.page.math(left)
         if measure(text) > FITS * 0.6:

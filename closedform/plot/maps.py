@@ -229,7 +229,7 @@ def field(
         high = float(np.nanquantile(values, 0.995)) if np.isfinite(values).any() else 1.0
     image = ax.pcolormesh(*grid.sides, values, cmap="viridis", vmax=high, rasterized=True)
     ax.figure.colorbar(image, ax=ax, shrink=0.8, label=label)
-    if not grid.joints:
+    if not grid.joints and len(r.module.BRANCHES) > 1:
         ax.set_title(spoken(_branch_name(r, branch)))
     _name(ax, grid)
     return ax

@@ -114,7 +114,33 @@ kind = "prismatic"
 between = ["ground", "piston"]
 axis = [1, 0]
 """
-BASES = (("dh", DH), ("dh", SCARA), ("screws", SCREWS), ("loop", LOOP), ("loop", SLIDER))
+LINKAGE = """hand = "psi"
+[parameters]
+r = {value = "0.1", meaning = "crank"}
+[bodies]
+ground = {O = [0, 0], C = ["g", 0], G = ["g + h", 0]}
+crank = {O = [0, 0], A = ["r", 0]}
+rod1 = {length = "l"}
+lever = {C = [0, 0], B = ["s", 0], E = [0, "-s"]}
+rod2 = {length = "e"}
+flap = {G = ["g + h", 0], F = ["g + h + f", 0]}
+[joints]
+theta = {between = ["ground", "crank"], at = "O", driven = true}
+psi = {between = ["ground", "flap"], at = "G"}
+c = {between = ["ground", "lever"], at = "C"}
+a = {between = ["crank", "rod1"], at = "A"}
+b = {between = ["rod1", "lever"], at = "B"}
+p = {between = ["lever", "rod2"], at = "E"}
+q = {between = ["rod2", "flap"], at = "F"}
+"""
+BASES = (
+    ("dh", DH),
+    ("dh", SCARA),
+    ("screws", SCREWS),
+    ("loop", LOOP),
+    ("loop", SLIDER),
+    ("loop", LINKAGE),
+)
 
 FRAGMENTS = (
     "(x.attr)()", "().__class__.__bases__[0].__subclasses__()", "__import__('os').system('true')",

@@ -13,6 +13,7 @@ import pytest
 import sympy as sp
 from loop_files import derived, script_of
 
+from closedform import plot
 from closedform.scaffold.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
@@ -239,6 +240,11 @@ def test_peaucellier_draws_a_line(tmp_path: Path) -> None:
     assert whole.any(axis=-1).mean() > 0.5
     assert np.allclose(p[whole][:, 0], (v.l**2 - v.s**2) / (2 * v.c), atol=1e-12)
     assert np.ptp(p[whole][:, 1]) > 0.5
+    drawn = plot.mechanism(loop, [0.5])  # not in the first mode, whose rhombus has a free pin
+    hand = next(line for line in drawn.lines if line.get_marker() == "D")
+    place, status = loop.fk([0.5])
+    assert status[0] == SINGULAR
+    assert np.allclose(np.ravel(hand.get_data()), place[np.argmax(status == OK)])
 
 
 @pytest.mark.parametrize(

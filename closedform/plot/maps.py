@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
-from closedform.plot.postures import OK, spoken
-from closedform.plot.robot import Array, Robot, positions, singular_values
+from closedform.plot.postures import spoken
+from closedform.plot.robot import OK, Array, Robot, positions, singular_values
 from closedform.plot.style import colour, new_axes, styled
 from closedform.plot.symbols import equation, symbol
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from closedform.plot.postures import OK, regular_target, spoken
-from closedform.plot.robot import Array, Robot, positions
+from closedform.plot.postures import regular_target, spoken
+from closedform.plot.robot import OK, Array, Robot, positions
 from closedform.plot.style import colour, new_axes, styled
 from closedform.plot.symbols import symbol
 

@@ -14,12 +14,11 @@ from numpy.typing import ArrayLike
 from closedform.plot.axes import joint_axes
 from closedform.plot.diagram import Diagram
 from closedform.plot.labels import Layout, place
-from closedform.plot.robot import Array, Robot
+from closedform.plot.robot import OK, Array, Robot
 from closedform.plot.style import GROUND, colour, new_axes, new_panels, styled
 from closedform.plot.symbols import lengths, symbol
 
 NO_HUES: Mapping[str, int] = MappingProxyType({})
-OK = 0
 SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
 WRIST = 3
@@ -39,7 +38,7 @@ def mechanism(
     *,
     x: ArrayLike | None = None,
     params: Any = None,
-    mode: int = 0,
+    mode: int | None = None,
     ax: Any = None,
     labels: bool = True,
     axes: bool = True,
@@ -60,7 +59,8 @@ def mechanism(
     params
         the dimensions; by default those of the example
     mode
-        the assembly mode, for mechanisms that have several
+        the assembly mode, for mechanisms that have several; by default the first that is not
+        singular
     ax
         the axes to draw on, with a 3D projection unless the mechanism is planar
     labels
@@ -79,6 +79,7 @@ def mechanism(
     joints = _first(r) if q is None else np.asarray(q, dtype=float)
     if joints.shape != (len(robot.JOINTS),):
         raise ValueError(f"q must have the shape ({len(robot.JOINTS)},), not {joints.shape}")
+    mode = r.first_mode(joints) if mode is None else mode
     points = r.points(joints)[mode]
     if not np.isfinite(points).all():
         modes = [r.modes[k] for k, p in enumerate(r.points(joints)) if np.isfinite(p).all()]

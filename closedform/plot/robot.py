@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from closedform.robots.mechanism import given_of
 
 Array = NDArray[np.float64]
+OK = 0
 TRIALS = 400
 ELEVATION, AZIMUTH = 22.0, -58.0
 """The direction from which a drawing in space is seen, in degrees."""
@@ -89,6 +90,12 @@ class Robot:
     @property
     def modes(self) -> tuple[str, ...]:
         return tuple(self.module.ASSEMBLY_MODES)
+
+    def first_mode(self, q: ArrayLike) -> int:
+        """The first assembly mode that exists and is not singular; the first one if none is."""
+        if not self.modes or not self.has_forward_map:
+            return 0
+        return int(np.argmax(np.asarray(self.call("fk", q).status) == OK))
 
     @property
     def size(self) -> float:

@@ -447,7 +447,7 @@ def _mode_section(branch: str) -> Any:
 @styled
 def conditioning(robot: ModuleType) -> Any:
     """Figure 15: curves of equal condition number for two working modes."""
-    panels = new_panels(2, 1, size=(5.6, 5.6))
+    panels = new_panels(1, 2, size=(6.4, 3.3))
     params = robot.Parameters()
     y, away = np.linspace(-6.5, 13.5, GRID // 3), np.linspace(0.02, 13, GRID // 3)
     x = section(y, away[:, None])
@@ -478,7 +478,7 @@ def conditioning(robot: ModuleType) -> Any:
         Line2D([], [], color="#222222", linewidth=1.4, label=r"isotropic, $\kappa = 1$"),
         Line2D([], [], color=colour(1), linewidth=1.4, label="parallel singularities"),
         *bands,
-    ], columns=3)  # fmt: skip
+    ], columns=4)  # fmt: skip
     return panels[0]
 
 

@@ -42,6 +42,8 @@ def linkage(loop: Loop) -> LinkageLines | None:
     point_of_one = len(driven) == 1 and not follower
     if moving < FEW[len(driven)] or (moving == FEW[len(driven)] and not point_of_one):
         return None
+    if len(driven) == 2 and any(_without(loop, name) for name in loop.bodies):
+        return None  # a leg may leave out where its body is joined, and its messages say more
     points = _points(loop)
     _check_pins(loop, points)
     turning = {j.other(GROUND): j for j in driven}
@@ -72,8 +74,7 @@ def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
     for name, points in loop.bodies.items():
         if name not in loop.rods:
             found[name] = {_safe(p): at for p, at in points.items()}
-            missing = [j for j in loop.of(name) if j.at not in points]
-            if missing:
+            if missing := _without(loop, name):
                 raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
             continue
         ends = list(dict.fromkeys(_safe(j.at) for j in loop.of(name)))
@@ -85,6 +86,13 @@ def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
             zip(ends, (sp.zeros(2, 1), sp.Matrix([loop.rods[name], 0])), strict=True)
         )
     return found
+
+
+def _without(loop: Loop, name: str) -> list[Joint]:
+    """The joints of a body, unless it is a rod, at which it has no point."""
+    if name in loop.rods:
+        return []
+    return [j for j in loop.of(name) if j.at not in loop.bodies[name]]
 
 
 def _check_pins(loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]]) -> None:

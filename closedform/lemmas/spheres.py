@@ -114,8 +114,10 @@ def three_spheres(
 
     span = _vector(p, "d", [either(e, f) for e, f in zip(v, u, strict=True)])
     other = sp.Matrix([either(e, f) for e, f in zip(u, v, strict=True)])
-    a = sp.Matrix([p.let("a_x", choose(point, 1, span[0])), *span[1:]])
-    mu = p.let("mu", choose(point, 1, either(vv, uu)), nonnegative=True)
+    # where all coincide, a is as long as the mechanism, so that what is left of d is nothing to it
+    whole = p.let("whole", choose(sp.Eq(scale, 0), 1, scale), nonnegative=True)
+    a = sp.Matrix([p.let("a_x", choose(point, whole, span[0])), *span[1:]])
+    mu = p.let("mu", choose(point, whole**2, either(vv, uu)), nonnegative=True)
     over = p.let("over", 1 / mu, nonnegative=True)
     # The first product has lost its direction where the centres are nearly in line, but the others
     # are at right angles to a whatever it is.
@@ -124,8 +126,7 @@ def three_spheres(
     nu = p.let("nu", n.dot(n), nonnegative=True)
     line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
     equal = r1 == r2 == r3
-    # in a mechanism without size, only equal spheres are recognised as touching
-    beside, length = _perpendicular(p, a, scale if equal else choose(point, 1, scale))
+    beside, length = _perpendicular(p, a, whole)
     w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
     if equal:
         # nu + k (k - 1) mu as a product of differences: small if the last two centres are close

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 68 compare and select, 62 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
-#   skeleton: 131 compare and select, 113 add, 18 divide, 96 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 79 compare and select, 71 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 67 compare and select, 83 add, 12 divide, 121 multiply, 6 sincos, 1 sqrt
-#   jacobian: 80 compare and select, 101 add, 30 divide, 176 multiply, 6 sincos, 1 sqrt
-#   determinant: 64 compare and select, 83 add, 14 divide, 126 multiply, 6 sincos, 1 sqrt
-#   singularities: 69 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
-#   condition_number: 66 compare and select, 121 add, 14 divide, 173 multiply, 6 sincos, 3 sqrt
-#   constraint: 63 compare and select, 93 add, 12 divide, 159 multiply, 6 sincos, 1 sqrt
+#   fk: 70 compare and select, 62 add, 12 divide, 98 multiply, 6 sincos, 1 sqrt
+#   skeleton: 133 compare and select, 113 add, 18 divide, 97 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 81 compare and select, 71 add, 12 divide, 98 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 69 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
+#   jacobian: 82 compare and select, 101 add, 30 divide, 177 multiply, 6 sincos, 1 sqrt
+#   determinant: 66 compare and select, 83 add, 14 divide, 127 multiply, 6 sincos, 1 sqrt
+#   singularities: 71 compare and select, 83 add, 12 divide, 123 multiply, 6 sincos, 1 sqrt
+#   condition_number: 68 compare and select, 121 add, 14 divide, 174 multiply, 6 sincos, 3 sqrt
+#   constraint: 65 compare and select, 93 add, 12 divide, 160 multiply, 6 sincos, 1 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 14 divide, 174 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -182,12 +182,13 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t13 = size * size
     t14 = ops.vanishing * ops.vanishing * t13
     all_same = u_u + v_v <= t14
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t14
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t15 = ops.select(same, t12, t9)
     d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t16 = ops.select(same, t9, t12)
     t17 = ops.select(same, t7, t11)
     t18 = a_x * t16 - t15 * t17
@@ -207,9 +208,9 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 0.75
     t30 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * s_w)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -363,12 +364,13 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t33 = size * size
     t34 = ops.vanishing * ops.vanishing * t33
     all_same = u_u + v_v <= t34
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t34
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t35 = ops.select(same, t32, t22)
     d_x = ops.select(same, t28, t14)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t36 = ops.select(same, t22, t32)
     t37 = ops.select(same, t14, t28)
     t38 = a_x * t36 - t35 * t37
@@ -389,9 +391,9 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t49 = l * size * 0.9375
     t50 = l * l
     t51 = mu * t47
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t35 * a_x)
-    t52 = size * (t35 + a_x * s_w)
+    t52 = whole * (t35 + a_x * s_w)
     t53 = 2.0 * (g_1 * g_1) + t52 * t52
     part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
     t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
@@ -692,12 +694,13 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t13 = size * size
     t14 = ops.vanishing * ops.vanishing * t13
     all_same = u_u + v_v <= t14
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t14
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t15 = ops.select(same, t12, t9)
     d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t16 = ops.select(same, t9, t12)
     t17 = ops.select(same, t7, t11)
     t18 = a_x * t16 - t15 * t17
@@ -717,9 +720,9 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 0.9375
     t30 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * s_w)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -864,12 +867,13 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t15 = size * size
     t16 = ops.vanishing * ops.vanishing * t15
     all_same = u_u + v_v <= t16
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t16
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t17 = ops.select(same, t14, t10)
     d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t18 = ops.select(same, t10, t14)
     t19 = ops.select(same, t8, t13)
     t20 = a_x * t18 - t17 * t19
@@ -889,9 +893,9 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 0.9375
     t32 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * s_w)
+    t33 = whole * (t17 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
@@ -1034,12 +1038,13 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t15 = size * size
     t16 = ops.vanishing * ops.vanishing * t15
     all_same = u_u + v_v <= t16
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t16
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t17 = ops.select(same, t14, t10)
     d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t18 = ops.select(same, t10, t14)
     t19 = ops.select(same, t8, t13)
     t20 = a_x * t18 - t17 * t19
@@ -1059,9 +1064,9 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 0.9375
     t32 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * s_w)
+    t33 = whole * (t17 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
@@ -1247,12 +1252,13 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t15 = size * size
     t16 = ops.vanishing * ops.vanishing * t15
     all_same = u_u + v_v <= t16
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t16
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t17 = ops.select(same, t14, t10)
     d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t18 = ops.select(same, t10, t14)
     t19 = ops.select(same, t8, t13)
     t20 = a_x * t18 - t17 * t19
@@ -1272,9 +1278,9 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 0.9375
     t32 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * s_w)
+    t33 = whole * (t17 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
@@ -1414,12 +1420,13 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t15 = size * size
     t16 = ops.vanishing * ops.vanishing * t15
     all_same = u_u + v_v <= t16
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t16
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t17 = ops.select(same, t14, t10)
     d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t18 = ops.select(same, t10, t14)
     t19 = ops.select(same, t8, t13)
     t20 = a_x * t18 - t17 * t19
@@ -1439,9 +1446,9 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
     t31 = l * size * 0.9375
     t32 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
-    t33 = size * (t17 + a_x * s_w)
+    t33 = whole * (t17 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
     part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
     t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
@@ -1586,12 +1593,13 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t13 = size * size
     t14 = ops.vanishing * ops.vanishing * t13
     all_same = u_u + v_v <= t14
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t14
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t15 = ops.select(same, t12, t9)
     d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t16 = ops.select(same, t9, t12)
     t17 = ops.select(same, t7, t11)
     t18 = a_x * t16 - t15 * t17
@@ -1611,9 +1619,9 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 0.9375
     t30 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * s_w)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
@@ -1780,12 +1788,13 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t13 = size * size
     t14 = ops.vanishing * ops.vanishing * t13
     all_same = u_u + v_v <= t14
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t14
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     t15 = ops.select(same, t12, t9)
     d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, 1.0, d_x)
+    a_x = ops.select(all_same, whole, d_x)
     t16 = ops.select(same, t9, t12)
     t17 = ops.select(same, t7, t11)
     t18 = a_x * t16 - t15 * t17
@@ -1805,9 +1814,9 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 0.9375
     t30 = l * l
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = size * (t15 + a_x * s_w)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
     part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
     t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 67 compare and select, 48 add, 16 divide, 72 multiply, 1 sqrt
-#   skeleton: 106 compare and select, 82 add, 18 divide, 71 multiply, 1 sqrt
-#   jacobian_parallel: 76 compare and select, 56 add, 16 divide, 72 multiply, 1 sqrt
-#   jacobian_serial: 64 compare and select, 42 add, 14 divide, 63 multiply, 1 sqrt
-#   jacobian: 79 compare and select, 74 add, 34 divide, 123 multiply, 1 sqrt
-#   determinant: 61 compare and select, 42 add, 16 divide, 68 multiply, 1 sqrt
-#   singularities: 66 compare and select, 42 add, 14 divide, 64 multiply, 1 sqrt
-#   condition_number: 65 compare and select, 106 add, 18 divide, 142 multiply, 3 sqrt
-#   constraint: 62 compare and select, 64 add, 22 divide, 96 multiply, 1 sqrt
+#   fk: 69 compare and select, 48 add, 16 divide, 73 multiply, 1 sqrt
+#   skeleton: 108 compare and select, 82 add, 18 divide, 72 multiply, 1 sqrt
+#   jacobian_parallel: 78 compare and select, 56 add, 16 divide, 73 multiply, 1 sqrt
+#   jacobian_serial: 66 compare and select, 42 add, 14 divide, 64 multiply, 1 sqrt
+#   jacobian: 81 compare and select, 74 add, 34 divide, 124 multiply, 1 sqrt
+#   determinant: 63 compare and select, 42 add, 16 divide, 69 multiply, 1 sqrt
+#   singularities: 68 compare and select, 42 add, 14 divide, 65 multiply, 1 sqrt
+#   condition_number: 67 compare and select, 106 add, 18 divide, 143 multiply, 3 sqrt
+#   constraint: 64 compare and select, 64 add, 22 divide, 97 multiply, 1 sqrt
 #   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -152,11 +152,12 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -175,9 +176,9 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.1875
     t21 = l * l
-    t22 = size * t10
+    t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -297,11 +298,12 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t12 = size * size
     t13 = ops.vanishing * ops.vanishing * t12
     all_same = u_u + v_v <= t13
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t6)
+    a_x = ops.select(all_same, whole, -t6)
     t14 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t14 + t6 * d_y
     t15 = ops.select(same, t11, t3)
@@ -321,9 +323,9 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t25 = l * size * 0.234375
     t26 = l * l
     t27 = mu * t23
-    t28 = size * t15
+    t28 = whole * t15
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t29 = 2.0 * (t28 * t28) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t29, 1.0 / (mu * nu))
     t30 = ops.select(in_line, 0.0, t27 * part * 0.5)
@@ -594,11 +596,12 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -617,9 +620,9 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
+    t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -740,11 +743,12 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -763,8 +767,8 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
-    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = whole * t10
+    g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -860,11 +864,12 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -883,9 +888,9 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
+    t22 = whole * t10
     s_w = ops.sign(a_x * d_y)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -1040,11 +1045,12 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -1063,8 +1069,8 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
-    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = whole * t10
+    g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -1161,11 +1167,12 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -1184,8 +1191,8 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
-    g_2 = size * (d_y + a_x * ops.sign(a_x * d_y))
+    t22 = whole * t10
+    g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -1286,11 +1293,12 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -1309,9 +1317,9 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
+    t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
@@ -1463,11 +1471,12 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t7 = size * size
     t8 = ops.vanishing * ops.vanishing * t7
     all_same = u_u + v_v <= t8
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t8
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, c3_y, -c3_y)
-    a_x = ops.select(all_same, 1.0, -t4)
+    a_x = ops.select(all_same, whole, -t4)
     t9 = ops.select(same, -c3_y, c3_y)
     m_z = a_x * t9 + t4 * d_y
     t10 = ops.select(same, t6, t3)
@@ -1486,9 +1495,9 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
     t20 = l * size * 0.234375
     t21 = l * l
-    t22 = size * t10
+    t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
     t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)

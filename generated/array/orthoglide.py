@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 63 compare and select, 38 add, 12 divide, 69 multiply, 1 sqrt
-#   skeleton: 80 compare and select, 51 add, 13 divide, 69 multiply, 1 sqrt
-#   jacobian_parallel: 68 compare and select, 43 add, 12 divide, 69 multiply, 1 sqrt
-#   jacobian_serial: 62 compare and select, 41 add, 12 divide, 69 multiply, 1 sqrt
-#   jacobian: 75 compare and select, 61 add, 30 divide, 112 multiply, 1 sqrt
-#   determinant: 59 compare and select, 41 add, 14 divide, 74 multiply, 1 sqrt
-#   singularities: 64 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
-#   condition_number: 61 compare and select, 93 add, 14 divide, 127 multiply, 3 sqrt
-#   constraint: 58 compare and select, 45 add, 12 divide, 77 multiply, 1 sqrt
+#   fk: 65 compare and select, 38 add, 12 divide, 70 multiply, 1 sqrt
+#   skeleton: 82 compare and select, 51 add, 13 divide, 70 multiply, 1 sqrt
+#   jacobian_parallel: 70 compare and select, 43 add, 12 divide, 70 multiply, 1 sqrt
+#   jacobian_serial: 64 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
+#   jacobian: 77 compare and select, 61 add, 30 divide, 113 multiply, 1 sqrt
+#   determinant: 61 compare and select, 41 add, 14 divide, 75 multiply, 1 sqrt
+#   singularities: 66 compare and select, 41 add, 12 divide, 71 multiply, 1 sqrt
+#   condition_number: 63 compare and select, 93 add, 14 divide, 128 multiply, 3 sqrt
+#   constraint: 60 compare and select, 45 add, 12 divide, 78 multiply, 1 sqrt
 #   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -136,11 +136,12 @@ def _fk(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -159,9 +160,9 @@ def _fk(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.1875
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -270,11 +271,12 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -293,9 +295,9 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -520,11 +522,12 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -543,9 +546,9 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -665,11 +668,12 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -688,9 +692,9 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -790,11 +794,12 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -813,9 +818,9 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -962,11 +967,12 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -985,9 +991,9 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -1083,11 +1089,12 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -1106,9 +1113,9 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -1212,11 +1219,12 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -1235,9 +1243,9 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
@@ -1384,11 +1392,12 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t3 = size * size
     t4 = ops.vanishing * ops.vanishing * t3
     all_same = u_u + v_v <= t4
+    whole = ops.select((size == 0.0), 1.0, size)
     same = u_u <= t4
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     over = 1.0 / mu
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, 1.0, -rho1)
+    a_x = ops.select(all_same, whole, -rho1)
     t5 = ops.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = ops.select(same, rho3, 0.0)
@@ -1407,9 +1416,9 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.234375
     t15 = L * L
-    g_1 = size * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
     part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
     t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)

@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 100 compare and select, 75 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
-#   skeleton: 108 compare and select, 78 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 111 compare and select, 84 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 97 compare and select, 84 add, 14 divide, 130 multiply, 7 sincos, 7 sqrt
-#   jacobian: 106 compare and select, 102 add, 26 divide, 168 multiply, 7 sincos, 7 sqrt
-#   singularities: 99 compare and select, 84 add, 14 divide, 132 multiply, 7 sincos, 7 sqrt
-#   condition_number: 106 compare and select, 128 add, 22 divide, 177 multiply, 7 sincos, 11 sqrt
+#   fk: 101 compare and select, 75 add, 16 divide, 117 multiply, 7 sincos, 7 sqrt
+#   skeleton: 109 compare and select, 78 add, 14 divide, 119 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 112 compare and select, 84 add, 14 divide, 119 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 98 compare and select, 84 add, 14 divide, 131 multiply, 7 sincos, 7 sqrt
+#   jacobian: 107 compare and select, 102 add, 26 divide, 169 multiply, 7 sincos, 7 sqrt
+#   singularities: 100 compare and select, 84 add, 14 divide, 133 multiply, 7 sincos, 7 sqrt
+#   condition_number: 107 compare and select, 128 add, 22 divide, 178 multiply, 7 sincos, 11 sqrt
 #   ik: 149 compare and select, 107 add, 4 atan2, 15 divide, 132 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -151,7 +151,8 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -165,7 +166,7 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     over = 1.0 / mu
     t23 = ops.select(same, c1_y, t10)
     t24 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t24)
+    a_x = ops.select(all_same, whole, -t24)
     t25 = ops.select(same, t10, c1_y)
     t26 = ops.select(same, t8, c1_x)
     t27 = a_x * t25 + t23 * t26
@@ -182,87 +183,86 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t31 * t31 + t33 * t33 + t35 * t35
     t36 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t37 = ops.select(all_same, 1.0, r)
-    t38 = t28 * t37
+    t37 = whole * t28
     s_w = ops.sign(-(t23 * a_x))
-    t39 = t37 * (t23 - a_x * s_w)
-    t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t26 - t23 * t25 - t28 * t29
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
+    t38 = whole * (t23 - a_x * s_w)
+    t39 = 2.0 * (t37 * t37) + t38 * t38
+    length_n = ops.sqrt(ops.select(in_line, over * t39, nu))
+    t40 = a_x * t26 - t23 * t25 - t28 * t29
+    t41 = length_n * (1.0 / (length_a * length_n)) * t40
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t36 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t47)
-    t49 = t46 - left
-    unreachable = ops.opposite(t48 & (-t22 <= t49))
+    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t43 = t41 + ops.select(all_same, 0.0, t42)
+    t44 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t44)
+    left = nu - t36 + t43 * t43 + rho * rho
+    t45 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t46 = left + t45
+    t47 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t46)
+    t48 = t45 - left
+    unreachable = ops.opposite(t47 & (-t22 <= t48))
     failed = invalid | unreachable
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t34
-    t55 = over_2 * t32
-    w_x = ops.select(in_line, -(t38 * s_w), t23 * t54 - t28 * t55)
-    t56 = ops.opposite(all_same)
-    t57 = t50 & t56
-    length_a_2 = ops.sqrt(ops.select(t50 | (t57 & t56), mu, 1.0))
-    t58 = over_2 * t30
-    nu_2 = t58 * t58 + t55 * t55 + t54 * t54
-    t59 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t59)
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t60
+    t49 = ops.opposite(failed)
+    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t21)
+    t50 = flat | in_line
+    t51 = t49 & ops.opposite(t50)
+    t52 = t49 | (t51 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t52, mu, 1.0)
+    t53 = over_2 * t34
+    t54 = over_2 * t32
+    w_x = ops.select(in_line, -(t37 * s_w), t23 * t53 - t28 * t54)
+    t55 = ops.opposite(all_same)
+    t56 = t49 & t55
+    length_a_2 = ops.sqrt(ops.select(t49 | (t56 & t55), mu, 1.0))
+    t57 = over_2 * t30
+    nu_2 = t57 * t57 + t54 * t54 + t53 * t53
+    t58 = ops.select(t52, ops.select(in_line, over_2 * t39, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t58)
+    t59 = ops.select(t49, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t59
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
-    t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
-    share_2 = 1.0 / ops.select(t57, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
-    t63 = ops.select(t57, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t63))
+    t60 = D_2 + r_1
+    outer_2 = ops.max(t60 - t15, 0.0)
+    t61 = D_2 - r_1
+    inner_2 = ops.max(t15 + t61, 0.0)
+    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t61, 0.0)
+    t62 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t15 + t60), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
     over_a = length_n_2 * part
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t36 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    t67 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t67)
-    t68 = w_x * h
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
+    t64 = over_a * t40 + along
+    left_2 = nu_2 - t36 + t64 * t64 + rho_2 * rho_2
+    t65 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t65, 0.0)
+    lower = ops.max(t65 - left_2, 0.0)
+    half = rho_2 / ops.select(t51, upper + lower, 1.0)
+    t66 = ops.sqrt(ops.select(t51, upper * lower, 1.0))
+    h = part * ops.select(t50, rho_2, 2.0 * half * t66)
+    t67 = w_x * h
+    Y = ops.select(t50, 0.0, length_a_2 * part * half * (upper - lower))
     X = over_a * along
-    t69 = t58 * Y - (c1_x - t24 * X)
-    w_y = ops.select(in_line, -t38, a_x * t54 + t28 * t58)
-    t70 = w_y * h
-    t71 = t55 * Y - (c1_y - t23 * X)
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t23 * t58))
-    t72 = w_z * h
-    t73 = t54 * Y - (c1_z - t28 * X)
-    t74 = ops.status(invalid, unreachable, in_line)
+    t68 = t57 * Y - (c1_x - t24 * X)
+    w_y = ops.select(in_line, -t37, a_x * t53 + t28 * t57)
+    t69 = w_y * h
+    t70 = t54 * Y - (c1_y - t23 * X)
+    w_z = ops.select(in_line, t38, -(a_x * t54 + t23 * t57))
+    t71 = w_z * h
+    t72 = t53 * Y - (c1_z - t28 * X)
+    t73 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t68 - t69),
-        ops.select(failed, ops.nan, t70 - t71),
-        ops.select(failed, ops.nan, t72 - t73),
-        ops.select(failed, ops.nan, -(t69 + t68)),
-        ops.select(failed, ops.nan, -(t71 + t70)),
-        ops.select(failed, ops.nan, -(t73 + t72)),
-        t74,
-        t74,
+        ops.select(failed, ops.nan, t67 - t68),
+        ops.select(failed, ops.nan, t69 - t70),
+        ops.select(failed, ops.nan, t71 - t72),
+        ops.select(failed, ops.nan, -(t68 + t67)),
+        ops.select(failed, ops.nan, -(t70 + t69)),
+        ops.select(failed, ops.nan, -(t72 + t71)),
+        t73,
+        t73,
     )
 
 
@@ -359,7 +359,8 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     r_1 = ops.abs(s_beta1_half) * t17
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t16
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     t19 = r_1 - D
@@ -373,7 +374,7 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     over = 1.0 / mu
     t27 = ops.select(same, c1_y, t13)
     t28 = ops.select(same, c1_x, t10)
-    a_x = ops.select(all_same, 1.0, -t28)
+    a_x = ops.select(all_same, whole, -t28)
     t29 = ops.select(same, t13, c1_y)
     t30 = ops.select(same, t10, c1_x)
     t31 = a_x * t29 + t27 * t30
@@ -390,128 +391,127 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t35 * t35 + t37 * t37 + t39 * t39
     t40 = ops.select(same, r_2 * r_2, t15)
     in_line = nu <= t16
-    t41 = ops.select(all_same, 1.0, r)
-    t42 = t32 * t41
+    t41 = whole * t32
     s_w = ops.sign(-(t27 * a_x))
-    t43 = t41 * (t27 - a_x * s_w)
-    t44 = 2.0 * (t42 * t42) + t43 * t43
-    length_n = ops.sqrt(ops.select(in_line, over * t44, nu))
-    t45 = a_x * t30 - t27 * t29 - t32 * t33
-    t46 = length_n * (1.0 / (length_a * length_n)) * t45
+    t42 = whole * (t27 - a_x * s_w)
+    t43 = 2.0 * (t41 * t41) + t42 * t42
+    length_n = ops.sqrt(ops.select(in_line, over * t43, nu))
+    t44 = a_x * t30 - t27 * t29 - t32 * t33
+    t45 = length_n * (1.0 / (length_a * length_n)) * t44
     outer = ops.max(t22, 0.0)
     inner = ops.max(t23, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t20, 0.0)
-    t47 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t48 = t46 + ops.select(all_same, 0.0, t47)
-    t49 = ops.sqrt(outer * inner * slack * (t18 + t21))
-    rho = ops.select(all_same, r_1, share * t49)
-    left = nu - t40 + t48 * t48 + rho * rho
-    t50 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t51 = left + t50
-    t52 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (t26 <= t51)
-    t53 = t50 - left
-    failed = invalid | ops.opposite(t52 & (t26 <= t53))
-    t54 = ops.select(failed, ops.nan, 0.0)
-    t55 = ops.select(failed, ops.nan, c1_x)
-    t56 = ops.select(failed, ops.nan, c1_y)
-    t57 = ops.select(failed, ops.nan, c1_z)
-    t58 = ops.select(failed, ops.nan, t8)
-    t59 = ops.select(failed, ops.nan, t12)
-    t60 = ops.select(failed, ops.nan, -t9)
-    t61 = ops.select(failed, ops.nan, c2_y)
-    t62 = ops.select(failed, ops.nan, c2_z)
-    t63 = ops.opposite(failed)
-    flat = ops.max(t51, 0.0) + ops.max(t53, 0.0) <= ops.vanishing * (r * t24)
-    t64 = flat | in_line
-    t65 = t63 & ops.opposite(t64)
-    t66 = t63 | (t65 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t66, mu, 1.0)
-    t67 = over_2 * t34
-    t68 = over_2 * t36
-    t69 = over_2 * t38
-    nu_2 = t67 * t67 + t68 * t68 + t69 * t69
-    t70 = ops.select(t66, ops.select(in_line, over_2 * t44, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t70)
-    t71 = ops.opposite(all_same)
-    t72 = t63 & t71
-    length_a_2 = ops.sqrt(ops.select(t63 | (t72 & t71), mu, 1.0))
-    t73 = ops.select(t63, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t73
+    t46 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t47 = t45 + ops.select(all_same, 0.0, t46)
+    t48 = ops.sqrt(outer * inner * slack * (t18 + t21))
+    rho = ops.select(all_same, r_1, share * t48)
+    left = nu - t40 + t47 * t47 + rho * rho
+    t49 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t50 = left + t49
+    t51 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (t26 <= t50)
+    t52 = t49 - left
+    failed = invalid | ops.opposite(t51 & (t26 <= t52))
+    t53 = ops.select(failed, ops.nan, 0.0)
+    t54 = ops.select(failed, ops.nan, c1_x)
+    t55 = ops.select(failed, ops.nan, c1_y)
+    t56 = ops.select(failed, ops.nan, c1_z)
+    t57 = ops.select(failed, ops.nan, t8)
+    t58 = ops.select(failed, ops.nan, t12)
+    t59 = ops.select(failed, ops.nan, -t9)
+    t60 = ops.select(failed, ops.nan, c2_y)
+    t61 = ops.select(failed, ops.nan, c2_z)
+    t62 = ops.opposite(failed)
+    flat = ops.max(t50, 0.0) + ops.max(t52, 0.0) <= ops.vanishing * (r * t24)
+    t63 = flat | in_line
+    t64 = t62 & ops.opposite(t63)
+    t65 = t62 | (t64 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t65, mu, 1.0)
+    t66 = over_2 * t34
+    t67 = over_2 * t36
+    t68 = over_2 * t38
+    nu_2 = t66 * t66 + t67 * t67 + t68 * t68
+    t69 = ops.select(t65, ops.select(in_line, over_2 * t43, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t69)
+    t70 = ops.opposite(all_same)
+    t71 = t62 & t70
+    length_a_2 = ops.sqrt(ops.select(t62 | (t71 & t70), mu, 1.0))
+    t72 = ops.select(t62, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t72
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t74 = r_1 + D_2
-    outer_2 = ops.max(t74 - t18, 0.0)
-    t75 = r_1 - D_2
-    inner_2 = ops.max(t18 - t75, 0.0)
-    share_2 = 1.0 / ops.select(t72, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t18 + t75, 0.0)
-    t76 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t76 * 0.5)
+    t73 = r_1 + D_2
+    outer_2 = ops.max(t73 - t18, 0.0)
+    t74 = r_1 - D_2
+    inner_2 = ops.max(t18 - t74, 0.0)
+    share_2 = 1.0 / ops.select(t71, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t18 + t74, 0.0)
+    t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
     X = over_a * along
-    t77 = ops.select(t72, outer_2 * inner_2 * slack_2 * (t18 + t74), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t77))
-    t78 = over_a * t45 + along
-    left_2 = nu_2 - t40 + t78 * t78 + rho_2 * rho_2
-    t79 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t79, 0.0)
-    lower = ops.max(t79 - left_2, 0.0)
-    half = rho_2 / ops.select(t65, upper + lower, 1.0)
-    Y = ops.select(t64, 0.0, length_a_2 * part * half * (upper - lower))
-    t80 = t28 * X + t67 * Y
-    w_x = ops.select(in_line, -(t42 * s_w), t27 * t69 - t32 * t68)
-    t81 = ops.sqrt(ops.select(t65, upper * lower, 1.0))
-    h = part * ops.select(t64, rho_2, 2.0 * half * t81)
-    t82 = w_x * h
-    t83 = ops.select(failed, ops.nan, c1_x - (t80 - t82))
-    t84 = t27 * X + t68 * Y
-    w_y = ops.select(in_line, -t42, a_x * t69 + t32 * t67)
-    t85 = w_y * h
-    t86 = ops.select(failed, ops.nan, c1_y - (t84 - t85))
-    t87 = t32 * X + t69 * Y
-    w_z = ops.select(in_line, t43, -(a_x * t68 + t27 * t67))
-    t88 = w_z * h
-    t89 = ops.select(failed, ops.nan, c1_z - (t87 - t88))
-    t90 = ops.select(failed, ops.nan, c1_x - (t80 + t82))
-    t91 = ops.select(failed, ops.nan, c1_y - (t84 + t85))
-    t92 = ops.select(failed, ops.nan, c1_z - (t87 + t88))
+    t76 = ops.select(t71, outer_2 * inner_2 * slack_2 * (t18 + t73), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t76))
+    t77 = over_a * t44 + along
+    left_2 = nu_2 - t40 + t77 * t77 + rho_2 * rho_2
+    t78 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t78, 0.0)
+    lower = ops.max(t78 - left_2, 0.0)
+    half = rho_2 / ops.select(t64, upper + lower, 1.0)
+    Y = ops.select(t63, 0.0, length_a_2 * part * half * (upper - lower))
+    t79 = t28 * X + t66 * Y
+    w_x = ops.select(in_line, -(t41 * s_w), t27 * t68 - t32 * t67)
+    t80 = ops.sqrt(ops.select(t64, upper * lower, 1.0))
+    h = part * ops.select(t63, rho_2, 2.0 * half * t80)
+    t81 = w_x * h
+    t82 = ops.select(failed, ops.nan, c1_x - (t79 - t81))
+    t83 = t27 * X + t67 * Y
+    w_y = ops.select(in_line, -t41, a_x * t68 + t32 * t66)
+    t84 = w_y * h
+    t85 = ops.select(failed, ops.nan, c1_y - (t83 - t84))
+    t86 = t32 * X + t68 * Y
+    w_z = ops.select(in_line, t42, -(a_x * t67 + t27 * t66))
+    t87 = w_z * h
+    t88 = ops.select(failed, ops.nan, c1_z - (t86 - t87))
+    t89 = ops.select(failed, ops.nan, c1_x - (t79 + t81))
+    t90 = ops.select(failed, ops.nan, c1_y - (t83 + t84))
+    t91 = ops.select(failed, ops.nan, c1_z - (t86 + t87))
     return (
+        t53,
+        t53,
+        t53,
         t54,
-        t54,
-        t54,
-        t55,
-        t54,
+        t53,
+        t53,
         t54,
         t55,
         t56,
         t57,
         t58,
+        t53,
         t59,
-        t54,
         t60,
         t61,
-        t62,
-        t83,
-        t86,
+        t82,
+        t85,
+        t88,
+        t53,
+        t53,
+        t53,
+        t54,
+        t53,
+        t53,
+        t54,
+        t55,
+        t56,
+        t57,
+        t58,
+        t53,
+        t59,
+        t60,
+        t61,
         t89,
-        t54,
-        t54,
-        t54,
-        t55,
-        t54,
-        t54,
-        t55,
-        t56,
-        t57,
-        t58,
-        t59,
-        t54,
-        t60,
-        t61,
-        t62,
         t90,
         t91,
-        t92,
     )
 
 
@@ -595,7 +595,8 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -610,7 +611,7 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
     t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t25)
+    a_x = ops.select(all_same, whole, -t25)
     t26 = ops.select(same, t10, c1_y)
     t27 = ops.select(same, t8, c1_x)
     t28 = a_x * t26 + t24 * t27
@@ -627,101 +628,100 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     nu = t32 * t32 + t34 * t34 + t36 * t36
     t37 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t38 = ops.select(all_same, 1.0, r)
-    t39 = t29 * t38
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t40 = t38 * (t24 - a_x * s_w)
-    t41 = 2.0 * (t39 * t39) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t27 - t24 * t26 - t29 * t30
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t37 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t23 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t21)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = t51 | (t53 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t54, mu, 1.0)
-    t55 = over_2 * t31
-    t56 = over_2 * t33
-    t57 = over_2 * t35
-    nu_2 = t55 * t55 + t56 * t56 + t57 * t57
-    t58 = ops.select(t54, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.opposite(all_same)
-    t60 = t51 & t59
-    length_a_2 = ops.sqrt(ops.select(t51 | (t60 & t59), mu, 1.0))
-    t61 = ops.select(t51, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t61
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t62 = D_2 + r_1
-    outer_2 = ops.max(t62 - t15, 0.0)
-    t63 = D_2 - r_1
-    inner_2 = ops.max(t15 + t63, 0.0)
-    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t63, 0.0)
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t65 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t15 + t62), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t65))
-    t66 = over_a * t42 + along
-    left_2 = nu_2 - t37 + t66 * t66 + rho_2 * rho_2
-    t67 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t67, 0.0)
-    lower = ops.max(t67 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, length_a_2 * part * half * (upper - lower))
-    t68 = t25 * X + t55 * Y
-    w_x = ops.select(in_line, -(t39 * s_w), t24 * t57 - t29 * t56)
-    t69 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t69)
-    t70 = w_x * h
-    t71 = t68 - t70
-    t72 = t24 * X + t56 * Y
-    w_y = ops.select(in_line, -t39, a_x * t57 + t29 * t55)
-    t73 = w_y * h
-    t74 = t72 - t73
-    t75 = t29 * X + t57 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t56 + t24 * t55))
-    t76 = w_z * h
-    t77 = t75 - t76
-    t78 = t68 + t70
-    t79 = t72 + t73
-    t80 = t75 + t76
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    t71 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    t74 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    t77 = t67 + t69
+    t78 = t71 + t72
+    t79 = t74 + t75
     return (
-        ops.select(failed, ops.nan, c1_x - t71),
-        ops.select(failed, ops.nan, c1_y - t74),
-        ops.select(failed, ops.nan, c1_z - t77),
-        ops.select(failed, ops.nan, -t71),
-        ops.select(failed, ops.nan, -t74),
+        ops.select(failed, ops.nan, c1_x - t70),
+        ops.select(failed, ops.nan, c1_y - t73),
+        ops.select(failed, ops.nan, c1_z - t76),
+        ops.select(failed, ops.nan, -t70),
+        ops.select(failed, ops.nan, -t73),
+        ops.select(failed, ops.nan, -t76),
+        ops.select(failed, ops.nan, t8 - t70),
+        ops.select(failed, ops.nan, t10 - t73),
+        ops.select(failed, ops.nan, t11 - t76),
+        ops.select(failed, ops.nan, c1_x - t77),
+        ops.select(failed, ops.nan, c1_y - t78),
+        ops.select(failed, ops.nan, c1_z - t79),
         ops.select(failed, ops.nan, -t77),
-        ops.select(failed, ops.nan, t8 - t71),
-        ops.select(failed, ops.nan, t10 - t74),
-        ops.select(failed, ops.nan, t11 - t77),
-        ops.select(failed, ops.nan, c1_x - t78),
-        ops.select(failed, ops.nan, c1_y - t79),
-        ops.select(failed, ops.nan, c1_z - t80),
         ops.select(failed, ops.nan, -t78),
         ops.select(failed, ops.nan, -t79),
-        ops.select(failed, ops.nan, -t80),
-        ops.select(failed, ops.nan, t8 - t78),
-        ops.select(failed, ops.nan, t10 - t79),
-        ops.select(failed, ops.nan, t11 - t80),
+        ops.select(failed, ops.nan, t8 - t77),
+        ops.select(failed, ops.nan, t10 - t78),
+        ops.select(failed, ops.nan, t11 - t79),
     )
 
 
@@ -805,7 +805,8 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -820,7 +821,7 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
     t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t25)
+    a_x = ops.select(all_same, whole, -t25)
     t26 = ops.select(same, t10, c1_y)
     t27 = ops.select(same, t8, c1_x)
     t28 = a_x * t26 + t24 * t27
@@ -837,90 +838,89 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     nu = t32 * t32 + t34 * t34 + t36 * t36
     t37 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t38 = ops.select(all_same, 1.0, r)
-    t39 = t29 * t38
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t40 = t38 * (t24 - a_x * s_w)
-    t41 = 2.0 * (t39 * t39) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t27 - t24 * t26 - t29 * t30
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t37 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t23 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t21)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = t51 | (t53 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t54, mu, 1.0)
-    t55 = over_2 * t31
-    t56 = over_2 * t33
-    t57 = over_2 * t35
-    nu_2 = t55 * t55 + t56 * t56 + t57 * t57
-    t58 = ops.select(t54, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.opposite(all_same)
-    t60 = t51 & t59
-    length_a_2 = ops.sqrt(ops.select(t51 | (t60 & t59), mu, 1.0))
-    t61 = ops.select(t51, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t61
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t62 = D_2 + r_1
-    outer_2 = ops.max(t62 - t15, 0.0)
-    t63 = D_2 - r_1
-    inner_2 = ops.max(t15 + t63, 0.0)
-    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t63, 0.0)
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t65 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t15 + t62), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t65))
-    t66 = over_a * t42 + along
-    left_2 = nu_2 - t37 + t66 * t66 + rho_2 * rho_2
-    t67 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t67, 0.0)
-    lower = ops.max(t67 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, length_a_2 * part * half * (upper - lower))
-    t68 = t24 * X + t56 * Y
-    w_y = ops.select(in_line, -t39, a_x * t57 + t29 * t55)
-    t69 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t69)
-    t70 = w_y * h
-    t71 = t68 - t70
-    t72 = t29 * X + t57 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t56 + t24 * t55))
-    t73 = w_z * h
-    t74 = t72 - t73
-    t75 = ops.select(failed, ops.nan, c1_z * t71 - c1_y * t74)
-    t76 = s_gamma * c2_z
-    t77 = t25 * X + t55 * Y
-    w_x = ops.select(in_line, -(t39 * s_w), t24 * t57 - t29 * t56)
-    t78 = w_x * h
-    t79 = c_gamma * c2_z
-    B_22 = t76 * (t8 - (t77 - t78)) - t79 * (t10 - t71) - t6 * (t11 + t74)
-    t80 = t68 + t70
-    t81 = t72 + t73
-    t82 = ops.select(failed, ops.nan, c1_z * t80 - c1_y * t81)
-    B_22_below = t76 * (t8 - (t77 + t78)) - t79 * (t10 - t80) - t6 * (t11 + t81)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t75,
+        t74,
         ops.select(failed, ops.nan, B_22),
-        t82,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -1005,7 +1005,8 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -1020,7 +1021,7 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
     t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t25)
+    a_x = ops.select(all_same, whole, -t25)
     t26 = ops.select(same, t10, c1_y)
     t27 = ops.select(same, t8, c1_x)
     t28 = a_x * t26 + t24 * t27
@@ -1037,127 +1038,126 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t32 * t32 + t34 * t34 + t36 * t36
     t37 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t38 = ops.select(all_same, 1.0, r)
-    t39 = t29 * t38
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t40 = t38 * (t24 - a_x * s_w)
-    t41 = 2.0 * (t39 * t39) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t27 - t24 * t26 - t29 * t30
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t37 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t23 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t21)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = t51 | (t53 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t54, mu, 1.0)
-    t55 = over_2 * t31
-    t56 = over_2 * t33
-    t57 = over_2 * t35
-    nu_2 = t55 * t55 + t56 * t56 + t57 * t57
-    t58 = ops.select(t54, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.opposite(all_same)
-    t60 = t51 & t59
-    length_a_2 = ops.sqrt(ops.select(t51 | (t60 & t59), mu, 1.0))
-    t61 = ops.select(t51, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t61
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t62 = D_2 + r_1
-    outer_2 = ops.max(t62 - t15, 0.0)
-    t63 = D_2 - r_1
-    inner_2 = ops.max(t15 + t63, 0.0)
-    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t63, 0.0)
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t65 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t15 + t62), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t65))
-    t66 = over_a * t42 + along
-    left_2 = nu_2 - t37 + t66 * t66 + rho_2 * rho_2
-    t67 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t67, 0.0)
-    lower = ops.max(t67 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, length_a_2 * part * half * (upper - lower))
-    t68 = t24 * X + t56 * Y
-    w_y = ops.select(in_line, -t39, a_x * t57 + t29 * t55)
-    t69 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t69)
-    t70 = w_y * h
-    t71 = t68 - t70
-    t72 = t29 * X + t57 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t56 + t24 * t55))
-    t73 = w_z * h
-    t74 = t72 - t73
-    B_11 = c1_z * t71 - c1_y * t74
-    A_02 = c1_y - t71
-    t75 = t11 + t74
-    A_03 = c1_z - t74
-    A_22 = t10 - t71
-    t76 = ops.select(t51, mu * nu_2 * h, 1.0)
-    t77 = ops.select(failed, ops.nan, B_11 * (A_02 * t75 + A_03 * A_22) / t76)
-    t78 = s_gamma * c2_z
-    t79 = t25 * X + t55 * Y
-    w_x = ops.select(in_line, -(t39 * s_w), t24 * t57 - t29 * t56)
-    t80 = w_x * h
-    t81 = t79 - t80
-    A_21 = t8 - t81
-    t82 = c_gamma * c2_z
-    B_22 = t78 * A_21 - t82 * A_22 - t6 * t75
-    t83 = ops.select(failed, ops.nan, -(B_22 * (t74 * A_02 - t71 * A_03) / t76))
-    A_01 = c1_x - t81
-    t84 = ops.select(failed, ops.nan, -(B_11 * (t75 * A_01 + A_03 * A_21) / t76))
-    t85 = ops.select(failed, ops.nan, B_22 * (t74 * A_01 - A_03 * t81) / t76)
-    t86 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t76))
-    t87 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_01 - A_02 * t81) / t76))
-    t88 = t68 + t70
-    t89 = t72 + t73
-    B_11_below = c1_z * t88 - c1_y * t89
-    A_02_below = c1_y - t88
-    t90 = t11 + t89
-    A_03_below = c1_z - t89
-    A_22_below = t10 - t88
-    t91 = B_11_below * (A_02_below * t90 + A_03_below * A_22_below)
-    t92 = t79 + t80
-    A_21_below = t8 - t92
-    B_22_below = t78 * A_21_below - t82 * A_22_below - t6 * t90
-    t93 = B_22_below * (t89 * A_02_below - t88 * A_03_below)
-    A_01_below = c1_x - t92
-    t94 = B_11_below * (t90 * A_01_below + A_03_below * A_21_below)
-    t95 = B_22_below * (t89 * A_01_below - A_03_below * t92)
-    t96 = A_22_below * A_01_below - A_02_below * A_21_below
-    t97 = ops.select(failed, ops.nan, B_11_below * t96 / t76)
-    t98 = B_22_below * (t88 * A_01_below - A_02_below * t92)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    B_11 = c1_z * t70 - c1_y * t73
+    A_02 = c1_y - t70
+    t74 = t11 + t73
+    A_03 = c1_z - t73
+    A_22 = t10 - t70
+    t75 = ops.select(t50, mu * nu_2 * h, 1.0)
+    t76 = ops.select(failed, ops.nan, B_11 * (A_02 * t74 + A_03 * A_22) / t75)
+    t77 = s_gamma * c2_z
+    t78 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t79 = w_x * h
+    t80 = t78 - t79
+    A_21 = t8 - t80
+    t81 = c_gamma * c2_z
+    B_22 = t77 * A_21 - t81 * A_22 - t6 * t74
+    t82 = ops.select(failed, ops.nan, -(B_22 * (t73 * A_02 - t70 * A_03) / t75))
+    A_01 = c1_x - t80
+    t83 = ops.select(failed, ops.nan, -(B_11 * (t74 * A_01 + A_03 * A_21) / t75))
+    t84 = ops.select(failed, ops.nan, B_22 * (t73 * A_01 - A_03 * t80) / t75)
+    t85 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t75))
+    t86 = ops.select(failed, ops.nan, -(B_22 * (t70 * A_01 - A_02 * t80) / t75))
+    t87 = t67 + t69
+    t88 = t71 + t72
+    B_11_below = c1_z * t87 - c1_y * t88
+    A_02_below = c1_y - t87
+    t89 = t11 + t88
+    A_03_below = c1_z - t88
+    A_22_below = t10 - t87
+    t90 = B_11_below * (A_02_below * t89 + A_03_below * A_22_below)
+    t91 = t78 + t79
+    A_21_below = t8 - t91
+    B_22_below = t77 * A_21_below - t81 * A_22_below - t6 * t89
+    t92 = B_22_below * (t88 * A_02_below - t87 * A_03_below)
+    A_01_below = c1_x - t91
+    t93 = B_11_below * (t89 * A_01_below + A_03_below * A_21_below)
+    t94 = B_22_below * (t88 * A_01_below - A_03_below * t91)
+    t95 = A_22_below * A_01_below - A_02_below * A_21_below
+    t96 = ops.select(failed, ops.nan, B_11_below * t95 / t75)
+    t97 = B_22_below * (t87 * A_01_below - A_02_below * t91)
     return (
-        t77,
+        t76,
+        t82,
         t83,
         t84,
         t85,
         t86,
-        t87,
-        ops.select(failed, ops.nan, -(t91 / t76)),
-        ops.select(failed, ops.nan, t93 / t76),
-        ops.select(failed, ops.nan, t94 / t76),
-        ops.select(failed, ops.nan, -(t95 / t76)),
-        t97,
-        ops.select(failed, ops.nan, t98 / t76),
+        ops.select(failed, ops.nan, -(t90 / t75)),
+        ops.select(failed, ops.nan, t92 / t75),
+        ops.select(failed, ops.nan, t93 / t75),
+        ops.select(failed, ops.nan, -(t94 / t75)),
+        t96,
+        ops.select(failed, ops.nan, t97 / t75),
     )
 
 
@@ -1242,7 +1242,8 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -1257,7 +1258,7 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
     t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t25)
+    a_x = ops.select(all_same, whole, -t25)
     t26 = ops.select(same, t10, c1_y)
     t27 = ops.select(same, t8, c1_x)
     t28 = a_x * t26 + t24 * t27
@@ -1274,92 +1275,91 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t32 * t32 + t34 * t34 + t36 * t36
     t37 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t38 = ops.select(all_same, 1.0, r)
-    t39 = t29 * t38
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t40 = t38 * (t24 - a_x * s_w)
-    t41 = 2.0 * (t39 * t39) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t27 - t24 * t26 - t29 * t30
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t37 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t23 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t21)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = t51 | (t53 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t54, mu, 1.0)
-    t55 = over_2 * t31
-    t56 = over_2 * t33
-    t57 = over_2 * t35
-    nu_2 = t55 * t55 + t56 * t56 + t57 * t57
-    t58 = ops.select(t54, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.opposite(all_same)
-    t60 = t51 & t59
-    length_a_2 = ops.sqrt(ops.select(t51 | (t60 & t59), mu, 1.0))
-    t61 = ops.select(t51, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t61
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t62 = D_2 + r_1
-    outer_2 = ops.max(t62 - t15, 0.0)
-    t63 = D_2 - r_1
-    inner_2 = ops.max(t15 + t63, 0.0)
-    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t63, 0.0)
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t65 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t15 + t62), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t65))
-    t66 = over_a * t42 + along
-    left_2 = nu_2 - t37 + t66 * t66 + rho_2 * rho_2
-    t67 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t67, 0.0)
-    lower = ops.max(t67 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, length_a_2 * part * half * (upper - lower))
-    t68 = t24 * X + t56 * Y
-    w_y = ops.select(in_line, -t39, a_x * t57 + t29 * t55)
-    t69 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t69)
-    t70 = w_y * h
-    t71 = t68 - t70
-    t72 = t29 * X + t57 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t56 + t24 * t55))
-    t73 = w_z * h
-    t74 = t72 - t73
-    t75 = ops.select(failed, ops.nan, c1_z * t71 - c1_y * t74)
-    t76 = s_gamma * c2_z
-    t77 = t25 * X + t55 * Y
-    w_x = ops.select(in_line, -(t39 * s_w), t24 * t57 - t29 * t56)
-    t78 = w_x * h
-    t79 = c_gamma * c2_z
-    B_22 = t76 * (t8 - (t77 - t78)) - t79 * (t10 - t71) - t6 * (t11 + t74)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
     Delta = mu * nu_2 * h
-    t80 = t68 + t70
-    t81 = t72 + t73
-    t82 = ops.select(failed, ops.nan, c1_z * t80 - c1_y * t81)
-    B_22_below = t76 * (t8 - (t77 + t78)) - t79 * (t10 - t80) - t6 * (t11 + t81)
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t75,
+        t74,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t82,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1444,7 +1444,8 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t13
-    mu = ops.select(all_same, 1.0, ops.select(same, v_v, u_u))
+    whole = ops.select((r == 0.0), 1.0, r)
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
     r_1 = ops.abs(s_beta1_half) * t14
@@ -1459,7 +1460,7 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
     t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, 1.0, -t25)
+    a_x = ops.select(all_same, whole, -t25)
     t26 = ops.select(same, t10, c1_y)
     t27 = ops.select(same, t8, c1_x)
     t28 = a_x * t26 + t24 * t27
@@ -1476,143 +1477,142 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     nu = t32 * t32 + t34 * t34 + t36 * t36
     t37 = ops.select(same, r_2 * r_2, t12)
     in_line = nu <= t13
-    t38 = ops.select(all_same, 1.0, r)
-    t39 = t29 * t38
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t40 = t38 * (t24 - a_x * s_w)
-    t41 = 2.0 * (t39 * t39) + t40 * t40
-    length_n = ops.sqrt(ops.select(in_line, over * t41, nu))
-    t42 = a_x * t27 - t24 * t26 - t29 * t30
-    t43 = length_n * (1.0 / (length_a * length_n)) * t42
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t37 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t48 = left + t47
-    t49 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t23 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t21)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = t51 | (t53 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t54, mu, 1.0)
-    t55 = over_2 * t31
-    t56 = over_2 * t33
-    t57 = over_2 * t35
-    nu_2 = t55 * t55 + t56 * t56 + t57 * t57
-    t58 = ops.select(t54, ops.select(in_line, over_2 * t41, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.opposite(all_same)
-    t60 = t51 & t59
-    length_a_2 = ops.sqrt(ops.select(t51 | (t60 & t59), mu, 1.0))
-    t61 = ops.select(t51, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t61
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
     over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t62 = D_2 + r_1
-    outer_2 = ops.max(t62 - t15, 0.0)
-    t63 = D_2 - r_1
-    inner_2 = ops.max(t15 + t63, 0.0)
-    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t63, 0.0)
-    t64 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t64 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t65 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t15 + t62), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t65))
-    t66 = over_a * t42 + along
-    left_2 = nu_2 - t37 + t66 * t66 + rho_2 * rho_2
-    t67 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t67, 0.0)
-    lower = ops.max(t67 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, length_a_2 * part * half * (upper - lower))
-    t68 = t25 * X + t55 * Y
-    w_x = ops.select(in_line, -(t39 * s_w), t24 * t57 - t29 * t56)
-    t69 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t69)
-    t70 = w_x * h
-    t71 = t68 - t70
-    A_01 = c1_x - t71
-    t72 = t24 * X + t56 * Y
-    w_y = ops.select(in_line, -t39, a_x * t57 + t29 * t55)
-    t73 = w_y * h
-    t74 = t72 - t73
-    A_02 = c1_y - t74
-    t75 = t29 * X + t57 * Y
-    w_z = ops.select(in_line, t40, -(a_x * t56 + t24 * t55))
-    t76 = w_z * h
-    t77 = t75 - t76
-    A_03 = c1_z - t77
-    t78 = ops.select(t51, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t78)
-    t79 = ops.select(t51, strut, 1.0)
-    radial_x = A_01 / t79
-    radial_y = A_02 / t79
-    radial_z = A_03 / t79
-    t80 = t71 * radial_x + t74 * radial_y + t77 * radial_z
-    t81 = t71 - radial_x * t80
-    t82 = t74 - radial_y * t80
-    t83 = t77 - radial_z * t80
-    square1 = t81 * t81 + t82 * t82 + t83 * t83
-    A_21 = t8 - t71
-    A_22 = t10 - t74
-    A_23 = t11 - t77
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    A_01 = c1_x - t70
+    t71 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    A_02 = c1_y - t73
+    t74 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    A_03 = c1_z - t76
+    t77 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t77)
+    t78 = ops.select(t50, strut, 1.0)
+    radial_x = A_01 / t78
+    radial_y = A_02 / t78
+    radial_z = A_03 / t78
+    t79 = t70 * radial_x + t73 * radial_y + t76 * radial_z
+    t80 = t70 - radial_x * t79
+    t81 = t73 - radial_y * t79
+    t82 = t76 - radial_z * t79
+    square1 = t80 * t80 + t81 * t81 + t82 * t82
+    A_21 = t8 - t70
+    A_22 = t10 - t73
+    A_23 = t11 - t76
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
     t2_z = A_23 - radial_z * off2
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t84 = square1 - square2
-    t85 = t81 * t2_x + t82 * t2_y + t83 * t2_z
-    t86 = ops.select(t51, t84 * t84, 1.0) + 4.0 * ops.select(t51, t85 * t85, 1.0)
-    t87 = square1 + square2 + ops.sqrt(ops.select(t51, t86, 1.0))
-    t88 = ops.select(t51, 2.0 * (mu * nu_2 * h), 1.0)
-    t89 = ops.select(failed, ops.nan, strut * t87 / t88)
-    t90 = t68 + t70
-    A_01_below = c1_x - t90
-    t91 = t72 + t73
-    A_02_below = c1_y - t91
-    t92 = A_01_below * A_01_below + A_02_below * A_02_below
-    t93 = t75 + t76
-    A_03_below = c1_z - t93
-    t94 = ops.select(t51, t92 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t94)
-    t95 = ops.select(t51, strut_below, 1.0)
-    radial_x_below = A_01_below / t95
-    radial_y_below = A_02_below / t95
-    radial_z_below = A_03_below / t95
-    t96 = t90 * radial_x_below + t91 * radial_y_below + t93 * radial_z_below
-    t97 = t90 - radial_x_below * t96
-    t98 = t91 - radial_y_below * t96
-    t99 = t93 - radial_z_below * t96
-    square1_below = t97 * t97 + t98 * t98 + t99 * t99
-    A_21_below = t8 - t90
-    A_22_below = t10 - t91
-    t100 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t93
-    off2_below = t100 + radial_z_below * A_23_below
+    t83 = square1 - square2
+    t84 = t80 * t2_x + t81 * t2_y + t82 * t2_z
+    t85 = ops.select(t50, t83 * t83, 1.0) + 4.0 * ops.select(t50, t84 * t84, 1.0)
+    t86 = square1 + square2 + ops.sqrt(ops.select(t50, t85, 1.0))
+    t87 = ops.select(t50, 2.0 * (mu * nu_2 * h), 1.0)
+    t88 = ops.select(failed, ops.nan, strut * t86 / t87)
+    t89 = t67 + t69
+    A_01_below = c1_x - t89
+    t90 = t71 + t72
+    A_02_below = c1_y - t90
+    t91 = A_01_below * A_01_below + A_02_below * A_02_below
+    t92 = t74 + t75
+    A_03_below = c1_z - t92
+    t93 = ops.select(t50, t91 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t93)
+    t94 = ops.select(t50, strut_below, 1.0)
+    radial_x_below = A_01_below / t94
+    radial_y_below = A_02_below / t94
+    radial_z_below = A_03_below / t94
+    t95 = t89 * radial_x_below + t90 * radial_y_below + t92 * radial_z_below
+    t96 = t89 - radial_x_below * t95
+    t97 = t90 - radial_y_below * t95
+    t98 = t92 - radial_z_below * t95
+    square1_below = t96 * t96 + t97 * t97 + t98 * t98
+    A_21_below = t8 - t89
+    A_22_below = t10 - t90
+    t99 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t92
+    off2_below = t99 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t101 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t100 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t101 + t2_z_below * t2_z_below
-    t102 = square1_below - square2_below
-    t103 = t97 * t2_x_below + t98 * t2_y_below + t99 * t2_z_below
-    t104 = ops.select(t51, t102 * t102, 1.0) + 4.0 * ops.select(t51, t103 * t103, 1.0)
-    t105 = square1_below + square2_below + ops.sqrt(ops.select(t51, t104, 1.0))
-    t106 = ops.select(failed, ops.nan, strut_below * t105 / t88)
+    square2_below = t100 + t2_z_below * t2_z_below
+    t101 = square1_below - square2_below
+    t102 = t96 * t2_x_below + t97 * t2_y_below + t98 * t2_z_below
+    t103 = ops.select(t50, t101 * t101, 1.0) + 4.0 * ops.select(t50, t102 * t102, 1.0)
+    t104 = square1_below + square2_below + ops.sqrt(ops.select(t50, t103, 1.0))
+    t105 = ops.select(failed, ops.nan, strut_below * t104 / t87)
     return (
-        t89,
-        t106,
+        t88,
+        t105,
     )
 
 

@@ -3,15 +3,15 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
- *   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
- *   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
- *   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
- *   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
- *   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+ *   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+ *   jacobian: 44 compare and select, 115 add, 26 divide, 166 multiply, 6 sincos, 1 sqrt
+ *   determinant: 44 compare and select, 81 add, 10 divide, 116 multiply, 6 sincos, 1 sqrt
+ *   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
+ *   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
+ *   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
  */
@@ -74,10 +74,11 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
     const real_t t22 = t10 - t21;
     const real_t v_v = t19 + cf_rounded(single, one, t22 * t22);
     const int all_same = u_u + v_v <= t14;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t23 = cf_rarely(single, same, t22, t12);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t24 = cf_rarely(single, same, t12, t22);
     const real_t t25 = cf_rarely(single, same, t7, t18);
     const real_t t26 = cf_rounded(single, one, a_x * t24) - cf_rounded(single, one, t23 * t25);
@@ -94,9 +95,9 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
     const real_t n_z = over * t35;
     const real_t nu = t34 + cf_rounded(single, one, n_z * n_z);
     const int in_line = nu <= t14;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t23 * a_x);
-    const real_t t36 = size * (t23 + a_x * s_w);
+    const real_t t36 = whole * (t23 + a_x * s_w);
     const real_t t37 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, t36 * t36);
     const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t37), t38);
@@ -312,12 +313,13 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t35 = size * size;
     const real_t t36 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t35;
     const int all_same = u_u + v_v <= t36;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t36;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t37 = cf_rarely(single, same, t34, t24);
     const real_t d_x = cf_rarely(single, same, t30, t16);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t38 = cf_rarely(single, same, t24, t34);
     const real_t t39 = cf_rarely(single, same, t16, t30);
     const real_t t40 = a_x * t38 - t37 * t39;
@@ -334,9 +336,9 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t47 = cf_rarely(single, in_line, -t46, CLOSEDFORM_C(0.0));
     const int t48 = cf_abs(t47) <= t35 * CLOSEDFORM_FEASIBILITY;
     const real_t t49 = l * size * CLOSEDFORM_C(0.9375);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t37 * a_x);
-    const real_t t50 = size * (t37 + a_x * s_w);
+    const real_t t50 = whole * (t37 + a_x * s_w);
     const real_t t51 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t50 * t50);
     const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t51, t52);
@@ -576,6 +578,7 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t size = f + e + L + l;
     const real_t t5 = size * size;
     const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t5;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const real_t t7 = l * size * CLOSEDFORM_C(0.9375);
     real_t t8_lanes[4], t9_lanes[4], t10_lanes[4], t11_lanes[4], t12_lanes[4], t13_lanes[4], t14_lanes[4], t15_lanes[4], t16_lanes[4], c1_z_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4];
     const real_t t23_of[4] = { c_alpha1, c_alpha2, c_alpha3, c_alpha3 };
@@ -628,11 +631,11 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t v_v = v_z * v_z + t39 * t39 + t40 * t40;
     const int all_same = u_u + v_v <= t6;
     const int same = u_u <= t6;
-    const real_t mu = cf_rarely(1, all_same, CLOSEDFORM_C(1.0), cf_rarely(1, same, v_v, u_u));
+    const real_t mu = cf_rarely(1, all_same, whole * whole, cf_rarely(1, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(1, mu);
     const real_t t41 = cf_rarely(1, same, t40, t38);
     const real_t d_x = cf_rarely(1, same, t39, t37);
-    const real_t a_x = cf_rarely(1, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(1, all_same, whole, d_x);
     const real_t t42 = cf_rarely(1, same, t38, t40);
     const real_t t43 = cf_rarely(1, same, t37, t39);
     const real_t t44 = a_x * t42 - t41 * t43;
@@ -648,9 +651,9 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t t50 = t43 * (d_x - t43) + t42 * (t41 - t42) + t45 * (d_z - t45);
     const real_t t51 = cf_rarely(1, in_line, -t50, CLOSEDFORM_C(0.0));
     const int t52 = cf_abs(t51) <= t5 * CLOSEDFORM_FEASIBILITY;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t41 * a_x);
-    const real_t t53 = size * (t41 + a_x * s_w);
+    const real_t t53 = whole * (t41 + a_x * s_w);
     const real_t t54 = CLOSEDFORM_C(1.0) / cf_nonzero(1, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t53 * t53);
     const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(1, in_line, mu * nu);
     const real_t part = cf_rarely(1, in_line, t54, t55);
@@ -1095,12 +1098,13 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t t11 = size * size;
     const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
     const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t12;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t13 = cf_rarely(single, same, t10, t7);
     const real_t d_x = cf_rarely(single, same, t9, t5);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t14 = cf_rarely(single, same, t7, t10);
     const real_t t15 = cf_rarely(single, same, t5, t9);
     const real_t t16 = a_x * t14 - t13 * t15;
@@ -1113,10 +1117,10 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t n_z = over * (a_x * t18 + t13 * t20);
     const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const int in_line = nu <= t12;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t13 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
-    const real_t t22 = size * (t13 + a_x * s_w);
+    const real_t t22 = whole * (t13 + a_x * s_w);
     const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
     const real_t t24 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t23, t24);
@@ -1314,12 +1318,13 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t t14 = size * size;
     const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
     const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t16 = cf_rarely(single, same, t13, t9);
     const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t17 = cf_rarely(single, same, t9, t13);
     const real_t t18 = cf_rarely(single, same, t7, t12);
     const real_t t19 = a_x * t17 - t16 * t18;
@@ -1332,10 +1337,10 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t n_z = over * (a_x * t21 + t16 * t23);
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t16 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = size * (t16 + a_x * s_w);
+    const real_t t25 = whole * (t16 + a_x * s_w);
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
     const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t26, t27);
@@ -1519,12 +1524,13 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t t14 = size * size;
     const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
     const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t16 = cf_rarely(single, same, t13, t9);
     const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t17 = cf_rarely(single, same, t9, t13);
     const real_t t18 = cf_rarely(single, same, t7, t12);
     const real_t t19 = a_x * t17 - t16 * t18;
@@ -1537,10 +1543,10 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t n_z = over * (a_x * t21 + t16 * t23);
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t16 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = size * (t16 + a_x * s_w);
+    const real_t t25 = whole * (t16 + a_x * s_w);
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
@@ -1770,12 +1776,13 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t t14 = size * size;
     const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
     const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t16 = cf_rarely(single, same, t13, t9);
     const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t17 = cf_rarely(single, same, t9, t13);
     const real_t t18 = cf_rarely(single, same, t7, t12);
     const real_t t19 = a_x * t17 - t16 * t18;
@@ -1788,10 +1795,10 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t n_z = over * (a_x * t21 + t16 * t23);
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t16 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = size * (t16 + a_x * s_w);
+    const real_t t25 = whole * (t16 + a_x * s_w);
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
@@ -1971,12 +1978,13 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t t14 = size * size;
     const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
     const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t16 = cf_rarely(single, same, t13, t9);
     const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t17 = cf_rarely(single, same, t9, t13);
     const real_t t18 = cf_rarely(single, same, t7, t12);
     const real_t t19 = a_x * t17 - t16 * t18;
@@ -1989,10 +1997,10 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t n_z = over * (a_x * t21 + t16 * t23);
     const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const int in_line = nu <= t15;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t16 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = size * (t16 + a_x * s_w);
+    const real_t t25 = whole * (t16 + a_x * s_w);
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
     const real_t t27 = mu * nu;
     const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
@@ -2179,12 +2187,13 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t t11 = size * size;
     const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
     const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t12;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t13 = cf_rarely(single, same, t10, t7);
     const real_t d_x = cf_rarely(single, same, t9, t5);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t14 = cf_rarely(single, same, t7, t10);
     const real_t t15 = cf_rarely(single, same, t5, t9);
     const real_t t16 = a_x * t14 - t13 * t15;
@@ -2197,10 +2206,10 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t n_z = over * (a_x * t18 + t13 * t20);
     const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const int in_line = nu <= t12;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t13 * a_x);
     const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
-    const real_t t22 = size * (t13 + a_x * s_w);
+    const real_t t22 = whole * (t13 + a_x * s_w);
     const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
     const real_t t24 = mu * nu;
     const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t24);
@@ -2401,12 +2410,13 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t t12 = size * size;
     const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t12;
     const int all_same = u_u + v_v <= t13;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t13;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t14 = cf_rarely(single, same, t11, t8);
     const real_t d_x = cf_rarely(single, same, t10, t6);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), d_x);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
     const real_t t15 = cf_rarely(single, same, t8, t11);
     const real_t t16 = cf_rarely(single, same, t6, t10);
     const real_t t17 = a_x * t15 - t14 * t16;
@@ -2419,9 +2429,9 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t n_z = over * (a_x * t19 + t14 * t21);
     const real_t nu = t20 * t20 + t22 * t22 + n_z * n_z;
     const int in_line = nu <= t13;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t14 * a_x);
-    const real_t t23 = size * (t14 + a_x * s_w);
+    const real_t t23 = whole * (t14 + a_x * s_w);
     const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t23 * t23);
     const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t24, t25);

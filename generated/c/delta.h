@@ -3,15 +3,15 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
- *   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
- *   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
- *   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
- *   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
- *   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+ *   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+ *   jacobian: 44 compare and select, 115 add, 26 divide, 166 multiply, 6 sincos, 1 sqrt
+ *   determinant: 44 compare and select, 81 add, 10 divide, 116 multiply, 6 sincos, 1 sqrt
+ *   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
+ *   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
+ *   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
  *

@@ -3,18 +3,24 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+ *   fk: 44 compare and select, 50 add, 12 divide, 62 multiply, 1 sqrt
  *   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
- *   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
- *   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
- *   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+ *   skeleton: 43 compare and select, 124 add, 14 divide, 62 multiply, 1 sqrt
+ *   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 62 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 28 compare and select, 66 add, 11 divide, 52
+ *     multiply, 1 sqrt
+ *   jacobian_serial: 41 compare and select, 44 add, 10 divide, 53 multiply, 1 sqrt
  *   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
  *     1 sqrt
- *   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
- *   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
- *   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
- *   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
- *   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+ *   jacobian: 43 compare and select, 88 add, 30 divide, 113 multiply, 1 sqrt
+ *   determinant: 41 compare and select, 40 add, 12 divide, 58 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 28 compare and select, 38 add, 11 divide, 49 multiply, 1
+ *     sqrt
+ *   singularities: 41 compare and select, 46 add, 10 divide, 54 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 28 compare and select, 44 add, 9 divide, 45 multiply, 1
+ *     sqrt
+ *   condition_number: 43 compare and select, 104 add, 14 divide, 132 multiply, 3 sqrt
+ *   constraint: 43 compare and select, 62 add, 18 divide, 86 multiply, 1 sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
@@ -46,11 +52,12 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = cf_rounded(single, one, a_x * t9) + cf_rounded(single, one, t2 * d_y);
     const real_t t10 = cf_rarely(single, same, t6, t1);
@@ -66,10 +73,10 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t t18 = over * t17;
     const real_t nu = t16 + cf_rounded(single, one, t18 * t18);
     const int in_line = nu <= t8;
-    const real_t t19 = size * t10;
+    const real_t t19 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t t20 = cf_rarely(single, in_line, t19 * s_w, d_y * t18 - t10 * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t21 = CLOSEDFORM_C(2.0) * (t19 * t19) + cf_rounded(single, one, g_2 * g_2);
     const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t21), t22);
@@ -364,11 +371,12 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t13 = size * size;
     const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
     const int all_same = u_u + v_v <= t14;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t14;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t7);
     const real_t t15 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t15 + t7 * d_y;
     const real_t t16 = cf_rarely(single, same, t12, t4);
@@ -384,9 +392,9 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t22 = cf_rarely(single, in_line, -t21, CLOSEDFORM_C(0.0));
     const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
     const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
-    const real_t t25 = size * t16;
+    const real_t t25 = whole * t16;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t25 * t25) + g_2 * g_2);
     const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t26, t27);
@@ -787,7 +795,8 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
     }
 }
 
-CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_jacobian_parallel_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t A[18])
 {
     const real_t f = params->f;
@@ -810,11 +819,12 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -826,9 +836,9 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t14 = over * (a_x * m_y + d_y * t13);
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);
@@ -885,6 +895,155 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
 }
 
 CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_jacobian_parallel_whole(const linear_delta_params *params,
+    const real_t q[3], real_t A[18])
+{
+    linear_delta_jacobian_parallel_whole_kernel(1, params, q, A);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_jacobian_parallel_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t A[18], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
+    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
+    const real_t t13 = t9 * over;
+    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
+    const real_t n_y = t17 * over;
+    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
+    const real_t t20 = t19 * over;
+    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
+    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t13 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
+    const real_t t26 = t22 + t25;
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const real_t t31 = l * size * CLOSEDFORM_C(0.234375);
+    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
+    const real_t t35 = h * (t1 * t20 - t6 * t13);
+    const real_t t36 = t34 - t35;
+    const real_t t37 = t6 * CLOSEDFORM_C(0.5) + t20 * t21;
+    const real_t t38 = h * (t1 * n_y + c3_y * t13);
+    const real_t t39 = t37 - t38;
+    const real_t t40 = t1 - t26 + t33;
+    const real_t t41 = t22 - t25;
+    const real_t t42 = t34 + t35;
+    const real_t t43 = t37 + t38;
+    const real_t t44 = t1 - t41 + t33;
+    const real_t t45 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
+    const int t46 = (u_u <= t12) | (t45 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t31);
+    A[0] = -t26 + t33;
+    A[1] = -t36 + t33;
+    A[2] = -t39 + t33;
+    A[3] = t40;
+    A[4] = c3_y - t36 + t33;
+    A[5] = t6 - t39 + t33;
+    A[6] = t40;
+    A[7] = -(c3_y + t36) + t33;
+    A[8] = t7 - t39 + t33;
+    A[9] = -t41 + t33;
+    A[10] = -t42 + t33;
+    A[11] = -t43 + t33;
+    A[12] = t44;
+    A[13] = c3_y - t42 + t33;
+    A[14] = t6 - t43 + t33;
+    A[15] = t44;
+    A[16] = -(c3_y + t42) + t33;
+    A[17] = t7 - t43 + t33;
+    rare[0] = (t46) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_jacobian_parallel_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t A_i[18];
+            real_t rare_i[1];
+            linear_delta_jacobian_parallel_common_kernel(0, one, &local, q_i, A_i, rare_i);
+            A[start + i] = A_i[0];
+            A[A_stride + start + i] = A_i[1];
+            A[2 * A_stride + start + i] = A_i[2];
+            A[3 * A_stride + start + i] = A_i[3];
+            A[4 * A_stride + start + i] = A_i[4];
+            A[5 * A_stride + start + i] = A_i[5];
+            A[6 * A_stride + start + i] = A_i[6];
+            A[7 * A_stride + start + i] = A_i[7];
+            A[8 * A_stride + start + i] = A_i[8];
+            A[9 * A_stride + start + i] = A_i[9];
+            A[10 * A_stride + start + i] = A_i[10];
+            A[11 * A_stride + start + i] = A_i[11];
+            A[12 * A_stride + start + i] = A_i[12];
+            A[13 * A_stride + start + i] = A_i[13];
+            A[14 * A_stride + start + i] = A_i[14];
+            A[15 * A_stride + start + i] = A_i[15];
+            A[16 * A_stride + start + i] = A_i[16];
+            A[17 * A_stride + start + i] = A_i[17];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_jacobian_parallel_common(const linear_delta_params *params,
+    const real_t q[3], real_t A[18], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_jacobian_parallel_common_kernel(1, one, params, q, A, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
 void linear_delta_jacobian_parallel(const linear_delta_params *params,
     const real_t q[3], real_t A[18])
 {
@@ -904,7 +1063,9 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_jacobian_parallel_kernel(1, params, q, A);
+    uint8_t rare[1];
+    linear_delta_jacobian_parallel_common(params, q, A, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_jacobian_parallel_whole(params, q, A);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, A_degrees, exponent, A, A);
     }
@@ -938,33 +1099,19 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_jacobian_parallel_common_batch(length, params, q + start, q_stride, A + start, A_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t A_i[18];
-            linear_delta_jacobian_parallel_kernel(0, &local, q_i, A_i);
-            A[start + i] = A_i[0];
-            A[A_stride + start + i] = A_i[1];
-            A[2 * A_stride + start + i] = A_i[2];
-            A[3 * A_stride + start + i] = A_i[3];
-            A[4 * A_stride + start + i] = A_i[4];
-            A[5 * A_stride + start + i] = A_i[5];
-            A[6 * A_stride + start + i] = A_i[6];
-            A[7 * A_stride + start + i] = A_i[7];
-            A[8 * A_stride + start + i] = A_i[8];
-            A[9 * A_stride + start + i] = A_i[9];
-            A[10 * A_stride + start + i] = A_i[10];
-            A[11 * A_stride + start + i] = A_i[11];
-            A[12 * A_stride + start + i] = A_i[12];
-            A[13 * A_stride + start + i] = A_i[13];
-            A[14 * A_stride + start + i] = A_i[14];
-            A[15 * A_stride + start + i] = A_i[15];
-            A[16 * A_stride + start + i] = A_i[16];
-            A[17 * A_stride + start + i] = A_i[17];
+            linear_delta_jacobian_parallel_whole(params, q_i, A_i);
+            for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -998,10 +1145,11 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1014,8 +1162,8 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
-    const real_t g_2 = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = whole * t10;
+    const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);
@@ -1262,10 +1410,11 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1278,9 +1427,9 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(a_x * d_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = mu * nu;
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
@@ -1451,7 +1600,8 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
     }
 }
 
-CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_determinant_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t det[2])
 {
     const real_t f = params->f;
@@ -1474,10 +1624,11 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1490,8 +1641,8 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
-    const real_t g_2 = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = whole * t10;
+    const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = mu * nu;
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
@@ -1524,6 +1675,117 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
 }
 
 CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_determinant_whole(const linear_delta_params *params,
+    const real_t q[3], real_t det[2])
+{
+    linear_delta_determinant_whole_kernel(1, params, q, det);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_determinant_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t det[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t t21 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
+    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
+    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rounded(single, one, l * l) - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
+    const real_t t27 = t23 - t26;
+    const real_t Delta = t21 * h;
+    const real_t t28 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t29 = t27 * (t1 - t27) * (t3 - t27) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
+    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t33 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t34 = t33 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t25);
+    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t34);
+    const real_t t35 = cf_poison(single, failed);
+    const real_t t36 = t23 + t26;
+    const real_t t37 = t36 * (t1 - t36) * (t3 - t36) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
+    const real_t t38 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t39 = (u_u <= t11) | (t38 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28);
+    det[0] = t29 + t35;
+    det[1] = -t37 + t35;
+    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_determinant_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t det_i[2];
+            real_t rare_i[1];
+            linear_delta_determinant_common_kernel(0, one, &local, q_i, det_i, rare_i);
+            det[start + i] = det_i[0];
+            det[det_stride + start + i] = det_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_determinant_common(const linear_delta_params *params,
+    const real_t q[3], real_t det[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_determinant_common_kernel(1, one, params, q, det, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
 void linear_delta_determinant(const linear_delta_params *params,
     const real_t q[3], real_t det[2])
 {
@@ -1542,7 +1804,9 @@ void linear_delta_determinant(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_determinant_kernel(1, params, q, det);
+    uint8_t rare[1];
+    linear_delta_determinant_common(params, q, det, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_determinant_whole(params, q, det);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -1573,17 +1837,19 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *det, size_t det_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_determinant_common_batch(length, params, q + start, q_stride, det + start, det_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t det_i[2];
-            linear_delta_determinant_kernel(0, &local, q_i, det_i);
-            det[start + i] = det_i[0];
-            det[det_stride + start + i] = det_i[1];
+            linear_delta_determinant_whole(params, q_i, det_i);
+            for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -1593,7 +1859,8 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
     }
 }
 
-CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_singularities_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t factors[8])
 {
     const real_t f = params->f;
@@ -1616,10 +1883,11 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t2);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
     const real_t t9 = cf_rarely(single, same, t1, t6);
     const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t m_y = a_x * t9 + t2 * t10;
@@ -1632,8 +1900,8 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t n_y = over * (a_x * m_z - t10 * t12);
     const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
-    const real_t g_2 = size * (d_y + a_x * cf_sign(a_x * d_y));
+    const real_t t15 = whole * t10;
+    const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = mu * nu;
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
@@ -1670,6 +1938,128 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
 }
 
 CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_singularities_whole(const linear_delta_params *params,
+    const real_t q[3], real_t factors[8])
+{
+    linear_delta_singularities_whole_kernel(1, params, q, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_singularities_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t factors[8], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t t21 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
+    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
+    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rounded(single, one, l * l) - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
+    const real_t t27 = t23 - t26;
+    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const real_t t32 = l * size * CLOSEDFORM_C(0.234375);
+    const int t33 = t31 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t25);
+    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
+    const real_t t34 = cf_poison(single, failed);
+    const real_t Delta = t21 * h;
+    const real_t t35 = t23 + t26;
+    const real_t t36 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t37 = (u_u <= t11) | (t36 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t32);
+    factors[0] = -t27 + t34;
+    factors[1] = t1 - t27 + t34;
+    factors[2] = t3 - t27 + t34;
+    factors[3] = -Delta + t34;
+    factors[4] = -t35 + t34;
+    factors[5] = t1 - t35 + t34;
+    factors[6] = t3 - t35 + t34;
+    factors[7] = Delta + t34;
+    rare[0] = (t37) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_singularities_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t factors_i[8];
+            real_t rare_i[1];
+            linear_delta_singularities_common_kernel(0, one, &local, q_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
+            factors[3 * factors_stride + start + i] = factors_i[3];
+            factors[4 * factors_stride + start + i] = factors_i[4];
+            factors[5 * factors_stride + start + i] = factors_i[5];
+            factors[6 * factors_stride + start + i] = factors_i[6];
+            factors[7 * factors_stride + start + i] = factors_i[7];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_singularities_common(const linear_delta_params *params,
+    const real_t q[3], real_t factors[8],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_singularities_common_kernel(1, one, params, q, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
 void linear_delta_singularities(const linear_delta_params *params,
     const real_t q[3], real_t factors[8])
 {
@@ -1689,7 +2079,9 @@ void linear_delta_singularities(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_singularities_kernel(1, params, q, factors);
+    uint8_t rare[1];
+    linear_delta_singularities_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_singularities_whole(params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(8, factors_degrees, exponent, factors, factors);
     }
@@ -1723,23 +2115,19 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_singularities_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t factors_i[8];
-            linear_delta_singularities_kernel(0, &local, q_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-            factors[3 * factors_stride + start + i] = factors_i[3];
-            factors[4 * factors_stride + start + i] = factors_i[4];
-            factors[5 * factors_stride + start + i] = factors_i[5];
-            factors[6 * factors_stride + start + i] = factors_i[6];
-            factors[7 * factors_stride + start + i] = factors_i[7];
+            linear_delta_singularities_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -1772,11 +2160,12 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -1788,9 +2177,9 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t14 = over * (a_x * m_y + d_y * t13);
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = mu * nu;
     const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
@@ -1967,11 +2356,12 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t7 = size * size;
     const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
     const int all_same = u_u + v_v <= t8;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -t1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
     const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
     const real_t m_z = a_x * t9 + t1 * d_y;
     const real_t t10 = cf_rarely(single, same, t6, t2);
@@ -1983,9 +2373,9 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t14 = over * (a_x * m_y + d_y * t13);
     const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
     const int in_line = nu <= t8;
-    const real_t t15 = size * t10;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
     const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t16, t17);

@@ -3,18 +3,24 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+ *   fk: 44 compare and select, 50 add, 12 divide, 62 multiply, 1 sqrt
  *   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
- *   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
- *   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
- *   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+ *   skeleton: 43 compare and select, 124 add, 14 divide, 62 multiply, 1 sqrt
+ *   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 62 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 28 compare and select, 66 add, 11 divide, 52
+ *     multiply, 1 sqrt
+ *   jacobian_serial: 41 compare and select, 44 add, 10 divide, 53 multiply, 1 sqrt
  *   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
  *     1 sqrt
- *   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
- *   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
- *   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
- *   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
- *   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+ *   jacobian: 43 compare and select, 88 add, 30 divide, 113 multiply, 1 sqrt
+ *   determinant: 41 compare and select, 40 add, 12 divide, 58 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 28 compare and select, 38 add, 11 divide, 49 multiply, 1
+ *     sqrt
+ *   singularities: 41 compare and select, 46 add, 10 divide, 54 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 28 compare and select, 44 add, 9 divide, 45 multiply, 1
+ *     sqrt
+ *   condition_number: 43 compare and select, 104 add, 14 divide, 132 multiply, 3 sqrt
+ *   constraint: 43 compare and select, 62 add, 18 divide, 86 multiply, 1 sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *

@@ -3,28 +3,28 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
+ *   fk: 40 compare and select, 40 add, 8 divide, 59 multiply, 1 sqrt
  *   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
- *   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
+ *   skeleton: 39 compare and select, 71 add, 9 divide, 59 multiply, 1 sqrt
  *   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
- *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
+ *   jacobian_parallel: 39 compare and select, 51 add, 8 divide, 59 multiply, 1 sqrt
  *   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
  *     multiply, 1 sqrt
- *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
+ *   jacobian_serial: 39 compare and select, 43 add, 8 divide, 59 multiply, 1 sqrt
  *   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
  *     1 sqrt
- *   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
+ *   jacobian: 39 compare and select, 75 add, 26 divide, 102 multiply, 1 sqrt
  *   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
- *   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
+ *   determinant: 39 compare and select, 39 add, 10 divide, 64 multiply, 1 sqrt
  *   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
  *     sqrt
- *   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
+ *   singularities: 39 compare and select, 45 add, 8 divide, 60 multiply, 1 sqrt
  *   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
  *     sqrt
- *   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
+ *   condition_number: 39 compare and select, 91 add, 10 divide, 117 multiply, 3 sqrt
  *   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
  *     3 sqrt
- *   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
+ *   constraint: 39 compare and select, 43 add, 8 divide, 67 multiply, 1 sqrt
  *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
  *   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
@@ -48,11 +48,12 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = cf_rounded(single, one, a_x * t4) + cf_rounded(single, one, rho1 * d_y);
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -69,9 +70,9 @@ CF_INLINE void orthoglide_fk_whole_kernel(const int single, const real_t one,
     const real_t nu = t10 + cf_rounded(single, one, n_z * n_z);
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t12 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, g_2 * g_2);
     const real_t t13 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t12), t13);
@@ -332,11 +333,12 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t4 = size * size;
     const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t4;
     const int all_same = u_u + v_v <= t5;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t5;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t6 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t6 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -352,9 +354,9 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t11 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
     const int t12 = cf_abs(t11) <= t4 * CLOSEDFORM_FEASIBILITY;
     const real_t t13 = L * size * CLOSEDFORM_C(0.234375);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t14 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t14, t15);
@@ -937,11 +939,12 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -954,9 +957,9 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);
@@ -1242,11 +1245,12 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -1259,9 +1263,9 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);
@@ -1487,11 +1491,12 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -1504,9 +1509,9 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
@@ -1825,11 +1830,12 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -1842,9 +1848,9 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
@@ -2064,11 +2070,12 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -2081,9 +2088,9 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
@@ -2319,11 +2326,12 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -2336,9 +2344,9 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_x = cf_rarely(single, in_line, s_w * g_1, d_y * n_z - d_z * n_y);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = mu * nu;
     const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t9);
@@ -2654,11 +2662,12 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t t2 = size * size;
     const real_t t3 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t2;
     const int all_same = u_u + v_v <= t3;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const int same = u_u <= t3;
-    const real_t mu = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), cf_rarely(single, same, v_v, u_u));
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t d_y = cf_rarely(single, same, CLOSEDFORM_C(0.0), rho2);
-    const real_t a_x = cf_rarely(single, all_same, CLOSEDFORM_C(1.0), -rho1);
+    const real_t a_x = cf_rarely(single, all_same, whole, -rho1);
     const real_t t4 = cf_rarely(single, same, rho2, CLOSEDFORM_C(0.0));
     const real_t m_z = a_x * t4 + rho1 * d_y;
     const real_t d_z = cf_rarely(single, same, rho3, CLOSEDFORM_C(0.0));
@@ -2670,10 +2679,10 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t n_z = over * (a_x * t6 + d_y * m_x);
     const real_t nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const int in_line = nu <= t3;
-    const real_t g_1 = size * d_z;
+    const real_t g_1 = d_z * whole;
     const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t7));
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t g_2 = size * (d_y + a_x * s_w);
+    const real_t g_2 = whole * (d_y + a_x * s_w);
     const real_t t8 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + g_2 * g_2);
     const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
     const real_t part = cf_rarely(single, in_line, t8, t9);

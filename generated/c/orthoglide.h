@@ -3,28 +3,28 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
+ *   fk: 40 compare and select, 40 add, 8 divide, 59 multiply, 1 sqrt
  *   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
- *   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
+ *   skeleton: 39 compare and select, 71 add, 9 divide, 59 multiply, 1 sqrt
  *   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
- *   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
+ *   jacobian_parallel: 39 compare and select, 51 add, 8 divide, 59 multiply, 1 sqrt
  *   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
  *     multiply, 1 sqrt
- *   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
+ *   jacobian_serial: 39 compare and select, 43 add, 8 divide, 59 multiply, 1 sqrt
  *   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
  *     1 sqrt
- *   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
+ *   jacobian: 39 compare and select, 75 add, 26 divide, 102 multiply, 1 sqrt
  *   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
- *   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
+ *   determinant: 39 compare and select, 39 add, 10 divide, 64 multiply, 1 sqrt
  *   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
  *     sqrt
- *   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
+ *   singularities: 39 compare and select, 45 add, 8 divide, 60 multiply, 1 sqrt
  *   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
  *     sqrt
- *   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
+ *   condition_number: 39 compare and select, 91 add, 10 divide, 117 multiply, 3 sqrt
  *   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
  *     3 sqrt
- *   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
+ *   constraint: 39 compare and select, 43 add, 8 divide, 67 multiply, 1 sqrt
  *   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
  *     sqrt
  *   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt

@@ -3,13 +3,15 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   skeleton: 66 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 66 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 66 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
- *   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
- *   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
- *   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
+ *   fk: 68 compare and select, 62 add, 11 divide, 97 multiply, 7 sincos, 4 sqrt
+ *   fk where nothing vanishes: 45 compare and select, 60 add, 11 divide, 84 multiply, 7 sincos, 4
+ *     sqrt
+ *   skeleton: 67 compare and select, 74 add, 9 divide, 99 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel: 67 compare and select, 83 add, 9 divide, 99 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 67 compare and select, 69 add, 9 divide, 111 multiply, 7 sincos, 4 sqrt
+ *   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
+ *   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
+ *   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
  *   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
  *

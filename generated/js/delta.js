@@ -2,15 +2,15 @@
 // derivations/delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-//   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
-//   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-//   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
-//   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
-//   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
-//   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
-//   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
-//   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+//   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+//   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
+//   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+//   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+//   jacobian: 44 compare and select, 115 add, 26 divide, 166 multiply, 6 sincos, 1 sqrt
+//   determinant: 44 compare and select, 81 add, 10 divide, 116 multiply, 6 sincos, 1 sqrt
+//   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
+//   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
+//   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
 //   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 
@@ -168,10 +168,11 @@ function _fk(v, o) {
     const t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10);
     const v_v = v_z * v_z + t11 * t11 + t12 * t12;
     const all_same = u_u + v_v <= t9;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const whole = size === 0.0 ? 1.0 : size;
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t13 = same ? t12 : t7;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t14 = same ? t7 : t12;
     const t15 = same ? t5 : t11;
     const t16 = a_x * t14 - t13 * t15;
@@ -184,9 +185,9 @@ function _fk(v, o) {
     const n_z = over * (a_x * t18 + t13 * t20);
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t9;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t13 * a_x < 0 ? -1 : 1;
-    const t22 = size * (t13 + a_x * s_w);
+    const t22 = whole * (t13 + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t22 * t22) : 1.0 / (mu * nu);
     const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
     const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
@@ -354,12 +355,13 @@ function _skeleton(v, o) {
     const t34 = size * size;
     const t35 = _runtime.VANISHING * _runtime.VANISHING * t34;
     const all_same = u_u + v_v <= t35;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t35;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t36 = same ? t33 : t23;
     const d_x = same ? t29 : t15;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t37 = same ? t23 : t33;
     const t38 = same ? t15 : t29;
     const t39 = a_x * t37 - t36 * t38;
@@ -375,9 +377,9 @@ function _skeleton(v, o) {
     const t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40);
     const t46 = Math.abs(in_line ? -t45 : 0.0) <= t34 * _runtime.FEASIBILITY;
     const t47 = l * size * 0.9375;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t36 * a_x < 0 ? -1 : 1;
-    const t48 = size * (t36 + a_x * s_w);
+    const t48 = whole * (t36 + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t48 * t48) : 1.0 / (mu * nu);
     const t49 = in_line ? 0.0 : mu * t45 * part * 0.5;
     const t50 = all_same ? 0.0 : nu * (t49 * t49) + mu * 0.25;
@@ -678,12 +680,13 @@ function _jacobian_parallel(v, o) {
     const t11 = size * size;
     const t12 = _runtime.VANISHING * _runtime.VANISHING * t11;
     const all_same = u_u + v_v <= t12;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t12;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t13 = same ? t10 : t7;
     const d_x = same ? t9 : t5;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t14 = same ? t7 : t10;
     const t15 = same ? t5 : t9;
     const t16 = a_x * t14 - t13 * t15;
@@ -696,9 +699,9 @@ function _jacobian_parallel(v, o) {
     const n_z = over * (a_x * t18 + t13 * t20);
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t12;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t13 * a_x < 0 ? -1 : 1;
-    const t22 = size * (t13 + a_x * s_w);
+    const t22 = whole * (t13 + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t22 * t22) : 1.0 / (mu * nu);
     const t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
     const t24 = in_line ? 0.0 : mu * part * t23 * 0.5;
@@ -848,12 +851,13 @@ function _jacobian_serial(v, o) {
     const t14 = size * size;
     const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
     const all_same = u_u + v_v <= t15;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t15;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t16 = same ? t13 : t9;
     const d_x = same ? t12 : t7;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t17 = same ? t9 : t13;
     const t18 = same ? t7 : t12;
     const t19 = a_x * t17 - t16 * t18;
@@ -866,9 +870,9 @@ function _jacobian_serial(v, o) {
     const n_z = over * (a_x * t21 + t16 * t23);
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t16 * a_x < 0 ? -1 : 1;
-    const t25 = size * (t16 + a_x * s_w);
+    const t25 = whole * (t16 + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t25 * t25) : 1.0 / (mu * nu);
     const t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
     const t27 = in_line ? 0.0 : mu * part * t26 * 0.5;
@@ -1016,12 +1020,13 @@ function _jacobian(v, o) {
     const t14 = size * size;
     const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
     const all_same = u_u + v_v <= t15;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t15;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t16 = same ? t13 : t9;
     const d_x = same ? t12 : t7;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t17 = same ? t9 : t13;
     const t18 = same ? t7 : t12;
     const t19 = a_x * t17 - t16 * t18;
@@ -1034,9 +1039,9 @@ function _jacobian(v, o) {
     const n_z = over * (a_x * t21 + t16 * t23);
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t16 * a_x < 0 ? -1 : 1;
-    const t25 = size * (t16 + a_x * s_w);
+    const t25 = whole * (t16 + a_x * s_w);
     const t26 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t25 * t25) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
@@ -1225,12 +1230,13 @@ function _determinant(v, o) {
     const t14 = size * size;
     const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
     const all_same = u_u + v_v <= t15;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t15;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t16 = same ? t13 : t9;
     const d_x = same ? t12 : t7;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t17 = same ? t9 : t13;
     const t18 = same ? t7 : t12;
     const t19 = a_x * t17 - t16 * t18;
@@ -1243,9 +1249,9 @@ function _determinant(v, o) {
     const n_z = over * (a_x * t21 + t16 * t23);
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t16 * a_x < 0 ? -1 : 1;
-    const t25 = size * (t16 + a_x * s_w);
+    const t25 = whole * (t16 + a_x * s_w);
     const t26 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t25 * t25) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
@@ -1393,12 +1399,13 @@ function _singularities(v, o) {
     const t14 = size * size;
     const t15 = _runtime.VANISHING * _runtime.VANISHING * t14;
     const all_same = u_u + v_v <= t15;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t15;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t16 = same ? t13 : t9;
     const d_x = same ? t12 : t7;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t17 = same ? t9 : t13;
     const t18 = same ? t7 : t12;
     const t19 = a_x * t17 - t16 * t18;
@@ -1411,9 +1418,9 @@ function _singularities(v, o) {
     const n_z = over * (a_x * t21 + t16 * t23);
     const nu = t22 * t22 + t24 * t24 + n_z * n_z;
     const in_line = nu <= t15;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t16 * a_x < 0 ? -1 : 1;
-    const t25 = size * (t16 + a_x * s_w);
+    const t25 = whole * (t16 + a_x * s_w);
     const t26 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t25 * t25) : 1.0 / t26;
     const t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
@@ -1562,12 +1569,13 @@ function _condition_number(v, o) {
     const t11 = size * size;
     const t12 = _runtime.VANISHING * _runtime.VANISHING * t11;
     const all_same = u_u + v_v <= t12;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t12;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t13 = same ? t10 : t7;
     const d_x = same ? t9 : t5;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t14 = same ? t7 : t10;
     const t15 = same ? t5 : t9;
     const t16 = a_x * t14 - t13 * t15;
@@ -1580,9 +1588,9 @@ function _condition_number(v, o) {
     const n_z = over * (a_x * t18 + t13 * t20);
     const nu = t19 * t19 + t21 * t21 + n_z * n_z;
     const in_line = nu <= t12;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t13 * a_x < 0 ? -1 : 1;
-    const t22 = size * (t13 + a_x * s_w);
+    const t22 = whole * (t13 + a_x * s_w);
     const t23 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t22 * t22) : 1.0 / t23;
     const t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
@@ -1756,12 +1764,13 @@ function _constraint(v, o) {
     const t12 = size * size;
     const t13 = _runtime.VANISHING * _runtime.VANISHING * t12;
     const all_same = u_u + v_v <= t13;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t13;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const t14 = same ? t11 : t8;
     const d_x = same ? t10 : t6;
-    const a_x = all_same ? 1.0 : d_x;
+    const a_x = all_same ? whole : d_x;
     const t15 = same ? t8 : t11;
     const t16 = same ? t6 : t10;
     const t17 = a_x * t15 - t14 * t16;
@@ -1774,9 +1783,9 @@ function _constraint(v, o) {
     const n_z = over * (a_x * t19 + t14 * t21);
     const nu = t20 * t20 + t22 * t22 + n_z * n_z;
     const in_line = nu <= t13;
-    const g_1 = size * d_z;
+    const g_1 = whole * d_z;
     const s_w = t14 * a_x < 0 ? -1 : 1;
-    const t23 = size * (t14 + a_x * s_w);
+    const t23 = whole * (t14 + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + t23 * t23) : 1.0 / (mu * nu);
     const t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
     const t25 = in_line ? 0.0 : mu * part * t24 * 0.5;

@@ -2,18 +2,24 @@
 // derivations/linear_delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+//   fk: 44 compare and select, 50 add, 12 divide, 62 multiply, 1 sqrt
 //   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
-//   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
-//   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
-//   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+//   skeleton: 43 compare and select, 124 add, 14 divide, 62 multiply, 1 sqrt
+//   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 62 multiply, 1 sqrt
+//   jacobian_parallel where nothing vanishes: 28 compare and select, 66 add, 11 divide, 52
+//     multiply, 1 sqrt
+//   jacobian_serial: 41 compare and select, 44 add, 10 divide, 53 multiply, 1 sqrt
 //   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
 //     1 sqrt
-//   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
-//   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
-//   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
-//   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
-//   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+//   jacobian: 43 compare and select, 88 add, 30 divide, 113 multiply, 1 sqrt
+//   determinant: 41 compare and select, 40 add, 12 divide, 58 multiply, 1 sqrt
+//   determinant where nothing vanishes: 28 compare and select, 38 add, 11 divide, 49 multiply, 1
+//     sqrt
+//   singularities: 41 compare and select, 46 add, 10 divide, 54 multiply, 1 sqrt
+//   singularities where nothing vanishes: 28 compare and select, 44 add, 9 divide, 45 multiply, 1
+//     sqrt
+//   condition_number: 43 compare and select, 104 add, 14 divide, 132 multiply, 3 sqrt
+//   constraint: 43 compare and select, 62 add, 18 divide, 86 multiply, 1 sqrt
 //   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
@@ -129,11 +135,12 @@ function _fk(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? c3_y : -c3_y;
-    const a_x = all_same ? 1.0 : -t2;
+    const a_x = all_same ? whole : -t2;
     const t7 = same ? -c3_y : c3_y;
     const m_z = a_x * t7 + t2 * d_y;
     const t8 = same ? t4 : t1;
@@ -145,9 +152,9 @@ function _fk(v, o) {
     const t12 = over * (a_x * m_y + d_y * t11);
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
-    const t13 = size * t8;
+    const t13 = whole * t8;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / (mu * nu);
     const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
     const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
@@ -329,11 +336,12 @@ function _skeleton(v, o) {
     const t12 = size * size;
     const t13 = _runtime.VANISHING * _runtime.VANISHING * t12;
     const all_same = u_u + v_v <= t13;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t13;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? c3_y : -c3_y;
-    const a_x = all_same ? 1.0 : -t6;
+    const a_x = all_same ? whole : -t6;
     const t14 = same ? -c3_y : c3_y;
     const m_z = a_x * t14 + t6 * d_y;
     const t15 = same ? t11 : t3;
@@ -348,9 +356,9 @@ function _skeleton(v, o) {
     const t20 = t14 * (d_y - t14) + t16 * (t15 - t16);
     const t21 = Math.abs(in_line ? -t20 : 0.0) <= t12 * _runtime.FEASIBILITY;
     const t22 = l * size * 0.234375;
-    const t23 = size * t15;
+    const t23 = whole * t15;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (t23 * t23) + g_2 * g_2) : 1.0 / (mu * nu);
     const t24 = in_line ? 0.0 : mu * t20 * part * 0.5;
     const t25 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
@@ -612,11 +620,12 @@ function _jacobian_parallel(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? c3_y : -c3_y;
-    const a_x = all_same ? 1.0 : -t1;
+    const a_x = all_same ? whole : -t1;
     const t7 = same ? -c3_y : c3_y;
     const m_z = a_x * t7 + t1 * d_y;
     const t8 = same ? t4 : t2;
@@ -628,9 +637,9 @@ function _jacobian_parallel(v, o) {
     const t12 = over * (a_x * m_y + d_y * t11);
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
-    const t13 = size * t8;
+    const t13 = whole * t8;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / (mu * nu);
     const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
     const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
@@ -679,10 +688,85 @@ function _jacobian_parallel(v, o) {
     o[17] = t4 + A_13_above + t26;
 }
 
+/** @type {_runtime.Compute} */
+function _jacobian_parallel_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const t1 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t2 = c3_y * t1;
+    const t3 = t2 + t2;
+    const t4 = rho1 - rho2;
+    const t5 = rho1 - rho3;
+    const t6 = t1 * t5 - t1 * t4;
+    const t7 = t1 * t1 + c3_y * c3_y;
+    const u_u = t4 * t4 + t7;
+    const over = 1.0 / u_u;
+    const t8 = (c3_y * t3 - t4 * t6) * over;
+    const t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5));
+    const t10 = c3_y * t5 + c3_y * t4;
+    const n_y = (t1 * t3 + t4 * t10) * over;
+    const t11 = (t1 * t6 + c3_y * t10) * over;
+    const nu = t8 * t8 + n_y * n_y + t11 * t11;
+    const part = 1.0 / (u_u * nu);
+    const t12 = t9 * part * 0.5;
+    const t13 = t1 * 0.5 + t8 * t12;
+    const t14 = l * l - (nu * (t12 * t12) + u_u * 0.25);
+    const slack = Math.max(t14, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t15 = (c3_y * t11 + t4 * n_y) * h;
+    const t16 = t13 + t15;
+    const t17 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t18 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t19 = t17 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t18;
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t20 = size * size;
+    const t21 = l * size * 0.234375;
+    const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
+        t14;
+    const t23 = !t19 || !t22 ? NaN : 0;
+    const t24 = c3_y * 0.5 - n_y * t12;
+    const t25 = h * (t1 * t11 - t4 * t8);
+    const t26 = t24 - t25;
+    const t27 = t4 * 0.5 + t11 * t12;
+    const t28 = h * (t1 * n_y + c3_y * t8);
+    const t29 = t27 - t28;
+    const t30 = t1 - t16 + t23;
+    const t31 = t13 - t15;
+    const t32 = t24 + t25;
+    const t33 = t27 + t28;
+    const t34 = t1 - t31 + t23;
+    const t35 = _runtime.VANISHING * _runtime.VANISHING * t20;
+    const t36 = u_u <= t35 || u_u + (t5 * t5 + t7) <= t35 || nu <= t35;
+    o[0] = -t16 + t23;
+    o[1] = -t26 + t23;
+    o[2] = -t29 + t23;
+    o[3] = t30;
+    o[4] = c3_y - t26 + t23;
+    o[5] = t4 - t29 + t23;
+    o[6] = t30;
+    o[7] = -(c3_y + t26) + t23;
+    o[8] = t5 - t29 + t23;
+    o[9] = -t31 + t23;
+    o[10] = -t32 + t23;
+    o[11] = -t33 + t23;
+    o[12] = t34;
+    o[13] = c3_y - t32 + t23;
+    o[14] = t4 - t33 + t23;
+    o[15] = t34;
+    o[16] = -(c3_y + t32) + t23;
+    o[17] = t5 - t33 + t23;
+    o[18] = (t36 || slack <= _runtime.VANISHING * t21) ? 1 : 0;
+}
+
 const _JACOBIAN_PARALLEL = _runtime.kernel({
     name: "linear_delta.jacobian_parallel",
     compute: _jacobian_parallel,
-    common: null,
+    common: _jacobian_parallel_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -748,10 +832,11 @@ function _jacobian_serial(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
-    const a_x = all_same ? 1.0 : -t2;
+    const a_x = all_same ? whole : -t2;
     const t7 = same ? t1 : t4;
     const t8 = same ? t4 : t1;
     const m_y = a_x * t7 + t2 * t8;
@@ -764,8 +849,8 @@ function _jacobian_serial(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const t13 = size * t8;
-    const g_2 = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = whole * t8;
+    const g_2 = whole * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / (mu * nu);
     const t14 = t9 * (d_y - t9) - t7 * (t7 - t8);
     const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;
@@ -913,10 +998,11 @@ function _jacobian(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
-    const a_x = all_same ? 1.0 : -t2;
+    const a_x = all_same ? whole : -t2;
     const t7 = same ? t1 : t4;
     const t8 = same ? t4 : t1;
     const m_y = a_x * t7 + t2 * t8;
@@ -929,9 +1015,9 @@ function _jacobian(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const t13 = size * t8;
+    const t13 = whole * t8;
     const s_w = a_x * d_y < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const t14 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / t14;
     const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
@@ -1078,10 +1164,11 @@ function _determinant(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
-    const a_x = all_same ? 1.0 : -t2;
+    const a_x = all_same ? whole : -t2;
     const t7 = same ? t1 : t4;
     const t8 = same ? t4 : t1;
     const m_y = a_x * t7 + t2 * t8;
@@ -1094,8 +1181,8 @@ function _determinant(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const t13 = size * t8;
-    const g_2 = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = whole * t8;
+    const g_2 = whole * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
     const t14 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / t14;
     const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
@@ -1122,10 +1209,62 @@ function _determinant(v, o) {
     o[1] = t28 / Delta + t26;
 }
 
+/** @type {_runtime.Compute} */
+function _determinant_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t3 = rho1 - rho3;
+    const t4 = t2 * t3 - t2 * t1;
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t5 = c3_y * t3 + c3_y * t1;
+    const t6 = t2 * t2 + c3_y * c3_y;
+    const u_u = t1 * t1 + t6;
+    const over = 1.0 / u_u;
+    const t7 = (t2 * t4 + c3_y * t5) * over;
+    const t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3));
+    const t9 = c3_y * t2;
+    const t10 = t9 + t9;
+    const t11 = (c3_y * t10 - t1 * t4) * over;
+    const n_y = (t2 * t10 + t1 * t5) * over;
+    const nu = t11 * t11 + n_y * n_y + t7 * t7;
+    const t12 = u_u * nu;
+    const part = 1.0 / t12;
+    const t13 = t8 * part * 0.5;
+    const t14 = t1 * 0.5 + t7 * t13;
+    const t15 = l * l - (nu * (t13 * t13) + u_u * 0.25);
+    const slack = Math.max(t15, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t16 = (t2 * n_y + c3_y * t11) * h;
+    const t17 = t14 - t16;
+    const Delta = t12 * h;
+    const t18 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t19 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t20 = t18 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t19;
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t21 = size * size;
+    const t22 = l * size * 0.234375;
+    const t23 = Math.abs(0.0) <= t21 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t22) <=
+        t15;
+    const t24 = !t20 || !t23 ? NaN : 0;
+    const t25 = t14 + t16;
+    const t26 = -(t25 * (t1 - t25) * (t3 - t25) / Delta) + t24;
+    const t27 = _runtime.VANISHING * _runtime.VANISHING * t21;
+    const t28 = u_u <= t27 || u_u + (t3 * t3 + t6) <= t27 || nu <= t27;
+    o[0] = t17 * (t1 - t17) * (t3 - t17) / Delta + t24;
+    o[1] = t26;
+    o[2] = (t28 || slack <= _runtime.VANISHING * t22) ? 1 : 0;
+}
+
 const _DETERMINANT = _runtime.kernel({
     name: "linear_delta.determinant",
     compute: _determinant,
-    common: null,
+    common: _determinant_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -1191,10 +1330,11 @@ function _singularities(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
-    const a_x = all_same ? 1.0 : -t2;
+    const a_x = all_same ? whole : -t2;
     const t7 = same ? t1 : t4;
     const t8 = same ? t4 : t1;
     const m_y = a_x * t7 + t2 * t8;
@@ -1207,8 +1347,8 @@ function _singularities(v, o) {
     const n_y = over * (a_x * m_z - t8 * t10);
     const nu = t12 * t12 + n_y * n_y + t11 * t11;
     const in_line = nu <= t6;
-    const t13 = size * t8;
-    const g_2 = size * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
+    const t13 = whole * t8;
+    const g_2 = whole * (d_y + a_x * (a_x * d_y < 0 ? -1 : 1));
     const t14 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / t14;
     const t15 = t9 * (d_y - t9) - t7 * (t7 - t8);
@@ -1239,10 +1379,67 @@ function _singularities(v, o) {
     o[7] = Delta + t26;
 }
 
+/** @type {_runtime.Compute} */
+function _singularities_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const t3 = rho1 - rho3;
+    const t4 = t2 * t3 - t2 * t1;
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t5 = c3_y * t3 + c3_y * t1;
+    const t6 = t2 * t2 + c3_y * c3_y;
+    const u_u = t1 * t1 + t6;
+    const over = 1.0 / u_u;
+    const t7 = (t2 * t4 + c3_y * t5) * over;
+    const t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3));
+    const t9 = c3_y * t2;
+    const t10 = t9 + t9;
+    const t11 = (c3_y * t10 - t1 * t4) * over;
+    const n_y = (t2 * t10 + t1 * t5) * over;
+    const nu = t11 * t11 + n_y * n_y + t7 * t7;
+    const t12 = u_u * nu;
+    const part = 1.0 / t12;
+    const t13 = t8 * part * 0.5;
+    const t14 = t1 * 0.5 + t7 * t13;
+    const t15 = l * l - (nu * (t13 * t13) + u_u * 0.25);
+    const slack = Math.max(t15, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t16 = (t2 * n_y + c3_y * t11) * h;
+    const t17 = t14 - t16;
+    const t18 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t19 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t20 = t18 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t19;
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t21 = size * size;
+    const t22 = l * size * 0.234375;
+    const t23 = Math.abs(0.0) <= t21 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t22) <=
+        t15;
+    const t24 = !t20 || !t23 ? NaN : 0;
+    const Delta = t12 * h;
+    const t25 = t14 + t16;
+    const t26 = _runtime.VANISHING * _runtime.VANISHING * t21;
+    const t27 = u_u <= t26 || u_u + (t3 * t3 + t6) <= t26 || nu <= t26;
+    o[0] = -t17 + t24;
+    o[1] = t1 - t17 + t24;
+    o[2] = t3 - t17 + t24;
+    o[3] = -Delta + t24;
+    o[4] = -t25 + t24;
+    o[5] = t1 - t25 + t24;
+    o[6] = t3 - t25 + t24;
+    o[7] = Delta + t24;
+    o[8] = (t27 || slack <= _runtime.VANISHING * t22) ? 1 : 0;
+}
+
 const _SINGULARITIES = _runtime.kernel({
     name: "linear_delta.singularities",
     compute: _singularities,
-    common: null,
+    common: _singularities_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -1308,11 +1505,12 @@ function _condition_number(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? c3_y : -c3_y;
-    const a_x = all_same ? 1.0 : -t1;
+    const a_x = all_same ? whole : -t1;
     const t7 = same ? -c3_y : c3_y;
     const m_z = a_x * t7 + t1 * d_y;
     const t8 = same ? t4 : t2;
@@ -1324,9 +1522,9 @@ function _condition_number(v, o) {
     const t12 = over * (a_x * m_y + d_y * t11);
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
-    const t13 = size * t8;
+    const t13 = whole * t8;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const t14 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / t14;
     const t15 = t7 * (d_y - t7) + t9 * (t8 - t9);
@@ -1473,11 +1671,12 @@ function _constraint(v, o) {
     const t5 = size * size;
     const t6 = _runtime.VANISHING * _runtime.VANISHING * t5;
     const all_same = u_u + v_v <= t6;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t6;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? c3_y : -c3_y;
-    const a_x = all_same ? 1.0 : -t1;
+    const a_x = all_same ? whole : -t1;
     const t7 = same ? -c3_y : c3_y;
     const m_z = a_x * t7 + t1 * d_y;
     const t8 = same ? t4 : t2;
@@ -1489,9 +1688,9 @@ function _constraint(v, o) {
     const t12 = over * (a_x * m_y + d_y * t11);
     const nu = t10 * t10 + n_y * n_y + t12 * t12;
     const in_line = nu <= t6;
-    const t13 = size * t8;
+    const t13 = whole * t8;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (t13 * t13) + g_2 * g_2) : 1.0 / (mu * nu);
     const t14 = t7 * (d_y - t7) + t9 * (t8 - t9);
     const t15 = in_line ? 0.0 : mu * part * t14 * 0.5;

@@ -2,28 +2,28 @@
 // derivations/orthoglide.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
+//   fk: 40 compare and select, 40 add, 8 divide, 59 multiply, 1 sqrt
 //   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
-//   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
+//   skeleton: 39 compare and select, 71 add, 9 divide, 59 multiply, 1 sqrt
 //   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
-//   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
+//   jacobian_parallel: 39 compare and select, 51 add, 8 divide, 59 multiply, 1 sqrt
 //   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
 //     multiply, 1 sqrt
-//   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
+//   jacobian_serial: 39 compare and select, 43 add, 8 divide, 59 multiply, 1 sqrt
 //   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
 //     1 sqrt
-//   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
+//   jacobian: 39 compare and select, 75 add, 26 divide, 102 multiply, 1 sqrt
 //   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
-//   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
+//   determinant: 39 compare and select, 39 add, 10 divide, 64 multiply, 1 sqrt
 //   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
 //     sqrt
-//   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
+//   singularities: 39 compare and select, 45 add, 8 divide, 60 multiply, 1 sqrt
 //   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
 //     sqrt
-//   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
+//   condition_number: 39 compare and select, 91 add, 10 divide, 117 multiply, 3 sqrt
 //   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
 //     3 sqrt
-//   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
+//   constraint: 39 compare and select, 43 add, 8 divide, 67 multiply, 1 sqrt
 //   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 //     sqrt
 //   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
@@ -124,11 +124,12 @@ function _fk(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -141,8 +142,8 @@ function _fk(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
@@ -295,11 +296,12 @@ function _skeleton(v, o) {
     const t3 = size * size;
     const t4 = _runtime.VANISHING * _runtime.VANISHING * t3;
     const all_same = u_u + v_v <= t4;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t4;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t5 = same ? rho2 : 0.0;
     const m_z = a_x * t5 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -314,9 +316,9 @@ function _skeleton(v, o) {
     const t9 = t5 * (d_y - t5) + t6 * (d_z - t6);
     const t10 = Math.abs(in_line ? -t9 : 0.0) <= t3 * _runtime.FEASIBILITY;
     const t11 = L * size * 0.234375;
-    const g_1 = size * d_z;
+    const g_1 = d_z * whole;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / (mu * nu);
     const t12 = in_line ? 0.0 : mu * part * t9 * 0.5;
     const t13 = all_same ? 0.0 : nu * (t12 * t12) + mu * 0.25;
@@ -704,11 +706,12 @@ function _jacobian_parallel(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -721,8 +724,8 @@ function _jacobian_parallel(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
@@ -905,11 +908,12 @@ function _jacobian_serial(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -922,8 +926,8 @@ function _jacobian_serial(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
@@ -1058,11 +1062,12 @@ function _jacobian(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -1075,8 +1080,8 @@ function _jacobian(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const t8 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
@@ -1280,11 +1285,12 @@ function _determinant(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -1297,8 +1303,8 @@ function _determinant(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const t8 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
@@ -1434,11 +1440,12 @@ function _singularities(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -1451,8 +1458,8 @@ function _singularities(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const t8 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
@@ -1596,11 +1603,12 @@ function _condition_number(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -1613,8 +1621,8 @@ function _condition_number(v, o) {
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_1 = size * d_z;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_1 = d_z * whole;
+    const g_2 = whole * (d_y + a_x * s_w);
     const t8 = mu * nu;
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / t8;
     const t9 = t4 * (d_y - t4) + t5 * (d_z - t5);
@@ -1847,11 +1855,12 @@ function _constraint(v, o) {
     const t2 = size * size;
     const t3 = _runtime.VANISHING * _runtime.VANISHING * t2;
     const all_same = u_u + v_v <= t3;
+    const whole = size === 0.0 ? 1.0 : size;
     const same = u_u <= t3;
-    const mu = all_same ? 1.0 : (same ? v_v : u_u);
+    const mu = all_same ? whole * whole : (same ? v_v : u_u);
     const over = 1.0 / mu;
     const d_y = same ? 0.0 : rho2;
-    const a_x = all_same ? 1.0 : -rho1;
+    const a_x = all_same ? whole : -rho1;
     const t4 = same ? rho2 : 0.0;
     const m_z = a_x * t4 + rho1 * d_y;
     const d_z = same ? rho3 : 0.0;
@@ -1863,9 +1872,9 @@ function _constraint(v, o) {
     const n_z = over * (a_x * t6 + d_y * m_x);
     const nu = t7 * t7 + n_y * n_y + n_z * n_z;
     const in_line = nu <= t3;
-    const g_1 = size * d_z;
+    const g_1 = d_z * whole;
     const s_w = d_y * a_x < 0 ? -1 : 1;
-    const g_2 = size * (d_y + a_x * s_w);
+    const g_2 = whole * (d_y + a_x * s_w);
     const part = in_line ? 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2) : 1.0 / (mu * nu);
     const t8 = t4 * (d_y - t4) + t5 * (d_z - t5);
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 43 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-#   skeleton: 42 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 42 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 42 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
-#   jacobian: 42 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
-#   determinant: 42 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
-#   singularities: 42 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
-#   condition_number: 42 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
-#   constraint: 42 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+#   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+#   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+#   jacobian: 44 compare and select, 115 add, 26 divide, 166 multiply, 6 sincos, 1 sqrt
+#   determinant: 44 compare and select, 81 add, 10 divide, 116 multiply, 6 sincos, 1 sqrt
+#   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
+#   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
+#   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -185,11 +185,12 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del s_alpha3, t10
     v_v = v_z * v_z + t11 * t11 + t12 * t12
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t13 = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t14 = _runtime.select(same, t7, t12)
     del t12, t7
     t15 = _runtime.select(same, t5, t11)
@@ -208,9 +209,10 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t9
     del t9
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t13 * a_x)
-    t22 = size * (t13 + a_x * s_w)
+    t22 = whole * (t13 + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
@@ -382,13 +384,14 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t34 = size * size
     t35 = _runtime.VANISHING * _runtime.VANISHING * t34
     all_same = u_u + v_v <= t35
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t35
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t36 = _runtime.select(same, t33, t23)
     d_x = _runtime.select(same, t29, t15)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t37 = _runtime.select(same, t23, t33)
     del t23, t33
     t38 = _runtime.select(same, t15, t29)
@@ -412,10 +415,11 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
     del t34
     t47 = l * size * 0.9375
-    g_1 = size * d_z
-    s_w = _runtime.sign(t36 * a_x)
-    t48 = size * (t36 + a_x * s_w)
     del size
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t36 * a_x)
+    t48 = whole * (t36 + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t48 * t48), 1.0 / (mu * nu))
     t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
     del t45
@@ -742,13 +746,14 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t11 = size * size
     t12 = _runtime.VANISHING * _runtime.VANISHING * t11
     all_same = u_u + v_v <= t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t12
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t13 = _runtime.select(same, t10, t7)
     d_x = _runtime.select(same, t9, t5)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t14 = _runtime.select(same, t7, t10)
     t15 = _runtime.select(same, t5, t9)
     t16 = a_x * t14 - t13 * t15
@@ -765,11 +770,11 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t12
     del t12
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t13 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
-    t22 = size * (t13 + a_x * s_w)
-    del s_w
+    t22 = whole * (t13 + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
     t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
     del t14, t15, t17
@@ -920,13 +925,14 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t14 = size * size
     t15 = _runtime.VANISHING * _runtime.VANISHING * t14
     all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t15
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t16 = _runtime.select(same, t13, t9)
     d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t17 = _runtime.select(same, t9, t13)
     t18 = _runtime.select(same, t7, t12)
     t19 = a_x * t17 - t16 * t18
@@ -943,11 +949,11 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t16 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * s_w)
-    del s_w
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / (mu * nu))
     t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
     del t17, t18, t20
@@ -1103,13 +1109,14 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t14 = size * size
     t15 = _runtime.VANISHING * _runtime.VANISHING * t14
     all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t15
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t16 = _runtime.select(same, t13, t9)
     d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t17 = _runtime.select(same, t9, t13)
     t18 = _runtime.select(same, t7, t12)
     t19 = a_x * t17 - t16 * t18
@@ -1126,11 +1133,11 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t16 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * s_w)
-    del s_w
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
     t26 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
@@ -1339,13 +1346,14 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t14 = size * size
     t15 = _runtime.VANISHING * _runtime.VANISHING * t14
     all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t15
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t16 = _runtime.select(same, t13, t9)
     d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t17 = _runtime.select(same, t9, t13)
     t18 = _runtime.select(same, t7, t12)
     t19 = a_x * t17 - t16 * t18
@@ -1362,11 +1370,11 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t16 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * s_w)
-    del s_w
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
     t26 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
@@ -1526,13 +1534,14 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t14 = size * size
     t15 = _runtime.VANISHING * _runtime.VANISHING * t14
     all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t15
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t16 = _runtime.select(same, t13, t9)
     d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t17 = _runtime.select(same, t9, t13)
     t18 = _runtime.select(same, t7, t12)
     t19 = a_x * t17 - t16 * t18
@@ -1549,11 +1558,11 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t22 * t22 + t24 * t24 + n_z * n_z
     in_line = nu <= t15
     del t15
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t16 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = size * (t16 + a_x * s_w)
-    del s_w
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
     t26 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
     t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
@@ -1714,13 +1723,14 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t11 = size * size
     t12 = _runtime.VANISHING * _runtime.VANISHING * t11
     all_same = u_u + v_v <= t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t12
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t13 = _runtime.select(same, t10, t7)
     d_x = _runtime.select(same, t9, t5)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t14 = _runtime.select(same, t7, t10)
     t15 = _runtime.select(same, t5, t9)
     t16 = a_x * t14 - t13 * t15
@@ -1737,11 +1747,11 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     nu = t19 * t19 + t21 * t21 + n_z * n_z
     in_line = nu <= t12
     del t12
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t13 * a_x)
     w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
-    t22 = size * (t13 + a_x * s_w)
-    del s_w
+    t22 = whole * (t13 + a_x * s_w)
+    del s_w, whole
     t23 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / t23)
     t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
@@ -1939,13 +1949,14 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t12 = size * size
     t13 = _runtime.VANISHING * _runtime.VANISHING * t12
     all_same = u_u + v_v <= t13
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t13
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t14 = _runtime.select(same, t11, t8)
     d_x = _runtime.select(same, t10, t6)
-    a_x = _runtime.select(all_same, 1.0, d_x)
+    a_x = _runtime.select(all_same, whole, d_x)
     t15 = _runtime.select(same, t8, t11)
     t16 = _runtime.select(same, t6, t10)
     t17 = a_x * t15 - t14 * t16
@@ -1962,9 +1973,10 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     nu = t20 * t20 + t22 * t22 + n_z * n_z
     in_line = nu <= t13
     del t13
-    g_1 = size * d_z
+    g_1 = whole * d_z
     s_w = _runtime.sign(t14 * a_x)
-    t23 = size * (t14 + a_x * s_w)
+    t23 = whole * (t14 + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t23 * t23), 1.0 / (mu * nu))
     t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
     del t15, t16, t18

@@ -2,18 +2,24 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 42 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+#   fk: 44 compare and select, 50 add, 12 divide, 62 multiply, 1 sqrt
 #   fk where nothing vanishes: 29 compare and select, 48 add, 11 divide, 52 multiply, 1 sqrt
-#   skeleton: 41 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
-#   jacobian_parallel: 41 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
-#   jacobian_serial: 39 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+#   skeleton: 43 compare and select, 124 add, 14 divide, 62 multiply, 1 sqrt
+#   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 62 multiply, 1 sqrt
+#   jacobian_parallel where nothing vanishes: 28 compare and select, 66 add, 11 divide, 52
+#     multiply, 1 sqrt
+#   jacobian_serial: 41 compare and select, 44 add, 10 divide, 53 multiply, 1 sqrt
 #   jacobian_serial where nothing vanishes: 28 compare and select, 42 add, 9 divide, 44 multiply,
 #     1 sqrt
-#   jacobian: 41 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
-#   determinant: 39 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
-#   singularities: 39 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
-#   condition_number: 41 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
-#   constraint: 41 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+#   jacobian: 43 compare and select, 88 add, 30 divide, 113 multiply, 1 sqrt
+#   determinant: 41 compare and select, 40 add, 12 divide, 58 multiply, 1 sqrt
+#   determinant where nothing vanishes: 28 compare and select, 38 add, 11 divide, 49 multiply, 1
+#     sqrt
+#   singularities: 41 compare and select, 46 add, 10 divide, 54 multiply, 1 sqrt
+#   singularities where nothing vanishes: 28 compare and select, 44 add, 9 divide, 45 multiply, 1
+#     sqrt
+#   condition_number: 43 compare and select, 104 add, 14 divide, 132 multiply, 3 sqrt
+#   constraint: 43 compare and select, 62 add, 18 divide, 86 multiply, 1 sqrt
 #   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -151,12 +157,13 @@ def _fk(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, 1.0, -t2)
+    a_x = _runtime.select(all_same, whole, -t2)
     t7 = _runtime.select(same, -c3_y, c3_y)
     del c3_y
     m_z = a_x * t7 + t2 * d_y
@@ -173,11 +180,11 @@ def _fk(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    t13 = size * t8
+    t13 = whole * t8
     s_w = _runtime.sign(d_y * a_x)
     t14 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
@@ -381,12 +388,13 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t13 = size * size
     t14 = _runtime.VANISHING * _runtime.VANISHING * t13
     all_same = u_u + v_v <= t14
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t14
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, 1.0, -t7)
+    a_x = _runtime.select(all_same, whole, -t7)
     t15 = _runtime.select(same, -c3_y, c3_y)
     del c3_y
     m_z = a_x * t15 + t7 * d_y
@@ -408,10 +416,11 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
     del t13
     t23 = l * size * 0.234375
-    t24 = size * t16
-    s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
     del size
+    t24 = whole * t16
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (t24 * t24) + g_2 * g_2), 1.0 / (mu * nu))
     t25 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
     del t21
@@ -694,12 +703,13 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, 1.0, -t1)
+    a_x = _runtime.select(all_same, whole, -t1)
     t7 = _runtime.select(same, -c3_y, c3_y)
     m_z = a_x * t7 + t1 * d_y
     t8 = _runtime.select(same, t4, t2)
@@ -715,9 +725,10 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    t13 = size * t8
+    t13 = whole * t8
     s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9
@@ -791,6 +802,93 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     )
 
 
+def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t2 = c3_y * t1
+    t3 = t2 + t2
+    del t2
+    t4 = rho1 - rho2
+    t5 = rho1 - rho3
+    t6 = t1 * t5 - t1 * t4
+    t7 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t7
+    over = 1.0 / u_u
+    t8 = (c3_y * t3 - t4 * t6) * over
+    t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
+    t10 = c3_y * t5 + c3_y * t4
+    n_y = (t1 * t3 + t4 * t10) * over
+    del t3
+    t11 = (t1 * t6 + c3_y * t10) * over
+    del over, t10, t6
+    nu = t8 * t8 + n_y * n_y + t11 * t11
+    part = 1.0 / (u_u * nu)
+    t12 = t9 * part * 0.5
+    del t9
+    t13 = t1 * 0.5 + t8 * t12
+    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t15 = (c3_y * t11 + t4 * n_y) * h
+    t16 = t13 + t15
+    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t19 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t18
+    del t17, t18
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t20 = size * size
+    t21 = l * size * 0.234375
+    del size
+    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
+    del t14
+    t23 = _runtime.poison(np.logical_not(t19) | np.logical_not(t22))
+    del t19, t22
+    t24 = c3_y * 0.5 - n_y * t12
+    t25 = h * (t1 * t11 - t4 * t8)
+    t26 = t24 - t25
+    t27 = t4 * 0.5 + t11 * t12
+    del t11, t12
+    t28 = h * (t1 * n_y + c3_y * t8)
+    del h, n_y, t8
+    t29 = t27 - t28
+    t30 = t1 - t16 + t23
+    t31 = t13 - t15
+    del t13, t15
+    t32 = t24 + t25
+    del t24, t25
+    t33 = t27 + t28
+    del t27, t28
+    t34 = t1 - t31 + t23
+    del t1
+    t35 = _runtime.VANISHING * _runtime.VANISHING * t20
+    del t20
+    t36 = (u_u <= t35) | (u_u + (t5 * t5 + t7) <= t35) | (nu <= t35)
+    del nu, t35, t7, u_u
+    return (
+        -t16 + t23,
+        -t26 + t23,
+        -t29 + t23,
+        t30,
+        c3_y - t26 + t23,
+        t4 - t29 + t23,
+        t30,
+        -(c3_y + t26) + t23,
+        t5 - t29 + t23,
+        -t31 + t23,
+        -t32 + t23,
+        -t33 + t23,
+        t34,
+        c3_y - t32 + t23,
+        t4 - t33 + t23,
+        t34,
+        -(c3_y + t32) + t23,
+        t5 - t33 + t23,
+        t36 | (slack <= _runtime.VANISHING * t21),
+    )
+
+
 _JACOBIAN_PARALLEL = _runtime.Kernel(
     "linear_delta.jacobian_parallel",
     _jacobian_parallel,
@@ -798,6 +896,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_jacobian_parallel_common,
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
@@ -848,11 +947,12 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
-    a_x = _runtime.select(all_same, 1.0, -t2)
+    a_x = _runtime.select(all_same, whole, -t2)
     t7 = _runtime.select(same, t1, t4)
     t8 = _runtime.select(same, t4, t1)
     m_y = a_x * t7 + t2 * t8
@@ -870,8 +970,9 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    t13 = size * t8
-    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = whole * t8
+    g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     del t13
     t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
@@ -1034,11 +1135,12 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
-    a_x = _runtime.select(all_same, 1.0, -t2)
+    a_x = _runtime.select(all_same, whole, -t2)
     t7 = _runtime.select(same, t1, t4)
     t8 = _runtime.select(same, t4, t1)
     m_y = a_x * t7 + t2 * t8
@@ -1055,9 +1157,10 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    t13 = size * t8
+    t13 = whole * t8
     s_w = _runtime.sign(a_x * d_y)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     t14 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
@@ -1227,11 +1330,12 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
-    a_x = _runtime.select(all_same, 1.0, -t2)
+    a_x = _runtime.select(all_same, whole, -t2)
     t7 = _runtime.select(same, t1, t4)
     t8 = _runtime.select(same, t4, t1)
     m_y = a_x * t7 + t2 * t8
@@ -1249,8 +1353,9 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    t13 = size * t8
-    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = whole * t8
+    g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
+    del whole
     t14 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     del t13
@@ -1297,6 +1402,70 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     )
 
 
+def _determinant_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    t3 = rho1 - rho3
+    t4 = t2 * t3 - t2 * t1
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = c3_y * t3 + c3_y * t1
+    t6 = t2 * t2 + c3_y * c3_y
+    u_u = t1 * t1 + t6
+    over = 1.0 / u_u
+    t7 = (t2 * t4 + c3_y * t5) * over
+    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
+    t9 = c3_y * t2
+    t10 = t9 + t9
+    del t9
+    t11 = (c3_y * t10 - t1 * t4) * over
+    del t4
+    n_y = (t2 * t10 + t1 * t5) * over
+    del over, t10, t5
+    nu = t11 * t11 + n_y * n_y + t7 * t7
+    t12 = u_u * nu
+    part = 1.0 / t12
+    t13 = t8 * part * 0.5
+    del t8
+    t14 = t1 * 0.5 + t7 * t13
+    del t7
+    t15 = l * l - (nu * (t13 * t13) + u_u * 0.25)
+    del t13
+    slack = np.maximum(t15, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t16 = (t2 * n_y + c3_y * t11) * h
+    del c3_y, n_y, t11, t2
+    t17 = t14 - t16
+    Delta = t12 * h
+    del h, t12
+    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
+    del t18, t19
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t21 = size * size
+    t22 = l * size * 0.234375
+    del size
+    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
+    del t15
+    t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
+    del t20, t23
+    t25 = t14 + t16
+    del t14, t16
+    t26 = -(t25 * (t1 - t25) * (t3 - t25) / Delta) + t24
+    del t25
+    t27 = _runtime.VANISHING * _runtime.VANISHING * t21
+    del t21
+    t28 = (u_u <= t27) | (u_u + (t3 * t3 + t6) <= t27) | (nu <= t27)
+    del nu, t27, t6, u_u
+    return (
+        t17 * (t1 - t17) * (t3 - t17) / Delta + t24,
+        t26,
+        t28 | (slack <= _runtime.VANISHING * t22),
+    )
+
+
 _DETERMINANT = _runtime.Kernel(
     "linear_delta.determinant",
     _determinant,
@@ -1304,6 +1473,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_determinant_common,
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
@@ -1354,11 +1524,12 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
-    a_x = _runtime.select(all_same, 1.0, -t2)
+    a_x = _runtime.select(all_same, whole, -t2)
     t7 = _runtime.select(same, t1, t4)
     t8 = _runtime.select(same, t4, t1)
     m_y = a_x * t7 + t2 * t8
@@ -1376,8 +1547,9 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     nu = t12 * t12 + n_y * n_y + t11 * t11
     in_line = nu <= t6
     del t6
-    t13 = size * t8
-    g_2 = size * (d_y + a_x * _runtime.sign(a_x * d_y))
+    t13 = whole * t8
+    g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
+    del whole
     t14 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     del t13
@@ -1426,6 +1598,74 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     )
 
 
+def _singularities_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    t3 = rho1 - rho3
+    t4 = t2 * t3 - t2 * t1
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = c3_y * t3 + c3_y * t1
+    t6 = t2 * t2 + c3_y * c3_y
+    u_u = t1 * t1 + t6
+    over = 1.0 / u_u
+    t7 = (t2 * t4 + c3_y * t5) * over
+    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
+    t9 = c3_y * t2
+    t10 = t9 + t9
+    del t9
+    t11 = (c3_y * t10 - t1 * t4) * over
+    del t4
+    n_y = (t2 * t10 + t1 * t5) * over
+    del over, t10, t5
+    nu = t11 * t11 + n_y * n_y + t7 * t7
+    t12 = u_u * nu
+    part = 1.0 / t12
+    t13 = t8 * part * 0.5
+    del t8
+    t14 = t1 * 0.5 + t7 * t13
+    del t7
+    t15 = l * l - (nu * (t13 * t13) + u_u * 0.25)
+    del t13
+    slack = np.maximum(t15, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t16 = (t2 * n_y + c3_y * t11) * h
+    del c3_y, n_y, t11, t2
+    t17 = t14 - t16
+    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
+    del t18, t19
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t21 = size * size
+    t22 = l * size * 0.234375
+    del size
+    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
+    del t15
+    t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
+    del t20, t23
+    Delta = t12 * h
+    del h, t12
+    t25 = t14 + t16
+    del t14, t16
+    t26 = _runtime.VANISHING * _runtime.VANISHING * t21
+    del t21
+    t27 = (u_u <= t26) | (u_u + (t3 * t3 + t6) <= t26) | (nu <= t26)
+    del nu, t26, t6, u_u
+    return (
+        -t17 + t24,
+        t1 - t17 + t24,
+        t3 - t17 + t24,
+        -Delta + t24,
+        -t25 + t24,
+        t1 - t25 + t24,
+        t3 - t25 + t24,
+        Delta + t24,
+        t27 | (slack <= _runtime.VANISHING * t22),
+    )
+
+
 _SINGULARITIES = _runtime.Kernel(
     "linear_delta.singularities",
     _singularities,
@@ -1433,6 +1673,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_singularities_common,
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
@@ -1483,12 +1724,13 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, 1.0, -t1)
+    a_x = _runtime.select(all_same, whole, -t1)
     t7 = _runtime.select(same, -c3_y, c3_y)
     m_z = a_x * t7 + t1 * d_y
     t8 = _runtime.select(same, t4, t2)
@@ -1504,9 +1746,10 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    t13 = size * t8
+    t13 = whole * t8
     s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     t14 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
     t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
@@ -1685,12 +1928,13 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     t5 = size * size
     t6 = _runtime.VANISHING * _runtime.VANISHING * t5
     all_same = u_u + v_v <= t6
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t6
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, 1.0, -t1)
+    a_x = _runtime.select(all_same, whole, -t1)
     t7 = _runtime.select(same, -c3_y, c3_y)
     m_z = a_x * t7 + t1 * d_y
     t8 = _runtime.select(same, t4, t2)
@@ -1706,9 +1950,10 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     nu = t10 * t10 + n_y * n_y + t12 * t12
     in_line = nu <= t6
     del t6
-    t13 = size * t8
+    t13 = whole * t8
     s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
     t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
     del t7, t9

@@ -2,28 +2,28 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 38 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
+#   fk: 40 compare and select, 40 add, 8 divide, 59 multiply, 1 sqrt
 #   fk where nothing vanishes: 25 compare and select, 27 add, 6 divide, 41 multiply, 1 sqrt
-#   skeleton: 37 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
+#   skeleton: 39 compare and select, 71 add, 9 divide, 59 multiply, 1 sqrt
 #   skeleton where nothing vanishes: 24 compare and select, 58 add, 7 divide, 41 multiply, 1 sqrt
-#   jacobian_parallel: 37 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
+#   jacobian_parallel: 39 compare and select, 51 add, 8 divide, 59 multiply, 1 sqrt
 #   jacobian_parallel where nothing vanishes: 24 compare and select, 38 add, 6 divide, 41
 #     multiply, 1 sqrt
-#   jacobian_serial: 37 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
+#   jacobian_serial: 39 compare and select, 43 add, 8 divide, 59 multiply, 1 sqrt
 #   jacobian_serial where nothing vanishes: 24 compare and select, 30 add, 6 divide, 41 multiply,
 #     1 sqrt
-#   jacobian: 37 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
+#   jacobian: 39 compare and select, 75 add, 26 divide, 102 multiply, 1 sqrt
 #   jacobian where nothing vanishes: 24 compare and select, 62 add, 24 divide, 84 multiply, 1 sqrt
-#   determinant: 37 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
+#   determinant: 39 compare and select, 39 add, 10 divide, 64 multiply, 1 sqrt
 #   determinant where nothing vanishes: 24 compare and select, 26 add, 8 divide, 46 multiply, 1
 #     sqrt
-#   singularities: 37 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
+#   singularities: 39 compare and select, 45 add, 8 divide, 60 multiply, 1 sqrt
 #   singularities where nothing vanishes: 24 compare and select, 32 add, 6 divide, 42 multiply, 1
 #     sqrt
-#   condition_number: 37 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
+#   condition_number: 39 compare and select, 91 add, 10 divide, 117 multiply, 3 sqrt
 #   condition_number where nothing vanishes: 24 compare and select, 78 add, 8 divide, 99 multiply,
 #     3 sqrt
-#   constraint: 37 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
+#   constraint: 39 compare and select, 43 add, 8 divide, 67 multiply, 1 sqrt
 #   constraint where nothing vanishes: 24 compare and select, 30 add, 6 divide, 49 multiply, 1
 #     sqrt
 #   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
@@ -148,12 +148,13 @@ def _fk(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -170,10 +171,10 @@ def _fk(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
@@ -347,12 +348,13 @@ def _skeleton(rho1, rho2, rho3, L):
     t3 = size * size
     t4 = _runtime.VANISHING * _runtime.VANISHING * t3
     all_same = u_u + v_v <= t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t4
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t5 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t5 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -373,10 +375,11 @@ def _skeleton(rho1, rho2, rho3, L):
     t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
     del t3
     t11 = L * size * 0.234375
-    g_1 = size * d_z
-    s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
     del size
+    g_1 = d_z * whole
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t12 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
     del t9
@@ -787,12 +790,13 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -809,10 +813,10 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
@@ -1019,12 +1023,13 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -1041,10 +1046,10 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5
@@ -1197,12 +1202,13 @@ def _jacobian(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -1219,10 +1225,10 @@ def _jacobian(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     t8 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
@@ -1453,12 +1459,13 @@ def _determinant(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -1475,10 +1482,10 @@ def _determinant(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     t8 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
@@ -1636,12 +1643,13 @@ def _singularities(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -1658,10 +1666,10 @@ def _singularities(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     t8 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
@@ -1824,12 +1832,13 @@ def _condition_number(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -1846,10 +1855,10 @@ def _condition_number(rho1, rho2, rho3, L):
     in_line = nu <= t3
     del t3
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    g_2 = size * (d_y + a_x * s_w)
-    del s_w
+    g_2 = whole * (d_y + a_x * s_w)
+    del s_w, whole
     t8 = mu * nu
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
     t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
@@ -2144,12 +2153,13 @@ def _constraint(rho1, rho2, rho3, L):
     t2 = size * size
     t3 = _runtime.VANISHING * _runtime.VANISHING * t2
     all_same = u_u + v_v <= t3
+    whole = _runtime.select(size == 0.0, 1.0, size)
     same = u_u <= t3
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, 1.0, -rho1)
+    a_x = _runtime.select(all_same, whole, -rho1)
     t4 = _runtime.select(same, rho2, 0.0)
     m_z = a_x * t4 + rho1 * d_y
     d_z = _runtime.select(same, rho3, 0.0)
@@ -2165,10 +2175,11 @@ def _constraint(rho1, rho2, rho3, L):
     nu = t7 * t7 + n_y * n_y + n_z * n_z
     in_line = nu <= t3
     del t3
-    g_1 = size * d_z
+    g_1 = d_z * whole
     w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
     s_w = _runtime.sign(d_y * a_x)
-    g_2 = size * (d_y + a_x * s_w)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
     part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
     t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
     del t4, t5

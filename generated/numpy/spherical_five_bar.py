@@ -2,13 +2,15 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 67 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
-#   skeleton: 66 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel: 66 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial: 66 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
-#   jacobian: 66 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
-#   singularities: 66 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
-#   condition_number: 66 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
+#   fk: 68 compare and select, 62 add, 11 divide, 97 multiply, 7 sincos, 4 sqrt
+#   fk where nothing vanishes: 45 compare and select, 60 add, 11 divide, 84 multiply, 7 sincos, 4
+#     sqrt
+#   skeleton: 67 compare and select, 74 add, 9 divide, 99 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel: 67 compare and select, 83 add, 9 divide, 99 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 67 compare and select, 69 add, 9 divide, 111 multiply, 7 sincos, 4 sqrt
+#   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
+#   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
+#   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
 #   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -146,13 +148,14 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t8 = r * r
     t9 = _runtime.VANISHING * _runtime.VANISHING * t8
     all_same = u_u + v_v <= t9
+    whole = _runtime.select(r == 0.0, 1.0, r)
     same = u_u <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t10 = _runtime.select(same, c1_y, t6)
     t11 = _runtime.select(same, c1_x, t4)
-    a_x = _runtime.select(all_same, 1.0, -t11)
+    a_x = _runtime.select(all_same, whole, -t11)
     t12 = _runtime.select(same, t6, c1_y)
     del t6
     t13 = _runtime.select(same, t4, c1_x)
@@ -171,118 +174,252 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t10 * a_x))
-    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
     length_a = np.sqrt(mu)
     del mu
-    t22 = t20 * (t10 - a_x * s_w)
-    del s_w, t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t10 - a_x * s_w)
+    del s_w, whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
     part = 1.0 / (length_a * length_n)
-    t23 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t23
+    t22 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t22
     del s_beta2_half
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    r_1 = np.abs(s_beta1_half) * t23
-    del s_beta1_half, t23
-    t24 = D + r_1
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    r_1 = np.abs(s_beta1_half) * t22
+    del s_beta1_half, t22
+    t23 = D + r_1
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
-    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
     del t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del nu, t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    t40 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
+    t39 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
     del rho
-    h = part * t40
-    del t40
-    t41 = w_x * h
+    h = part * t39
+    del t39
+    t40 = w_x * h
     del w_x
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
-    del half, length_a, lower, part, t39, upper
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del half, length_a, lower, part, t38, upper
     X = over_a * along
     del along, over_a
-    t42 = t17 * Y - (c1_x - t11 * X)
+    t41 = t17 * Y - (c1_x - t11 * X)
     del c1_x, t11
-    t43 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t44 = t43 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t42 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t43 = t42 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t42
+    t44 = t43 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t43
-    t45 = t44 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t45 = t44 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t44
-    t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
+    invalid = np.logical_not(t45)
     del t45
-    invalid = np.logical_not(t46)
-    del t46
-    t47 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t48 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t38) * 0.5)
-    del t38
-    t49 = (t47 <= t29) & (t47 <= t26) & (t47 <= t28) & (-t48 <= t36)
-    del t26, t28, t29, t36, t47
-    unreachable = np.logical_not(t49 & (-t48 <= t37))
-    del t37, t48, t49
-    t50 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    del t21
-    t51 = w_y * h
+    t46 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t37) * 0.5)
+    del t37
+    t48 = (t46 <= t28) & (t46 <= t25) & (t46 <= t27) & (-t47 <= t35)
+    del t25, t27, t28, t35, t46
+    unreachable = np.logical_not(t48 & (-t47 <= t36))
+    del t36, t47, t48
+    t49 = _runtime.poison(invalid | unreachable)
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t50 = w_y * h
     del w_y
-    t52 = t18 * Y - (c1_y - t10 * X)
+    t51 = t18 * Y - (c1_y - t10 * X)
     del c1_y
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
-    del a_x, t10, t17, t18, t22
-    t53 = w_z * h
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t10, t17, t18, t21
+    t52 = w_z * h
     del h, w_z
-    t54 = t19 * Y - (c1_z - t15 * X)
+    t53 = t19 * Y - (c1_z - t15 * X)
     del X, Y, c1_z, t15, t19
-    t55 = _runtime.status(invalid, unreachable, in_line)
+    t54 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t41 - t42 + t50,
-        t51 - t52 + t50,
-        t53 - t54 + t50,
-        -(t42 + t41) + t50,
-        -(t52 + t51) + t50,
-        -(t54 + t53) + t50,
-        t55,
-        t55,
+        t40 - t41 + t49,
+        t50 - t51 + t49,
+        t52 - t53 + t49,
+        -(t41 + t40) + t49,
+        -(t51 + t50) + t49,
+        -(t53 + t52) + t49,
+        t54,
+        t54,
+    )
+
+
+def _fk_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t1 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t2 = c2 * t1
+    del c2
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    over = 1.0 / u_u
+    t8 = t4 * c1_y - c1_x * t6
+    t9 = t4 * c1_z - c1_x * t7
+    t10 = over * (t6 * t8 + t7 * t9)
+    length_a = np.sqrt(u_u)
+    m_x = t6 * c1_z - c1_y * t7
+    t11 = over * (t4 * t8 - t7 * m_x)
+    del t8
+    t12 = over * (t4 * t9 + t6 * m_x)
+    del m_x, over, t9
+    nu = t10 * t10 + t11 * t11 + t12 * t12
+    length_n = np.sqrt(nu)
+    part = 1.0 / (length_a * length_n)
+    t13 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t13
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t13
+    del s_beta2_half, t13
+    t14 = r_1 - r_2
+    t15 = length_a + t14
+    outer = np.maximum(t15, 0.0)
+    t16 = length_a - t14
+    del t14
+    inner = np.maximum(t16, 0.0)
+    share = 1.0 / (outer + inner)
+    t17 = r_1 + r_2
+    del r_1, r_2
+    t18 = t17 - length_a
+    slack = np.maximum(t18, 0.0)
+    t19 = np.sqrt(outer * inner * slack * (length_a + t17))
+    del t17
+    rho = share * t19
+    del t19
+    t20 = 2.0 * length_n * rho
+    t21 = r * r
+    over_a = length_n * part
+    del length_n
+    t22 = share * (length_a + slack) * (outer - inner) * 0.5
+    del inner, outer, share, slack
+    along = length_a * 0.5 + t22
+    del t22
+    t23 = over_a * (c1_x * t4 + c1_y * t6 + c1_z * t7) - along
+    t24 = t21 - nu - t23 * t23 - rho * rho
+    del t23
+    t25 = t20 - t24
+    upper = np.maximum(t25, 0.0)
+    t26 = t24 + t20
+    del t20, t24
+    lower = np.maximum(t26, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = length_a * part * half * (upper - lower)
+    del length_a
+    X = over_a * along
+    del along, over_a
+    t27 = t10 * Y + (c1_x - t4 * X)
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t28 = (t6 * t12 - t7 * t11) * h
+    t29 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t30 = t29 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t29
+    t31 = t30 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t30
+    t32 = t31 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t31
+    invalid = np.logical_not(t32)
+    del t32
+    t33 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t34 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
+    t35 = (t33 <= t18) & (t33 <= t15) & (t33 <= t16) & (-t34 <= t25)
+    del t15, t16, t18, t25, t33
+    unreachable = np.logical_not(t35 & (-t34 <= t26))
+    del t26, t34, t35
+    t36 = _runtime.poison(invalid | unreachable)
+    t37 = t11 * Y - (c1_y - t6 * X)
+    t38 = (t4 * t12 + t7 * t10) * h
+    t39 = (t4 * t11 + t6 * t10) * h
+    del h, t10, t11, t4, t6
+    t40 = t12 * Y - (c1_z - t7 * X)
+    del X, Y, t12, t7
+    t41 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t42 = _runtime.VANISHING * t21
+    del t21
+    t43 = _runtime.VANISHING * t42
+    t44 = u_u + (c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    del c1_x, c1_y, c1_z
+    t45 = (u_u <= t43) | (t44 <= t43) | (nu <= t43) | (both <= t42)
+    del both, nu, t42, t43, t44, u_u
+    return (
+        t27 + t28 + t36,
+        -(t37 + t38) + t36,
+        t39 - t40 + t36,
+        t27 - t28 + t36,
+        t38 - t37 + t36,
+        -(t40 + t39) + t36,
+        t41,
+        t41,
+        t45,
     )
 
 
@@ -293,6 +430,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
+    common=_fk_common,
     size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
@@ -391,7 +529,8 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s_beta1_half, t18
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t17
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     length_a = np.sqrt(mu)
     D = _runtime.select(all_same, 0.0, length_a)
@@ -409,7 +548,7 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del mu
     t28 = _runtime.select(same, c1_y, t14)
     t29 = _runtime.select(same, c1_x, t11)
-    a_x = _runtime.select(all_same, 1.0, -t29)
+    a_x = _runtime.select(all_same, whole, -t29)
     t30 = _runtime.select(same, t14, c1_y)
     del t14
     t31 = _runtime.select(same, t11, c1_x)
@@ -428,12 +567,11 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t35 * t35 + t36 * t36 + t37 * t37
     in_line = nu <= t17
     del t17
-    t38 = _runtime.select(all_same, 1.0, r)
-    t39 = t33 * t38
+    t38 = whole * t33
     s_w = _runtime.sign(-(t28 * a_x))
-    t40 = t38 * (t28 - a_x * s_w)
-    del t38
-    nu_w = _runtime.select(in_line, over * (2.0 * (t39 * t39) + t40 * t40), nu)
+    t39 = whole * (t28 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t38 * t38) + t39 * t39), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -443,118 +581,118 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     inner = np.maximum(t24, 0.0)
     share = 1.0 / (outer + inner)
     slack = np.maximum(t21, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t41)
-    del t41
-    t42 = over_a * (a_x * t31 - t28 * t30 - t33 * t34) + along
+    along = _runtime.select(all_same, 0.0, t40)
+    del t40
+    t41 = over_a * (a_x * t31 - t28 * t30 - t33 * t34) + along
     del t30, t31, t34
-    t43 = nu - _runtime.select(same, r_2 * r_2, t16) + t42 * t42
-    del nu, r_2, same, t16, t42
-    t44 = share * np.sqrt(outer * inner * slack * (t19 + t22))
+    t42 = nu - _runtime.select(same, r_2 * r_2, t16) + t41 * t41
+    del nu, r_2, same, t16, t41
+    t43 = share * np.sqrt(outer * inner * slack * (t19 + t22))
     del inner, outer, share, slack, t19, t22
-    rho = _runtime.select(all_same, r_1, t44)
-    del all_same, r_1, t44
-    left = t43 + rho * rho
-    del t43
-    t45 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    rho = _runtime.select(all_same, r_1, t43)
+    del all_same, r_1, t43
+    left = t42 + rho * rho
+    del t42
+    t44 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t46 = t45 * rho
-    del t45
-    t47 = left + t46
-    t48 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (t27 <= t47)
+    t45 = t44 * rho
+    del t44
+    t46 = left + t45
+    t47 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (t27 <= t46)
     del t21, t23, t24, t5
-    t49 = t46 - left
-    del left, t46
-    failed = np.logical_not(t4) | np.logical_not(t48 & (t27 <= t49))
-    del t27, t4, t48
-    t50 = _runtime.poison(failed)
+    t48 = t45 - left
+    del left, t45
+    failed = np.logical_not(t4) | np.logical_not(t47 & (t27 <= t48))
+    del t27, t4, t47
+    t49 = _runtime.poison(failed)
     del failed
-    t51 = 0.0 + t50
-    t52 = c1_x + t50
-    t53 = c1_y + t50
-    t54 = c1_z + t50
-    t55 = t9 + t50
+    t50 = 0.0 + t49
+    t51 = c1_x + t49
+    t52 = c1_y + t49
+    t53 = c1_z + t49
+    t54 = t9 + t49
     del t9
-    t56 = t13 + t50
+    t55 = t13 + t49
     del t13
-    t57 = -t10 + t50
+    t56 = -t10 + t49
     del t10
-    t58 = c2_y + t50
+    t57 = c2_y + t49
     del c2_y
-    t59 = c2_z + t50
+    t58 = c2_z + t49
     del c2_z
     X = over_a * along
     del along, over_a
-    upper = np.maximum(t47, 0.0)
-    del t47
-    lower = np.maximum(t49, 0.0)
-    del t49
+    upper = np.maximum(t46, 0.0)
+    del t46
+    lower = np.maximum(t48, 0.0)
+    del t48
     both = upper + lower
-    t60 = (both <= _runtime.VANISHING * (r * t25)) | in_line
+    t59 = (both <= _runtime.VANISHING * (r * t25)) | in_line
     del t25
     half = rho / both
     del both
-    Y = _runtime.select(t60, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t59, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t61 = t29 * X + t35 * Y
+    t60 = t29 * X + t35 * Y
     del t29
-    w_x = _runtime.select(in_line, -(t39 * s_w), t28 * t37 - t33 * t36)
+    w_x = _runtime.select(in_line, -(t38 * s_w), t28 * t37 - t33 * t36)
     del s_w
-    t62 = _runtime.select(t60, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t60, upper
-    h = part * t62
-    del part, t62
-    t63 = w_x * h
+    t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t59, upper
+    h = part * t61
+    del part, t61
+    t62 = w_x * h
     del w_x
-    t64 = t28 * X + t36 * Y
-    w_y = _runtime.select(in_line, -t39, a_x * t37 + t33 * t35)
-    del t39
-    t65 = w_y * h
+    t63 = t28 * X + t36 * Y
+    w_y = _runtime.select(in_line, -t38, a_x * t37 + t33 * t35)
+    del t38
+    t64 = w_y * h
     del w_y
-    t66 = t33 * X + t37 * Y
+    t65 = t33 * X + t37 * Y
     del X, Y, t33, t37
-    w_z = _runtime.select(in_line, t40, -(a_x * t36 + t28 * t35))
-    del a_x, in_line, t28, t35, t36, t40
-    t67 = w_z * h
+    w_z = _runtime.select(in_line, t39, -(a_x * t36 + t28 * t35))
+    del a_x, in_line, t28, t35, t36, t39
+    t66 = w_z * h
     del h, w_z
     return (
+        t50,
+        t50,
+        t50,
         t51,
-        t51,
-        t51,
-        t52,
-        t51,
-        t51,
-        t52,
-        t53,
-        t54,
-        t55,
-        t56,
-        t51,
-        t57,
-        t58,
-        t59,
-        c1_x - (t61 - t63) + t50,
-        c1_y - (t64 - t65) + t50,
-        c1_z - (t66 - t67) + t50,
-        t51,
-        t51,
-        t51,
-        t52,
-        t51,
+        t50,
+        t50,
         t51,
         t52,
         t53,
         t54,
         t55,
+        t50,
         t56,
-        t51,
         t57,
         t58,
-        t59,
-        c1_x - (t61 + t63) + t50,
-        c1_y - (t64 + t65) + t50,
-        c1_z - (t66 + t67) + t50,
+        c1_x - (t60 - t62) + t49,
+        c1_y - (t63 - t64) + t49,
+        c1_z - (t65 - t66) + t49,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
+        t50,
+        t51,
+        t52,
+        t53,
+        t54,
+        t55,
+        t50,
+        t56,
+        t57,
+        t58,
+        c1_x - (t60 + t62) + t49,
+        c1_y - (t63 + t64) + t49,
+        c1_z - (t65 + t66) + t49,
     )
 
 
@@ -637,11 +775,12 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = _runtime.select(same, c1_x, t4)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t11 = _runtime.select(same, c1_y, t6)
-    a_x = _runtime.select(all_same, 1.0, -t10)
+    a_x = _runtime.select(all_same, whole, -t10)
     t12 = _runtime.select(same, t6, c1_y)
     t13 = _runtime.select(same, t4, c1_x)
     t14 = a_x * t12 + t11 * t13
@@ -657,12 +796,11 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t11 * a_x))
-    t22 = t20 * (t11 - a_x * s_w)
-    del t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t11 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -671,121 +809,121 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t23 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t23
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t24 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t23
-    del s_beta2_half, t23
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
     del along, over_a, t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del nu, t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t40 = t10 * X + t17 * Y
+    t39 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(t21 * s_w), t11 * t19 - t15 * t18)
+    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
     del s_w
-    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t39, upper
-    h = part * t41
-    del part, t41
-    t42 = w_x * h
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_x * h
     del w_x
-    t43 = t40 - t42
-    t44 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t45 = t44 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t42 = t39 - t41
+    t43 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t44 = t43 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t43
+    t45 = t44 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t44
-    t46 = t45 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t45
-    t47 = t46 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t46
-    t48 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t49 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
-    del t38
-    t50 = -(_runtime.FEASIBILITY * t49)
-    del t49
-    t51 = (t48 <= t29) & (t48 <= t26) & (t48 <= t28) & (t50 <= t36)
-    del t26, t28, t29, t36, t48
-    failed = np.logical_not(t47) | np.logical_not(t51 & (t50 <= t37))
-    del t37, t47, t50, t51
-    t52 = _runtime.poison(failed)
+    t47 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t48 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    del t37
+    t49 = -(_runtime.FEASIBILITY * t48)
+    del t48
+    t50 = (t47 <= t28) & (t47 <= t25) & (t47 <= t27) & (t49 <= t35)
+    del t25, t27, t28, t35, t47
+    failed = np.logical_not(t46) | np.logical_not(t50 & (t49 <= t36))
+    del t36, t46, t49, t50
+    t51 = _runtime.poison(failed)
     del failed
-    t53 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    del t21
-    t54 = w_y * h
+    t52 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t53 = w_y * h
     del w_y
-    t55 = t53 - t54
-    t56 = t15 * X + t19 * Y
+    t54 = t52 - t53
+    t55 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t22
-    t57 = w_z * h
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t56 = w_z * h
     del h, w_z
-    t58 = t56 - t57
-    t59 = t40 + t42
-    del t40, t42
-    t60 = t53 + t54
-    del t53, t54
-    t61 = t56 + t57
-    del t56, t57
+    t57 = t55 - t56
+    t58 = t39 + t41
+    del t39, t41
+    t59 = t52 + t53
+    del t52, t53
+    t60 = t55 + t56
+    del t55, t56
     return (
-        c1_x - t43 + t52,
-        c1_y - t55 + t52,
-        c1_z - t58 + t52,
-        -t43 + t52,
-        -t55 + t52,
-        -t58 + t52,
-        t4 - t43 + t52,
-        t6 - t55 + t52,
-        t7 - t58 + t52,
-        c1_x - t59 + t52,
-        c1_y - t60 + t52,
-        c1_z - t61 + t52,
-        -t59 + t52,
-        -t60 + t52,
-        -t61 + t52,
-        t4 - t59 + t52,
-        t6 - t60 + t52,
-        t7 - t61 + t52,
+        c1_x - t42 + t51,
+        c1_y - t54 + t51,
+        c1_z - t57 + t51,
+        -t42 + t51,
+        -t54 + t51,
+        -t57 + t51,
+        t4 - t42 + t51,
+        t6 - t54 + t51,
+        t7 - t57 + t51,
+        c1_x - t58 + t51,
+        c1_y - t59 + t51,
+        c1_z - t60 + t51,
+        -t58 + t51,
+        -t59 + t51,
+        -t60 + t51,
+        t4 - t58 + t51,
+        t6 - t59 + t51,
+        t7 - t60 + t51,
     )
 
 
@@ -868,11 +1006,12 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, 1.0, -t11)
+    a_x = _runtime.select(all_same, whole, -t11)
     t12 = _runtime.select(same, t6, c1_y)
     t13 = _runtime.select(same, t5, c1_x)
     del c1_x
@@ -889,12 +1028,11 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t10 * a_x))
-    t22 = t20 * (t10 - a_x * s_w)
-    del t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t10 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -903,109 +1041,109 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t23 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t23
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t24 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t23
-    del s_beta2_half, t23
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
     del along, over_a, t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del nu, t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t39, upper
-    h = part * t41
-    del part, t41
-    t42 = w_y * h
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
     del w_y
-    t43 = t40 - t42
-    t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
-    del a_x, t22
-    t45 = w_z * h
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
     del w_z
-    t46 = t44 - t45
-    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t45 = t43 - t44
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t47
-    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t48
-    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t49
-    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
-    del t38
-    t53 = -(_runtime.FEASIBILITY * t52)
-    del t52
-    t54 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (t53 <= t36)
-    del t26, t28, t29, t36, t51
-    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t37))
-    del t37, t50, t53, t54
-    t55 = _runtime.poison(failed)
+    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t51 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    del t37
+    t52 = -(_runtime.FEASIBILITY * t51)
+    del t51
+    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
+    del t25, t27, t28, t35, t50
+    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
+    del t36, t49, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t56 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t57 = t11 * X + t17 * Y
+    t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t21
-    t58 = w_x * h
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t57 = w_x * h
     del h, w_x
-    t59 = c_gamma * c2_z
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t43) - t3 * (t7 + t46)
-    t60 = t40 + t42
-    del t40, t42
-    t61 = t44 + t45
-    del t44, t45
-    B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61)
-    del t3, t5, t56, t57, t58, t59, t6, t7
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
+    t59 = t39 + t41
+    del t39, t41
+    t60 = t43 + t44
+    del t43, t44
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t43 - c1_y * t46 + t55,
-        B_22 + t55,
-        c1_z * t60 - c1_y * t61 + t55,
-        B_22_below + t55,
+        c1_z * t42 - c1_y * t45 + t54,
+        B_22 + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
     )
 
 
@@ -1088,11 +1226,12 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, 1.0, -t11)
+    a_x = _runtime.select(all_same, whole, -t11)
     t12 = _runtime.select(same, t6, c1_y)
     t13 = _runtime.select(same, t5, c1_x)
     t14 = a_x * t12 + t10 * t13
@@ -1108,12 +1247,11 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t10 * a_x))
-    t22 = t20 * (t10 - a_x * s_w)
-    del t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t10 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1121,162 +1259,162 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t23 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t23
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t24 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t23
-    del s_beta2_half, t23
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
     del along, over_a, t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t39, upper
-    h = part * t41
-    del part, t41
-    t42 = w_y * h
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
     del w_y
-    t43 = t40 - t42
-    t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
-    del a_x, t22
-    t45 = w_z * h
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
     del w_z
-    t46 = t44 - t45
-    B_11 = c1_z * t43 - c1_y * t46
-    A_02 = c1_y - t43
-    t47 = t7 + t46
-    A_03 = c1_z - t46
-    A_22 = t6 - t43
+    t45 = t43 - t44
+    B_11 = c1_z * t42 - c1_y * t45
+    A_02 = c1_y - t42
+    t46 = t7 + t45
+    A_03 = c1_z - t45
+    A_22 = t6 - t42
     Delta = mu * nu * h
     del mu, nu
-    t48 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t49 = t48 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t48
-    t50 = t49 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t49
-    t51 = t50 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t50
-    t52 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t53 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
-    del t38
-    t54 = -(_runtime.FEASIBILITY * t53)
-    del t53
-    t55 = (t52 <= t29) & (t52 <= t26) & (t52 <= t28) & (t54 <= t36)
-    del t26, t28, t29, t36, t52
-    failed = np.logical_not(t51) | np.logical_not(t55 & (t54 <= t37))
-    del t37, t51, t54, t55
-    t56 = _runtime.poison(failed)
-    del failed
-    t57 = B_11 * (A_02 * t47 + A_03 * A_22) / Delta + t56
-    t58 = s_gamma * c2_z
-    del s_gamma
-    t59 = t11 * X + t17 * Y
-    del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t21
-    t60 = w_x * h
-    del h, w_x
-    t61 = t59 - t60
-    A_21 = t5 - t61
-    t62 = c_gamma * c2_z
-    del c2_z, c_gamma
-    B_22 = t58 * A_21 - t62 * A_22 - t3 * t47
-    t63 = -(B_22 * (t46 * A_02 - t43 * A_03) / Delta) + t56
-    A_01 = c1_x - t61
-    t64 = -(B_11 * (t47 * A_01 + A_03 * A_21) / Delta) + t56
+    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t47
-    t65 = B_22 * (t46 * A_01 - A_03 * t61) / Delta + t56
-    del A_03, t46
-    t66 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t48
+    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t49
+    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    del t37
+    t53 = -(_runtime.FEASIBILITY * t52)
+    del t52
+    t54 = (t51 <= t28) & (t51 <= t25) & (t51 <= t27) & (t53 <= t35)
+    del t25, t27, t28, t35, t51
+    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t36))
+    del t36, t50, t53, t54
+    t55 = _runtime.poison(failed)
+    del failed
+    t56 = B_11 * (A_02 * t46 + A_03 * A_22) / Delta + t55
+    t57 = s_gamma * c2_z
+    del s_gamma
+    t58 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t59 = w_x * h
+    del h, w_x
+    t60 = t58 - t59
+    A_21 = t5 - t60
+    t61 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t57 * A_21 - t61 * A_22 - t3 * t46
+    t62 = -(B_22 * (t45 * A_02 - t42 * A_03) / Delta) + t55
+    A_01 = c1_x - t60
+    t63 = -(B_11 * (t46 * A_01 + A_03 * A_21) / Delta) + t55
+    del t46
+    t64 = B_22 * (t45 * A_01 - A_03 * t60) / Delta + t55
+    del A_03, t45
+    t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t67 = -(B_22 * (t43 * A_01 - A_02 * t61) / Delta) + t56
-    del A_01, A_02, B_22, t43, t61
-    t68 = t40 + t42
-    del t40, t42
-    t69 = t44 + t45
-    del t44, t45
-    B_11_below = c1_z * t68 - c1_y * t69
-    A_02_below = c1_y - t68
+    t66 = -(B_22 * (t42 * A_01 - A_02 * t60) / Delta) + t55
+    del A_01, A_02, B_22, t42, t60
+    t67 = t39 + t41
+    del t39, t41
+    t68 = t43 + t44
+    del t43, t44
+    B_11_below = c1_z * t67 - c1_y * t68
+    A_02_below = c1_y - t67
     del c1_y
-    t70 = t7 + t69
+    t69 = t7 + t68
     del t7
-    A_03_below = c1_z - t69
+    A_03_below = c1_z - t68
     del c1_z
-    A_22_below = t6 - t68
+    A_22_below = t6 - t67
     del t6
-    t71 = B_11_below * (A_02_below * t70 + A_03_below * A_22_below)
-    t72 = t59 + t60
-    del t59, t60
-    A_21_below = t5 - t72
+    t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below)
+    t71 = t58 + t59
+    del t58, t59
+    A_21_below = t5 - t71
     del t5
-    B_22_below = t58 * A_21_below - t62 * A_22_below - t3 * t70
-    del t3, t58, t62
-    t73 = B_22_below * (t69 * A_02_below - t68 * A_03_below)
-    A_01_below = c1_x - t72
+    B_22_below = t57 * A_21_below - t61 * A_22_below - t3 * t69
+    del t3, t57, t61
+    t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below)
+    A_01_below = c1_x - t71
     del c1_x
-    t74 = B_11_below * (t70 * A_01_below + A_03_below * A_21_below)
-    del t70
-    t75 = B_22_below * (t69 * A_01_below - A_03_below * t72)
-    del A_03_below, t69
-    t76 = A_22_below * A_01_below - A_02_below * A_21_below
+    t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below)
+    del t69
+    t74 = B_22_below * (t68 * A_01_below - A_03_below * t71)
+    del A_03_below, t68
+    t75 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t77 = B_22_below * (t68 * A_01_below - A_02_below * t72)
-    del A_01_below, A_02_below, B_22_below, t68, t72
+    t76 = B_22_below * (t67 * A_01_below - A_02_below * t71)
+    del A_01_below, A_02_below, B_22_below, t67, t71
     return (
-        t57,
+        t56,
+        t62,
         t63,
         t64,
-        t65,
-        t66 + t56,
-        t67,
-        -(t71 / Delta) + t56,
-        t73 / Delta + t56,
-        t74 / Delta + t56,
-        -(t75 / Delta) + t56,
-        B_11_below * t76 / Delta + t56,
-        t77 / Delta + t56,
+        t65 + t55,
+        t66,
+        -(t70 / Delta) + t55,
+        t72 / Delta + t55,
+        t73 / Delta + t55,
+        -(t74 / Delta) + t55,
+        B_11_below * t75 / Delta + t55,
+        t76 / Delta + t55,
     )
 
 
@@ -1360,11 +1498,12 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, 1.0, -t11)
+    a_x = _runtime.select(all_same, whole, -t11)
     t12 = _runtime.select(same, t6, c1_y)
     t13 = _runtime.select(same, t5, c1_x)
     del c1_x
@@ -1381,12 +1520,11 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t10 * a_x))
-    t22 = t20 * (t10 - a_x * s_w)
-    del t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t10 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1394,113 +1532,113 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t23 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t23
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t24 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t23
-    del s_beta2_half, t23
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
     del along, over_a, t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t40 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t39, upper
-    h = part * t41
-    del part, t41
-    t42 = w_y * h
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
     del w_y
-    t43 = t40 - t42
-    t44 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t10 * t17))
-    del a_x, t22
-    t45 = w_z * h
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
     del w_z
-    t46 = t44 - t45
-    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t45 = t43 - t44
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t47
-    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t48
-    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t49
-    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
-    del t38
-    t53 = -(_runtime.FEASIBILITY * t52)
-    del t52
-    t54 = (t51 <= t29) & (t51 <= t26) & (t51 <= t28) & (t53 <= t36)
-    del t26, t28, t29, t36, t51
-    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t37))
-    del t37, t50, t53, t54
-    t55 = _runtime.poison(failed)
+    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t51 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    del t37
+    t52 = -(_runtime.FEASIBILITY * t51)
+    del t51
+    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
+    del t25, t27, t28, t35, t50
+    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
+    del t36, t49, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t56 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t57 = t11 * X + t17 * Y
+    t56 = t11 * X + t17 * Y
     del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t21 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t21
-    t58 = w_x * h
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t57 = w_x * h
     del w_x
-    t59 = c_gamma * c2_z
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t43) - t3 * (t7 + t46)
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
     Delta = mu * nu * h
     del h, mu, nu
-    t60 = t40 + t42
-    del t40, t42
-    t61 = t44 + t45
-    del t44, t45
-    B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61)
-    del t3, t5, t56, t57, t58, t59, t6, t7
+    t59 = t39 + t41
+    del t39, t41
+    t60 = t43 + t44
+    del t43, t44
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t43 - c1_y * t46 + t55,
-        B_22 + t55,
-        Delta + t55,
-        c1_z * t60 - c1_y * t61 + t55,
-        B_22_below + t55,
-        -Delta + t55,
+        c1_z * t42 - c1_y * t45 + t54,
+        B_22 + t54,
+        Delta + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
+        -Delta + t54,
     )
 
 
@@ -1582,11 +1720,12 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = _runtime.select(same, c1_x, t4)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    mu = _runtime.select(all_same, 1.0, _runtime.select(same, v_v, u_u))
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     del u_u, v_v
     over = 1.0 / mu
     t11 = _runtime.select(same, c1_y, t6)
-    a_x = _runtime.select(all_same, 1.0, -t10)
+    a_x = _runtime.select(all_same, whole, -t10)
     t12 = _runtime.select(same, t6, c1_y)
     t13 = _runtime.select(same, t4, c1_x)
     t14 = a_x * t12 + t11 * t13
@@ -1602,12 +1741,11 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     nu = t17 * t17 + t18 * t18 + t19 * t19
     in_line = nu <= t9
     del t9
-    t20 = _runtime.select(all_same, 1.0, r)
-    t21 = t15 * t20
+    t20 = whole * t15
     s_w = _runtime.sign(-(t11 * a_x))
-    t22 = t20 * (t11 - a_x * s_w)
-    del t20
-    nu_w = _runtime.select(in_line, over * (2.0 * (t21 * t21) + t22 * t22), nu)
+    t21 = whole * (t11 - a_x * s_w)
+    del whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
     del over
     length_n = np.sqrt(nu_w)
     del nu_w
@@ -1615,81 +1753,81 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     part = 1.0 / (length_a * length_n)
     over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t23 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t23
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t24 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t23
-    del s_beta2_half, t23
-    t25 = _runtime.select(same, r, r_2)
-    t26 = t24 - t25
-    outer = np.maximum(t26, 0.0)
-    t27 = D - r_1
-    t28 = t25 + t27
-    inner = np.maximum(t28, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t29 = t25 - t27
-    del t27
-    slack = np.maximum(t29, 0.0)
-    t30 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t30)
-    del t30
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
     del along, over_a, t12, t13, t16
-    t32 = nu - _runtime.select(same, r_2 * r_2, t8) + t31 * t31
-    del t31, t8
-    t33 = share * np.sqrt(outer * inner * slack * (t25 + t24))
-    del inner, outer, share, slack, t24, t25
-    rho = _runtime.select(all_same, r_1, t33)
-    del all_same, r_1, t33
-    left = t32 + rho * rho
-    del t32
-    t34 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
     del length_n
-    t35 = t34 * rho
-    del t34
-    t36 = left + t35
-    upper = np.maximum(t36, 0.0)
-    t37 = t35 - left
-    del left, t35
-    lower = np.maximum(t37, 0.0)
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t38 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t39 = (both <= _runtime.VANISHING * (r * t38)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t39, 0.0, length_a * part * half * (upper - lower))
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
     del length_a
-    t40 = t10 * X + t17 * Y
+    t39 = t10 * X + t17 * Y
     del t10
-    w_x = _runtime.select(in_line, -(t21 * s_w), t11 * t19 - t15 * t18)
+    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
     del s_w
-    t41 = _runtime.select(t39, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t39, upper
-    h = part * t41
-    del part, t41
-    t42 = w_x * h
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_x * h
     del w_x
-    t43 = t40 - t42
-    A_01 = c1_x - t43
-    t44 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t21, a_x * t19 + t15 * t17)
-    del t21
-    t45 = w_y * h
+    t42 = t39 - t41
+    A_01 = c1_x - t42
+    t43 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t44 = w_y * h
     del w_y
-    t46 = t44 - t45
-    A_02 = c1_y - t46
-    t47 = t15 * X + t19 * Y
+    t45 = t43 - t44
+    A_02 = c1_y - t45
+    t46 = t15 * X + t19 * Y
     del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t22, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t22
-    t48 = w_z * h
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t47 = w_z * h
     del w_z
-    t49 = t47 - t48
-    A_03 = c1_z - t49
+    t48 = t46 - t47
+    A_03 = c1_z - t48
     strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
     radial_x = A_01 / strut
     del A_01
@@ -1697,18 +1835,18 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_02
     radial_z = A_03 / strut
     del A_03
-    t50 = t43 * radial_x + t46 * radial_y + t49 * radial_z
-    t51 = t43 - radial_x * t50
-    t52 = t46 - radial_y * t50
-    t53 = t49 - radial_z * t50
-    del t50
-    square1 = t51 * t51 + t52 * t52 + t53 * t53
-    A_21 = t4 - t43
-    del t43
-    A_22 = t6 - t46
-    del t46
-    A_23 = t7 - t49
+    t49 = t42 * radial_x + t45 * radial_y + t48 * radial_z
+    t50 = t42 - radial_x * t49
+    t51 = t45 - radial_y * t49
+    t52 = t48 - radial_z * t49
     del t49
+    square1 = t50 * t50 + t51 * t51 + t52 * t52
+    A_21 = t4 - t42
+    del t42
+    A_22 = t6 - t45
+    del t45
+    A_23 = t7 - t48
+    del t48
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     del A_21, radial_x
@@ -1717,84 +1855,84 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t2_z = A_23 - radial_z * off2
     del A_23, off2, radial_z
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t54 = square1 - square2
-    t55 = t51 * t2_x + t52 * t2_y + t53 * t2_z
-    del t2_x, t2_y, t2_z, t51, t52, t53
-    t56 = square1 + square2 + np.sqrt(t54 * t54 + 4.0 * (t55 * t55))
-    del square1, square2, t54, t55
-    t57 = 2.0 * (mu * nu * h)
+    t53 = square1 - square2
+    t54 = t50 * t2_x + t51 * t2_y + t52 * t2_z
+    del t2_x, t2_y, t2_z, t50, t51, t52
+    t55 = square1 + square2 + np.sqrt(t53 * t53 + 4.0 * (t54 * t54))
+    del square1, square2, t53, t54
+    t56 = 2.0 * (mu * nu * h)
     del h, mu, nu
-    t58 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t59 = t58 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t57 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t58 = t57 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t57
+    t59 = t58 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t58
-    t60 = t59 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t59
-    t61 = t60 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t60
-    t62 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t63 = r * 0.625 * (r * 2.2737367544323206e-13 + t38)
-    del t38
-    t64 = -(_runtime.FEASIBILITY * t63)
-    del t63
-    t65 = (t62 <= t29) & (t62 <= t26) & (t62 <= t28) & (t64 <= t36)
-    del t26, t28, t29, t36, t62
-    failed = np.logical_not(t61) | np.logical_not(t65 & (t64 <= t37))
-    del t37, t61, t64, t65
-    t66 = _runtime.poison(failed)
+    t61 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t62 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    del t37
+    t63 = -(_runtime.FEASIBILITY * t62)
+    del t62
+    t64 = (t61 <= t28) & (t61 <= t25) & (t61 <= t27) & (t63 <= t35)
+    del t25, t27, t28, t35, t61
+    failed = np.logical_not(t60) | np.logical_not(t64 & (t63 <= t36))
+    del t36, t60, t63, t64
+    t65 = _runtime.poison(failed)
     del failed
-    t67 = t40 + t42
-    del t40, t42
-    A_01_below = c1_x - t67
+    t66 = t39 + t41
+    del t39, t41
+    A_01_below = c1_x - t66
     del c1_x
-    t68 = t44 + t45
-    del t44, t45
-    A_02_below = c1_y - t68
+    t67 = t43 + t44
+    del t43, t44
+    A_02_below = c1_y - t67
     del c1_y
-    t69 = A_01_below * A_01_below + A_02_below * A_02_below
-    t70 = t47 + t48
-    del t47, t48
-    A_03_below = c1_z - t70
+    t68 = A_01_below * A_01_below + A_02_below * A_02_below
+    t69 = t46 + t47
+    del t46, t47
+    A_03_below = c1_z - t69
     del c1_z
-    strut_below = np.sqrt(t69 + A_03_below * A_03_below)
-    del t69
+    strut_below = np.sqrt(t68 + A_03_below * A_03_below)
+    del t68
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t71 = t67 * radial_x_below + t68 * radial_y_below + t70 * radial_z_below
-    t72 = t67 - radial_x_below * t71
-    t73 = t68 - radial_y_below * t71
-    t74 = t70 - radial_z_below * t71
-    del t71
-    square1_below = t72 * t72 + t73 * t73 + t74 * t74
-    A_21_below = t4 - t67
-    del t4, t67
-    A_22_below = t6 - t68
-    del t6, t68
-    t75 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t7 - t70
-    del t7, t70
-    off2_below = t75 + radial_z_below * A_23_below
-    del t75
+    t70 = t66 * radial_x_below + t67 * radial_y_below + t69 * radial_z_below
+    t71 = t66 - radial_x_below * t70
+    t72 = t67 - radial_y_below * t70
+    t73 = t69 - radial_z_below * t70
+    del t70
+    square1_below = t71 * t71 + t72 * t72 + t73 * t73
+    A_21_below = t4 - t66
+    del t4, t66
+    A_22_below = t6 - t67
+    del t6, t67
+    t74 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t69
+    del t69, t7
+    off2_below = t74 + radial_z_below * A_23_below
+    del t74
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t76 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t75 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t76 + t2_z_below * t2_z_below
-    del t76
-    t77 = square1_below - square2_below
-    t78 = t72 * t2_x_below + t73 * t2_y_below + t74 * t2_z_below
-    del t2_x_below, t2_y_below, t2_z_below, t72, t73, t74
-    t79 = square1_below + square2_below + np.sqrt(t77 * t77 + 4.0 * (t78 * t78))
-    del square1_below, square2_below, t77, t78
+    square2_below = t75 + t2_z_below * t2_z_below
+    del t75
+    t76 = square1_below - square2_below
+    t77 = t71 * t2_x_below + t72 * t2_y_below + t73 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t71, t72, t73
+    t78 = square1_below + square2_below + np.sqrt(t76 * t76 + 4.0 * (t77 * t77))
+    del square1_below, square2_below, t76, t77
     return (
-        strut * t56 / t57 + t66,
-        strut_below * t79 / t57 + t66,
+        strut * t55 / t56 + t65,
+        strut_below * t78 / t56 + t65,
     )
 
 

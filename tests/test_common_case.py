@@ -107,7 +107,9 @@ def test_generated(robot: str, name: str) -> None:
         with np.errstate(all="ignore"):
             whole = kernel.compute(*arguments)
             *common, rare = kernel.common(*arguments)
-        left_out = robot == "agile_wrist"  # its forward map gives no orientation that is rare
+        # the forward map of the wrist gives no orientation that is rare, and at these postures the
+        # spheres of the spherical five-bar have no centres in line
+        left_out = robot == "agile_wrist" or (robot, name) == ("spherical_five_bar", "_FK")
         assert rare.mean() <= most and (most < 1 or rare.any() or left_out)
         whole, common = ([np.asarray(v) for v in values] for values in (whole, common))
         statuses = [v for v in whole if v.dtype == np.uint8]

@@ -127,9 +127,8 @@ d.step(
     "it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
-    proves=(
-        "Half the base line, turned into the axes of the virtual fore-arm, has these coordinates."
-    ),
+    proves="Half the base line, turned into the axes of the virtual fore-arm, has these "
+    "coordinates.",
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
 leaning = d.step(
@@ -140,10 +139,8 @@ leaning = d.step(
     "d.",
     {r"b\,R_z R_x e_y": wrist_line},
     published=("(3)", "(4)", "(8)"),
-    proves=(
-        "The turned y axis times half the base line has the components -d tan(phi), d and d "
-        "tan(psi)/cos(phi)."
-    ),
+    proves="The turned y axis times half the base line has the components -d tan(phi), d and d "
+    "tan(psi)/cos(phi).",
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
 )
 d.given_by = {"psi": leaning, "phi": leaning}
@@ -212,10 +209,8 @@ d.step(
         r"\cos\psi": sqrt(m.d**2 + width**2) / half_line,
         "b": half_line,
     },
-    proves=(
-        "The cosines of roll and yaw are these quotients, and half the base line is d/(cos(phi) "
-        "cos(psi))."
-    ),
+    proves="The cosines of roll and yaw are these quotients, and half the base line is d/(cos(phi) "
+    "cos(psi)).",
     equal=[
         (cos(atan2(-width, m.d)), cosine_roll),
         (cos(atan2(cosine_roll * beyond, m.d)), sqrt(m.d**2 + width**2) / half_line),
@@ -348,10 +343,8 @@ d.step(
     "the determinants of the factors: those of both real arms are in the numerator, that of the "
     "virtual arm is in the denominator.",
     factors_of | loop_factors(d, point_by, (by_right, by_left), by_line, line_by),
-    proves=(
-        "The first three rows of J_o, the rates of the tips, and the determinant of each factor: "
-        "the outer one, those of the virtual and of the real arms, and those of yaw and roll."
-    ),
+    proves="The first three rows of J_o, the rates of the tips, and the determinant of each "
+    "factor: the outer one, those of the virtual and of the real arms, and those of yaw and roll.",
     equal=[
         (outer[:3, :], position),
         (middle.jacobian(q[1:5]), sp.Matrix.hstack(by_right, by_left) / 2),

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from closedform.lemmas.tangent import LAST, ROUNDING, Links, LinksAndWrist, Offset, Turn, Within
+from closedform.lemmas.offset import LAST, Offset
+from closedform.lemmas.tangent import ROUNDING, Links, LinksAndWrist, Turn, Within
 from closedform.model.functions import real, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair

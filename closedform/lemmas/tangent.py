@@ -17,6 +17,7 @@ import sympy as sp
 
 from closedform.lemmas.amplitude import Amplitude, nearly_tangent
 from closedform.lemmas.chain import Chain
+from closedform.lemmas.offset import LAST, Offset
 from closedform.lemmas.pairs import direction
 from closedform.model.functions import Program, choose, real, sign_of
 from closedform.model.pair import Pair
@@ -24,9 +25,6 @@ from closedform.model.pair import Pair
 ROUNDING = sp.Rational(1, 2**44)
 """How far a turn may move the target, in units of the size of the arm: 256 units in its last place,
 which is more than a forward map and the inverse up to there lose, and far below the tolerance."""
-
-LAST = sp.Rational(1, 2**50)
-"""What counts as zero in relation to its scale, as for a flag."""
 
 
 @dataclass(frozen=True)
@@ -585,42 +583,3 @@ _DETOURS = (
     (_Place.directed, _Place.closer, _Place.closer),
     (_Place.aligned, *[_Place.directed] * 2, *[_Place.closer] * 5),
 )
-
-
-def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
-    """A condition that a value vanishes, for values that only the tangent case computes."""
-    return value <= scale * LAST
-
-
-@dataclass(frozen=True)
-class Offset:
-    """A ``point``, ``r`` away, from which an ``offset`` leads in a direction that is free.
-
-    ``vanishes`` makes the flags: of a name, a value and its scale.
-    """
-
-    point: tuple[sp.Expr, sp.Expr]
-    r: sp.Expr
-    offset: sp.Expr
-    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic] = plain
-
-    def leaving(
-        self, chain: Chain, reach: sp.Expr, side: sp.Expr, name: str
-    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
-        """The direction u for which the point minus ``offset`` times u is ``reach`` away.
-
-        It follows from the law of cosines in half angles, to one ``side`` of the point; the
-        intermediate results are returned too.
-        """
-        p, r, e, (x, y) = chain.program, self.r, self.offset, self.point
-        cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
-        ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
-        total = p.let(f"n_{name}", cc + ss, nonnegative=True)
-        any_turn = self.vanishes(f"any_{name}", total, chain.size * (r + e))
-        cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
-        across = 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total
-        sine = p.let(f"us_{name}", choose(any_turn, 0, across))
-        at_hub = self.vanishes(f"hub_{name}", r, chain.size)
-        s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
-        c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
-        return Pair(s, c), (cc, ss, side)

@@ -12,9 +12,9 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import named
+from closedform.lemmas.offset import Offset
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.lemmas.tangent import Offset
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label

@@ -300,7 +300,7 @@ class Rate:
 
     def over(self, volumes: Sequence[sp.Expr], dyads: frozenset[int]) -> sp.Matrix:
         """The velocity times the determinants of more dyads."""
-        return self.times * sp.Mul(*(volumes[k] for k in sorted(dyads - self.dyads)))
+        return self.times * _product(volumes, dyads - self.dyads)
 
 
 def _velocity(m: Linkage, at: Posture, loop: Step) -> None:

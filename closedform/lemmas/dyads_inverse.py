@@ -50,18 +50,9 @@ def inverse(m: Linkage, loop: Step) -> None:
     known = [GROUND, *[m.follower] * bool(m.follower)]
     found = order(m.points, known, [m.at] * bool(m.at), sought=m.driven)
     if found.left:
-        m.d.no_inverse(_why(found))
+        m.d.no_inverse(f"with the hand held, {found.undone}")
         return
     _Reverse(m, loop, found).export()
-
-
-def _why(found: Order) -> str:
-    left = ", ".join(found.left)
-    four = len(found.left) == 4
-    group = "class III, which leads to an equation of degree 6" if four else "a class above II"
-    return (
-        f"with the hand held, no two of the bodies {left} are a dyad; they are a group of {group}"
-    )
 
 
 @dataclass

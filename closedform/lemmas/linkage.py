@@ -90,7 +90,7 @@ class Linkage:
         if held := self.order.held:
             raise ShapeError(f"{name}: {held[0].body} is held by what is known before it")
         if self.order.left:
-            raise ShapeError(f"{name}: {self.undone}")
+            raise ShapeError(f"{name}: {self.order.undone}")
         used = {dyad.pin for dyad in self.dyads}
         loose = [b for dyad in self.order.dyads if dyad.pin not in used for b in dyad.bodies]
         if loose:
@@ -115,16 +115,6 @@ class Linkage:
     @cached_property
     def order(self) -> Order:
         return order(self.points, [GROUND, *self.driven])
-
-    @property
-    def undone(self) -> str:
-        """Why the forward map has no closed form."""
-        left = ", ".join(self.order.left)
-        if len(self.order.left) == 4:
-            why = "a group of class III, whose 6 postures follow from an equation of degree 6"
-        else:
-            why = "a group of a class above II, of a degree above 4"
-        return f"no two of the bodies {left} are a dyad; they are {why}"
 
     @cached_property
     def dyads(self) -> list[Dyad]:

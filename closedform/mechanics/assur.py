@@ -44,6 +44,13 @@ class Order:
     def held(self) -> list[Held]:
         return [s for s in self.steps if isinstance(s, Held)]
 
+    @property
+    def undone(self) -> str:
+        """Why the bodies that are left are not solved."""
+        left, four = ", ".join(self.left), len(self.left) == 4
+        group = "class III, which leads to an equation of degree 6" if four else "a class above II"
+        return f"no two of the bodies {left} are a dyad; they are a group of {group}"
+
 
 def order(
     bodies: Mapping[str, Iterable[str]],

@@ -9,17 +9,25 @@ import sympy as sp
 
 from closedform.model.functions import Program
 
+RODS = "of A", "Infinite at a parallel singularity."
+JACOBIAN = "of the Jacobian", "Infinite at a singularity, serial or parallel."
+
 
 def conditioning(
-    v: Program, rods: Sequence[sp.Matrix], size: sp.Expr, *, on_sphere: bool = False
+    v: Program,
+    rods: Sequence[sp.Matrix],
+    size: sp.Expr,
+    *,
+    of: tuple[str, str] = RODS,
+    on_sphere: bool = False,
 ) -> tuple[str, dict[str, Any], tuple[str, ...]]:
-    """The condition number of A: what the function returns, its outputs and its notes.
+    """The condition number of a matrix: what the function returns, its outputs and its notes.
 
-    ``size`` is that of the determinant of the ``rods``.  If the hand is ``on_sphere``, the first
+    The ``rods`` are the rows of the matrix, and ``size`` is that of their determinant; ``of`` says
+    which matrix it is, and where the number is infinite.  If the hand is ``on_sphere``, the first
     rod is the strut.  Only the components of the others that move the hand on the sphere count.
     """
-    note = "Infinite at a parallel singularity."
-    seen = "of A"
+    seen, infinite = of
     if on_sphere:
         strut, *others = rods
         length = v.let("strut", sp.sqrt(strut.dot(strut)), nonnegative=True)
@@ -37,7 +45,7 @@ def conditioning(
         return (
             f"Ratio of the largest to the smallest singular value {seen}.",
             {"kappa": value},
-            (note,),
+            (infinite,),
         )
     rows = [rods[1].cross(rods[2]), rods[2].cross(rods[0]), rods[0].cross(rods[1])]
     inverse = sp.Add(*(row.dot(row) for row in rows))
@@ -46,8 +54,8 @@ def conditioning(
         "Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long "
         "and at right angles.",
         {"kappa": value},
-        (note,),
+        (infinite,),
     )
 
 
-__all__ = ["conditioning"]
+__all__ = ["JACOBIAN", "conditioning"]

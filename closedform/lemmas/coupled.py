@@ -16,7 +16,6 @@ from closedform.lemmas.leg_by_leg import (
     MISSED,
     SIGN,
     Choice,
-    bounds_of,
     record_lemma,
     size_of,
     where_free,
@@ -24,6 +23,7 @@ from closedform.lemmas.leg_by_leg import (
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
+from closedform.lemmas.reached import bounds_of
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation

@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.lemmas.circles import two_circles
+from closedform.lemmas.conditioning import JACOBIAN, conditioning
 from closedform.lemmas.dyads_inverse import inverse, known_points, named
 from closedform.lemmas.hand import in_space
 from closedform.lemmas.leg_by_leg import SIGN, Choice, record_lemma
@@ -365,6 +366,10 @@ def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
             (),
         )
     )
+    if n == len(m.hand) == 2:
+        size = v.let("pushed", sp.Abs(hand.times.det()), nonnegative=True)
+        rows = [hand.times[i, :].T for i in range(2)]
+        functions.append(("condition_number", *conditioning(v, rows, size, of=JACOBIAN)))
     export(d, v, at.modes, functions, {})
 
 

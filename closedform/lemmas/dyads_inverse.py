@@ -23,6 +23,7 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Naming, Solution
 from closedform.lemmas.linkage import GROUND, Linkage
+from closedform.lemmas.reached import bounds_of_any
 from closedform.mechanics.assur import Dyad, Held, Order, order
 from closedform.model.functions import SINGLE, Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
@@ -304,6 +305,16 @@ class _Reverse:
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
             ),
         )
+        inside = bounds_of_any(g, self.signs)
+        if inside.body and not on_curve:
+            d.function(
+                "workspace_contains",
+                f"Whether {m.follower or 'the hand'} can reach the target.",
+                {"p": tuple(m.hand)},
+                {"inside": sp.true},
+                program=inside,
+                boolean=True,
+            )
         for link in self.links:
             record_lemma(d, "ik", link)
         d.inverses.append(

@@ -11,15 +11,11 @@ import sympy as sp
 from closedform.lemmas.chain import lengths_in_numbers
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.reached import bounds_of_any, signs_of
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
-    Bound,
-    Let,
-    Match,
     Program,
-    Statement,
-    Vanishes,
     branches,
 )
 from closedform.model.inverse import Inverse, Link
@@ -85,12 +81,7 @@ class LegByLeg:
 
     def _values(self, rows: Sequence[sp.Matrix]) -> int:
         """How many values the entries have over all branches; a zero has none."""
-        signs = {sigma for sigma, _ in self.choices}
-        below: dict[sp.Basic, set[sp.Basic]] = {sigma: {sigma} for sigma in signs}
-        for statement in self.program.body:
-            if isinstance(statement, Let | Bound):
-                found = (below.get(s, set()) for s in statement.value.free_symbols)
-                below[statement.symbol] = set().union(*found)
+        below = signs_of(self.program.body, [sigma for sigma, _ in self.choices])
 
         def values(entry: sp.Expr) -> int:
             return 1 << len(set().union(*(below.get(s, set()) for s in entry.free_symbols)))
@@ -106,16 +97,16 @@ class LegByLeg:
     def export(
         self,
         target: Mapping[str, Any],
-        contained: Mapping[str, Any] | None,
+        contained: Mapping[str, Any],
         unreachable: str,
         notes: Sequence[str],
     ) -> None:
         """Export ``ik`` and, if the reach is limited, ``workspace_contains``.
 
         These are their inputs, the note on what is UNREACHABLE, and the further notes of ``ik``.
-        Without inputs, ``workspace_contains`` is left out, because the reach depends on the mode.
         """
-        d, inside = self.d, bounds_of(self.program)
+        d = self.d
+        inside = bounds_of_any(self.program, [sigma for sigma, _ in self.choices])
         working = branches(*self.choices) if self.choices else SINGLE
         d.branches = working.labels
         modes = "all working modes" if self.choices else "the only working mode"
@@ -133,7 +124,7 @@ class LegByLeg:
                 *notes,
             ),
         )
-        if inside.body and contained is not None:
+        if inside.body:
             d.function(
                 "workspace_contains",
                 "Whether the hand can reach the target.",
@@ -207,21 +198,6 @@ def _number(length: sp.Expr) -> sp.Expr:
     return lengths_in_numbers(length.replace(sp.Abs, lambda inside: inside))
 
 
-def bounds_of(g: Program) -> Program:
-    """What decides whether there is a solution."""
-    kept: list[Statement] = []
-    needed: set[sp.Basic] = set()
-    for statement in reversed(g.body):
-        if isinstance(statement, Bound | Match) or (
-            isinstance(statement, Let | Vanishes) and statement.symbol in needed
-        ):
-            needed |= statement.value.free_symbols
-            if not isinstance(statement, Let):
-                needed |= statement.scale.free_symbols
-            kept.insert(0, statement)
-    return Program([*kept], g.taken)
-
-
 def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
     return value if value.is_Symbol or value.is_number else p.let(name, value)
 
@@ -231,7 +207,6 @@ __all__ = [
     "SIGN",
     "Choice",
     "LegByLeg",
-    "bounds_of",
     "named_in",
     "record_lemma",
     "signs_of_modes",

@@ -25,19 +25,18 @@ from closedform.lemmas.leg_by_leg import (
     SIGN,
     Choice,
     LegByLeg,
-    bounds_of,
     named_in,
     record_lemma,
     size_of,
 )
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, vector
+from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.lemmas.loop import NEAR
 from closedform.lemmas.missed import MOVED, SHARE, loosened
 from closedform.lemmas.modes import NO_MODE, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Branches, Program, branches, real
+from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 from closedform.model.step import Step
 
@@ -447,42 +446,11 @@ def _inverse(m: OnRod, loop: Step) -> None:
     )
     solved.export(
         {"x": tuple(m.hand)},
-        None,
+        {"p": tuple(m.hand)},
         "UNREACHABLE: a rod does not reach.",
         [f"SINGULAR also near a parallel singularity, where {MEET}."],
     )
     solved.certify(m.loop, images="fk")
-    _workspace(m, moved)
-
-
-def _workspace(m: OnRod, moved: Sequence[sp.Expr]) -> None:
-    """Export whether a target is in reach: of the second leg, in either mode of the first."""
-    d, p, first, second = m.d, m.d.program(), *m.legs
-    size = p.let("size", size_of(d, m.legs, moved))
-    reaches = []
-    for sign, mode in SIGN.items():
-        sigma = sp.Integer(sign)
-        near = first.solve(Naming(p, size, f"_1_{mode}"), m.hand - first.base, sigma)
-        named = sp.Matrix([p.let(f"A_1{i}_{mode}", e) for i, e in enumerate(near.rod, 1)])
-        start = len(p.body)
-        names = Naming(p, size, f"_2_{mode}")
-        second.solve(names, m.end(m.hand - named, m.hand) - second.base, sigma)
-        bounds = [s for s in p.body[start:] if isinstance(s, Bound)]
-        p.body[start:] = [s for s in p.body[start:] if s not in bounds]
-        if bounds:
-            reaches.append(sp.Min(*(s.value for s in bounds)))
-            scale, meaning = bounds[0].scale, bounds[0].meaning
-    if reaches:
-        reach = p.let("reach", sp.Max(*reaches))
-        p.bound("reached", reach, scale, meaning)
-    d.function(
-        "workspace_contains",
-        "Whether the hand can reach the target.",
-        {"p": tuple(m.hand)},
-        {"inside": sp.true},
-        program=bounds_of(p),
-        boolean=True,
-    )
 
 
 __all__ = ["on_rod"]

@@ -381,24 +381,24 @@ def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
     images = {e: known[e] for e in inside if e.is_Symbol and e in known}
     if not images:
         return expr
-    return _image(expr, images, any(isinstance(e, sp.Max | sp.Min) for e in inside))
+    return _image(expr, images)
 
 
-def _image(expr: sp.Basic, images: dict[sp.Basic, Any], extremes: bool) -> Any:
+def _image(expr: sp.Basic, images: dict[sp.Basic, Any]) -> Any:
     """The image of an expression, which is kept with those of its parts.
 
     SymPy factors the arguments of a new ``Max`` or ``Min`` and expands that of a new ``Abs``.  For
-    large arguments this takes a minute and finds nothing, so beside ``extremes`` it does not.
+    large arguments this takes a minute and finds nothing, so it is not done.
     """
     if expr in images:
         return images[expr]
     if not expr.args:
         return expr
-    args = [_image(a, images, extremes) for a in expr.args]
+    args = [_image(a, images) for a in expr.args]
     found: Any = expr
     if any(new is not old for new, old in zip(args, expr.args, strict=True)):
-        unevaluated = extremes and isinstance(expr, sp.Max | sp.Min | sp.Abs)
-        if unevaluated and not all(map(_is_simple, args)):
+        costly = isinstance(expr, sp.Max | sp.Min | sp.Abs)
+        if costly and not all(map(_is_simple, args)):
             found = expr.func(*args, evaluate=False)
         else:
             found = expr.func(*args)

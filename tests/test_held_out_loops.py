@@ -87,6 +87,16 @@ def loader(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [norm(*(p - pin)) - v.r, norm(pushed[0], pushed[1] + v.b) - q[1]]
 
 
+def quick_return(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    pin = v.r * np.exp(1j * q[0]) + 1j * v.g
+    return [float((pin * np.exp(-1j * p[0])).imag)]  # across the lever, as seen from it
+
+
+def slotted_crank(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    """The same with an offset, and the lever drives the crank."""
+    return [quick_return(v, p, q)[0] - v.e]
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "cylinder": (cylinder, 1),
@@ -95,13 +105,15 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "minitaur": (minitaur, 4),
     "oblique_rails": (oblique_rails, 4),
     "prrrp": (prrrp, 4),
+    "quick_return": (quick_return, 2),
     "rssr": (rssr, 2),
     "scott_russell": (scott_russell, 2),
+    "slotted_crank": (slotted_crank, 2),
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
 }
-TRAVEL = {"cylinder": 0.8, "loader": 2.0}
-"""How far slides are tried, if it is not half a metre."""
+TRAVEL = {"cylinder": 0.8, "loader": 2.0, "slotted_crank": 3.0}
+"""How far joints are tried, if it is not half a metre or half a radian."""
 
 
 @pytest.fixture(scope="module", params=MISSES)
@@ -132,7 +144,10 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
             if p is None:
                 continue
             found["fk"] += 1
-            assert np.nanmin(apart(forward.p, p, [loop.TASK in (("phi",), ("psi",))])) < 1e-6
+            assert (
+                np.nanmin(apart(forward.p, p, [loop.TASK in (("phi",), ("psi",), ("theta",))]))
+                < 1e-6
+            )
             joints = newton(lambda q: np.array(misses(v, q, p)), q + rng.normal(0, 1, len(q)))  # noqa: B023
             if joints is not None:
                 found["ik"] += 1

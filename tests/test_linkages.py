@@ -210,6 +210,28 @@ def test_a_target_beside_the_curve_is_out_of_reach(loop: ModuleType) -> None:
     assert (told != OK).all(axis=-1).mean() > 0.9
 
 
+def test_the_workspace_is_where_an_answer_exists(loop: ModuleType) -> None:
+    if name_of(loop) not in (*ANGLE, *TWO):
+        assert not hasattr(loop, "workspace_contains")
+        return
+    extent = np.pi if name_of(loop) in ANGLE else size(loop) / 2
+    p = np.random.default_rng(7).uniform(-extent, extent, (20_000, len(loop.TASK)))
+    inside = loop.workspace_contains(p)
+    assert (inside == (loop.ik(p).status != UNREACHABLE).any(axis=-1)).all()
+    assert 0.1 < inside.mean() < 0.9
+
+
+def test_the_condition_number_is_that_of_the_jacobian(loop: ModuleType) -> None:
+    if name_of(loop) not in TWO:
+        assert not hasattr(loop, "condition_number")
+        return
+    q = np.random.default_rng(8).uniform(-3, 3, (2000, 2))
+    J, found = loop.jacobian(q), loop.condition_number(q)
+    there = np.isfinite(J).all(axis=(-1, -2))
+    assert there.mean() > 0.5
+    assert np.allclose(found[there], np.linalg.cond(J[there]), rtol=1e-9)
+
+
 def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
     q = np.random.default_rng(5).uniform(-np.pi, np.pi, (5000, len(loop.JOINTS)))
     factors = np.abs(loop.singularities(q))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import sympy as sp
 
 from closedform.lemmas.chain import lengths_in_numbers
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
+from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
 from closedform.lemmas.rails import Rail
 from closedform.lemmas.reached import bounds_of_any, signs_of
 from closedform.model.derivation import Derivation, Solved
@@ -175,9 +175,25 @@ def _either(names: Sequence[str]) -> str:
     return f"{', '.join(first)} or {last}" if first else last
 
 
+class Sized(Protocol):
+    """A part of a mechanism that has lengths, which may be numbers."""
+
+    @property
+    def rod(self) -> Any:
+        """The length of its rod."""
+
+    @property
+    def base(self) -> sp.Matrix:
+        """The point of the ground from which it is seen."""
+
+    @property
+    def on_hand(self) -> Sequence[Any]:
+        """The point where it ends, as seen from the point that is the hand."""
+
+
 def size_of(
     d: Derivation,
-    legs: Sequence[Leg | Crank | Slide | Stretch | Rail],
+    legs: Sequence[Sized],
     moved: Sequence[sp.Expr] = (),
 ) -> sp.Expr:
     """The sum of the lengths of a mechanism and of the travel of its slides."""
@@ -186,7 +202,7 @@ def size_of(
     return sp.Add(*sized, *map(sp.Abs, moved), *map(_in_numbers, legs))
 
 
-def _in_numbers(leg: Leg | Crank | Slide | Stretch | Rail) -> sp.Expr:
+def _in_numbers(leg: Sized) -> sp.Expr:
     """The lengths of a leg that are numbers, not parameters."""
     lengths = [0 if isinstance(leg, Rail) else leg.rod, getattr(leg, "length", 0)]
     places = [[length] for length in lengths] + [leg.base, leg.on_hand]

@@ -13,6 +13,7 @@ from closedform.algebra.formulas import number
 from closedform.scaffold.linkages import LinkageLines, linkage
 from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
 from closedform.scaffold.on_rod import on_rod
+from closedform.scaffold.slotted import slotted
 from closedform.scaffold.source import file_name, literal
 from closedform.scaffold.tables import Table, add_joint
 from closedform.scaffold.uprights import HINGED, uprights
@@ -42,6 +43,9 @@ def _way(found: Legs) -> _Way:
         if follower:
             return _Way([], [loop.hand], linkage=lines)
         return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+    if follower and not follower.driven and (turning := slotted(found, follower)):
+        found.check_all_used()
+        return _Way(turning, [loop.hand])
     if follower and not follower.driven:
         return _Way(_coupled(found, follower), [loop.hand])
     if carried := on_rod(found):
@@ -167,6 +171,8 @@ class _Way:
             return "linkage"
         if self.legs[0].call.startswith("Upright"):
             return "tripod"
+        if any(leg.call.startswith("Lever") for leg in self.legs):
+            return "slotted"
         if self.at:
             return "on_rod"
         return {0: "platform", 1: "coupled"}.get(len(self.task), "parallel")
@@ -178,7 +184,7 @@ class _Way:
             bodies = [f"        {body}," for body in self.linkage.bodies]
             return ["    {", *bodies, "    },", *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
-        if self.name in ("coupled", "on_rod"):
+        if self.name in ("coupled", "slotted", "on_rod"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
         return ["    [", *(f"        {leg}," for leg in legs), "    ],"]
 
@@ -252,7 +258,7 @@ def _body(table: Table, way: _Way) -> list[str]:
     for leg in way.legs:
         if leg.passive:
             lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
-    if way.name == "coupled" or (way.linkage and len(way.task) == 1):
+    if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)
         lines += [f'{x} = real("{x}")', f"{way.name}(", "    d,", *hand]

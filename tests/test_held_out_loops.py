@@ -97,6 +97,11 @@ def slotted_crank(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [quick_return(v, p, q)[0] - v.e]
 
 
+def scotch_yoke(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    """The pin is on a line of slope 2."""
+    return [v.r * (2 * np.cos(p[0]) - np.sin(p[0])) - 2 * q[0]]
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "cylinder": (cylinder, 1),
@@ -107,12 +112,13 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "prrrp": (prrrp, 4),
     "quick_return": (quick_return, 2),
     "rssr": (rssr, 2),
+    "scotch_yoke": (scotch_yoke, 1),
     "scott_russell": (scott_russell, 2),
     "slotted_crank": (slotted_crank, 2),
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
 }
-TRAVEL = {"cylinder": 0.8, "loader": 2.0, "slotted_crank": 3.0}
+TRAVEL = {"cylinder": 0.8, "loader": 2.0, "scotch_yoke": 0.1, "slotted_crank": 3.0}
 """How far joints are tried, if it is not half a metre or half a radian."""
 
 

@@ -1,8 +1,8 @@
-"""A single loop whose pin slides along a lever: the inversions of the slider-crank.
+"""A single loop whose pin slides along a lever or a slider: inversions of the slider-crank.
 
-A pin at the end of a crank is on a line of a lever that turns about another pivot.  The crank may
-drive the lever (the quick-return mechanism of Whitworth, an oscillating cylinder), or the lever the
-crank.
+A pin at the end of a crank is on a line of a lever, which turns about another pivot, or of a
+slider.  With a lever it is a quick-return mechanism or a cylinder that swings about its end, with a
+slider a Scotch yoke.  Either of both bodies may be driven.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from closedform.lemmas.coupled import POSITION
 from closedform.lemmas.hand import check_plain, in_space
 from closedform.lemmas.leg_by_leg import MISSED, SIGN, Choice, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Naming, Solution, vector
-from closedform.lemmas.missed import SHARE
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
+from closedform.lemmas.rails import Rail
 from closedform.lemmas.reached import bounds_of
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Branches, Program, branches, choose, real
+from closedform.model.functions import SINGLE, Branches, Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
-from closedform.model.pair import Pair
 from closedform.model.step import Step
 
 
@@ -58,22 +58,28 @@ class Lever:
     def base(self) -> sp.Matrix:
         return vector(self.pivot)
 
-    def normal(self, pair: Pair) -> sp.Matrix:
-        """The unit vector across the line, at an angle with this sine and cosine."""
-        return pair.c * vector(self.across) - pair.s * vector(self.along)
+    @property
+    def normal(self) -> sp.Matrix:
+        """The unit vector across the line."""
+        return sp.cos(self.joint) * vector(self.across) - sp.sin(self.joint) * vector(self.along)
 
-    def foot(self, pair: Pair) -> sp.Matrix:
+    @property
+    def level(self) -> sp.Expr:
+        """How far the line is from the origin, along its normal."""
+        return self.normal.dot(self.base) + self.rod
+
+    def foot(self) -> sp.Matrix:
         """The point of the line that is nearest to the pivot."""
-        return self.base + self.rod * self.normal(pair)
+        return self.base + self.rod * self.normal
 
 
 def slotted(
     d: Derivation,
-    driver: Crank | Lever,
-    follower: Crank | Lever,
+    driver: Crank | Lever | Rail,
+    follower: Crank | Lever | Rail,
     modes: Choice = POSITION,
 ) -> None:
-    """Derive and export a loop of a crank and a lever, along which the pin of the crank slides.
+    """Derive and export a loop of a crank and a line, along which the pin of the crank slides.
 
     Parameters
     ----------
@@ -81,91 +87,119 @@ def slotted(
         the derivation, with its parameters, one driven joint and the passive slide; the task has
         one coordinate
     driver, follower
-        the crank, whose rod has no length, and the lever; the joint of the driver is that of the
-        derivation, and the joint of the follower is the symbol of the task
+        the crank, whose rod has no length, and the lever or slider with the line; the joint of the
+        driver is that of the derivation, and the joint of the follower is the symbol of the task
     modes
         the names of the assembly modes, by the sign of ``jacobian_parallel``
     """
     cranks = [leg for leg in (driver, follower) if isinstance(leg, Crank)]
-    levers = [leg for leg in (driver, follower) if isinstance(leg, Lever)]
+    lines = [leg for leg in (driver, follower) if not isinstance(leg, Crank)]
     if len(cranks) != 1 or cranks[0].rod != 0:
-        raise ShapeError(
-            f"{d.name}: a pin at the end of a crank without a rod slides along a lever"
-        )
+        raise ShapeError(f"{d.name}: the pin must be at the end of a crank without a rod")
     check_plain(d, cranks)
-    m = _Slotted(d, driver, follower, cranks[0], levers[0])
-    d.singularities, d.poles = ("driver", "follower"), ("follower",)
+    m = _Slotted(d, driver, follower, cranks[0], lines[0])
+    d.singularities = ("driver", "follower")
+    d.poles = () if m.is_linear(follower) else ("follower",)
+    if isinstance(m.line, Lever):
+        where, carrier, distance = "pivot", "lever.  The lever turns about", m.line.rod
+    else:
+        where, carrier = "start", "slider.  The slider starts at"
+        distance = m.normal.dot(m.line.rate) * m.line.joint
     d.loop = loop = d.step(
         "The loop",
         "The crank turns about A1 and determines the point P of the pin, which is on the line of "
-        "the lever.  The lever turns about A2, and n is the unit normal of its line.",
+        f"the {carrier} A2, and n is the unit normal of its line.",
         {
             r"\mathbf P": m.crank.end(),
-            r"\mathbf n": m.lever.normal(_exact(m.lever.joint)),
-            r"\mathbf n\cdot(\mathbf P - \mathbf A_2)": m.lever.rod,
+            r"\mathbf n": m.line.normal,
+            r"\mathbf n\cdot(\mathbf P - \mathbf A_2)": distance,
         },
     )
-    d.explain({r"\mathbf P": "pin", r"\mathbf n": "unit normal of the line of the lever"})
-    d.explain({r"\mathbf A_2": "pivot of the lever"})
+    d.explain({r"\mathbf P": "pin", r"\mathbf n": "unit normal of the line of the pin"})
+    d.explain({r"\mathbf A_2": f"{where} of the body with the line"})
     at = _forward(m, modes, loop)
     _draw(m, at)
     _velocity(m, at, loop)
     _inverse(m, loop)
 
 
-def _exact(joint: sp.Symbol) -> Pair:
-    return Pair(sp.sin(joint), sp.cos(joint))
-
-
 @dataclass(frozen=True)
 class _Slotted:
-    """The loop of a derivation: both bodies, in either order."""
+    """The loop of a derivation: the crank with its pin, and the body with the line."""
 
     d: Derivation
-    driver: Crank | Lever
-    follower: Crank | Lever
+    driver: Crank | Lever | Rail
+    follower: Crank | Lever | Rail
     crank: Crank
-    lever: Lever
+    line: Lever | Rail
+
+    @property
+    def normal(self) -> sp.Matrix:
+        return self.line.normal
+
+    @property
+    def level(self) -> sp.Expr:
+        """How far the line is from the origin, along its normal."""
+        line = self.line
+        return line.level if isinstance(line, Lever) else line.normal.dot(line.end())
 
     @property
     def equation(self) -> sp.Expr:
-        normal = self.lever.normal(_exact(self.lever.joint))
-        return normal.dot(self.crank.end() - self.lever.base) - self.lever.rod
+        return self.normal.dot(self.crank.end()) - self.level
 
-    def size(self) -> sp.Expr:
-        return size_of(self.d, (self.crank, self.lever))
+    def is_linear(self, leg: Crank | Lever | Rail) -> bool:
+        """Whether the equation is linear in the joint of this body, with one solution."""
+        return isinstance(leg, Rail)
 
-    def solve(self, of: Crank | Lever, names: Naming, sigma: sp.Symbol, side: int) -> _Turned:
+    def names(self, program: Program, known: Crank | Lever | Rail, share: sp.Rational) -> Naming:
+        """Names for what follows from the joint of one body."""
+        moved = [known.joint] if isinstance(known, Rail) else []
+        size = program.let("size", size_of(self.d, (self.crank, self.line), moved))
+        return Naming(program, size, "", share)
+
+    def solve(self, of: Crank | Lever | Rail, names: Naming, sigma: sp.Symbol, side: int) -> _Known:
         """The joint of one body, if that of the other one is known.
 
-        The derivative of the equation with respect to it has the sign ``-side * sigma``.
+        The equation is taken times ``side``, and its derivative has the sign of ``-sigma``.
         """
+        if isinstance(of, Rail):
+            found = of.solve(names, self.crank.end() - of.base, sigma)
+            return _Known(found, {of.joint: found.value})
         if isinstance(of, Lever):
             w = self.crank.end() - of.base
-            a, b = -w.dot(vector(of.along)), w.dot(vector(of.across))
-            c, met = of.rod, "the pin is at the pivot of its lever"
+            sides = (-w.dot(vector(of.along)), w.dot(vector(of.across)), of.rod)
+            met = "the pin is at the pivot of its lever"
         else:
-            n, length = (
-                self.lever.normal(_exact(self.lever.joint)),
-                sp.sympify(of.length, strict=True),
-            )
-            a, b = (length * n.dot(vector(e)) for e in (of.across, of.along))
-            c, met = self.lever.rod - n.dot(of.base - self.lever.base), "a crank has no length"
-        sides = [side * sp.expand(e) for e in (a, b, c)]
-        return _turned(names, of.joint, sides, sigma, met)
+            arms = (sp.sympify(of.length, strict=True) * vector(e) for e in (of.across, of.along))
+            sides = (*map(self.normal.dot, arms), self.level - self.normal.dot(of.base))
+            met = "a crank has no length"
+        return _turned(names, of.joint, [side * sp.expand(e) for e in sides], sigma, met)
+
+    def points(self) -> dict[str, sp.Matrix]:
+        """The points that are drawn: pivots, pin, and a point of the line."""
+        foot = {} if self.near == "A2" else {self.near: self.foot()}
+        return {"A1": self.crank.base, "P": self.crank.end(), "A2": self.line.base, **foot}
+
+    @property
+    def near(self) -> str:
+        """The point from which the pin slides."""
+        return "A2" if isinstance(self.line, Lever) and self.line.rod == 0 else "F"
+
+    def foot(self) -> sp.Matrix:
+        return self.line.foot() if isinstance(self.line, Lever) else self.line.end()
 
 
 @dataclass(frozen=True)
-class _Turned:
-    """The joint of one body, and the sine and cosine of its angle in the names of a program."""
+class _Known:
+    """The joint of one body, and what its sine and cosine are in the names of a program."""
 
     found: Solution
-    pair: Pair
+    known: dict[sp.Basic, sp.Expr]
 
 
 def _turned(
     names: Naming, x: sp.Symbol, sides: Sequence[sp.Expr], sigma: sp.Symbol, met: str
-) -> _Turned:
+) -> _Known:
     """``a sin x + b cos x = c``, also where a and b vanish."""
     p = names.program
     a, b = (names.let(n, e) for n, e in zip("ab", sides, strict=False))
@@ -189,9 +223,8 @@ def _turned(
     case = Degenerate((none,), locus, x, met)
     link = Link((x,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=(case,))
     missed = names.let("missed", sp.Max(0, sp.Abs(c) - found.h))
-    return _Turned(
-        Solution(link, lemma[x], sp.zeros(2, 1), missed), Pair(sine / width, cosine / width)
-    )
+    known = {sp.sin(x): sine / width, sp.cos(x): cosine / width}
+    return _Known(Solution(link, lemma[x], sp.zeros(2, 1), missed), known)
 
 
 @dataclass(frozen=True)
@@ -200,79 +233,77 @@ class _Posture:
 
     program: Program
     modes: Branches
-    pair: Pair
+    known: dict[sp.Basic, sp.Expr]
 
 
 def _forward(m: _Slotted, choice: Choice, loop: Step) -> _Posture:
     d, f, sigma, x = m.d, m.d.program(), real("sigma_assembly"), m.follower.joint
-    modes = branches((sigma, choice))
+    linear = m.is_linear(m.follower)
+    modes = SINGLE if linear else branches((sigma, choice))
     d.assembly_modes = modes.labels
-    names = Naming(f, f.let("size", m.size()), "", SHARE)
-    solved = m.solve(m.follower, names, sigma, -1)
-    how = (
-        "The line of the lever has to pass by the pin.  It does so with the pin on either side of "
-        "the point of the line that is nearest to the pivot."
-        if isinstance(m.follower, Lever)
-        else "The pin is where the line of the lever meets the circle of the crank."
-    )
-    d.step(
-        "Forward: the follower",
-        f"{how}  Both solutions are assembly modes.",
-        {},
-        uses=[loop],
+    names = m.names(f, m.driver, MOVED if isinstance(m.driver, Rail) else SHARE)
+    solved, side = m.solve(m.follower, names, sigma, -1), 1 if linear else -1
+    if linear:
+        how = "The equation of the loop is linear in the joint of the slider."
+    elif m.follower is m.line:
+        how = (
+            "The line of the lever has to pass by the pin.  It does so with the pin on either side "
+            "of the point of the line that is nearest to the pivot.  Both are assembly modes."
+        )
+    else:
+        how = (
+            "The pin is where the line meets the circle of the crank.  Both points are assembly "
+            "modes."
+        )
+    d.step("Forward: the follower", how, {}, uses=[loop])
+    notes = (
+        *["UNREACHABLE: the pin does not reach the line."] * (not linear),
+        *where_free([solved.found]),
+        *["Ill-conditioned near the parallel singularity, where both modes meet."] * (not linear),
     )
     d.function(
         "fk",
-        f"{x} in both assembly modes.",
+        f"{x}{'' if linear else ' in both assembly modes'}.",
         {"q": d.actuated},
         {"p": [solved.found.value]},
         program=f,
         branches=modes,
         result="Positions",
-        notes=(
-            "UNREACHABLE: the pin does not reach the line of the lever.",
-            *where_free([solved.found]),
-            "Ill-conditioned near the parallel singularity, where both modes meet.",
-        ),
+        notes=notes,
     )
     link = solved.found.link
-    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (-m.equation,), links=(link,)))
+    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (side * m.equation,), links=(link,)))
     record_lemma(d, "fk", link)
     v = Program(list(f.body), f.taken)
-    pair = Pair(v.let("sine_x", solved.pair.s), v.let("cosine_x", solved.pair.c))
-    return _Posture(v, modes, pair)
-
-
-def _points(m: _Slotted, crank: Pair, lever: Pair) -> dict[str, sp.Matrix]:
-    arm = crank.c * vector(m.crank.along) + crank.s * vector(m.crank.across)
-    pin = m.crank.base + sp.sympify(m.crank.length, strict=True) * arm
-    foot = {"F": m.lever.foot(lever)} if m.lever.rod else {}
-    return {"A1": m.crank.base, "P": pin, "A2": m.lever.base, **foot}
+    known = {e: v.let(f"{e.func.__name__}_x", value) for e, value in solved.known.items()}
+    return _Posture(v, modes, known)
 
 
 def _draw(m: _Slotted, at: _Posture) -> None:
-    exact = [_exact(leg.joint) for leg in (m.crank, m.lever)]
-    known = [at.pair if leg is m.follower else _exact(leg.joint) for leg in (m.crank, m.lever)]
-    foot = ["F"] if m.lever.rod else []
-    near = (*foot, "A2")[0]
+    exact = {name: in_space(place) for name, place in m.points().items()}
     turning = "A1" if m.driver is m.crank else "A2"
-    lever = {"lever": ("A2", "F")} if foot else {}
+    links = {"ground": ("A1", "A2"), "crank": ("A1", "P")}
     lengths = {("A1", "P"): sp.sympify(m.crank.length, strict=True)}
-    if foot:
-        lengths["A2", "F"] = m.lever.rod
+    joints: dict[sp.Symbol, tuple[str, ...]] = {m.line.slide: (m.near, "P")}
+    if isinstance(m.line, Rail):
+        lengths["A2", m.near] = m.line.joint
+    elif m.line.rod:
+        links["lever"] = "A2", m.near
+        lengths["A2", m.near] = m.line.rod
+    joints[m.driver.joint] = ("A2", m.near) if isinstance(m.driver, Rail) else (turning,)
     skeleton(
         m.d,
-        {name: in_space(place) for name, place in _points(m, *known).items()},
-        links={"ground": ("A1", "A2"), "crank": ("A1", "P")} | lever,
-        joints={m.driver.joint: (turning,), m.lever.slide: (near, "P")},
+        {name: [e.xreplace(at.known) for e in place] for name, place in exact.items()},
+        links=links,
+        joints=joints,
         hand="P",
         hand_at=in_space(m.crank.end()),
         ground=("A1", "A2"),
         lengths=lengths,
         program=at.program,
         branches=at.modes,
-        notes=(NO_MODE,),
-        at_posture=[{n: in_space(place) for n, place in _points(m, *exact).items()}],
+        notes=(NO_MODE,) * (not m.is_linear(m.follower)),
+        at_posture=[exact],
     )
 
 
@@ -282,30 +313,34 @@ def _velocity(m: _Slotted, at: _Posture, loop: Step) -> None:
     a, b = (sp.collect(sp.expand(e[0]), [sp.sin(x), sp.cos(x)]) for e in (A, B))
     d.step(
         "Velocity and singular sets",
-        "The derivative of the equation of the loop gives A*dx = B*dq.  With respect to the angle "
-        "of the lever it is, up to the sign, the distance of the pin from the point of the line "
-        "that is nearest to the pivot.  With respect to the angle of the crank it vanishes where "
-        "the crank is at right angles to the line.  If A vanishes, the follower can move while the "
-        "driver stands still (parallel).  If B vanishes, the follower stands still (serial).",
+        "The derivative of the equation of the loop gives A*dx = B*dq.  With respect to "
+        + (
+            "the angle of the lever it is, up to the sign, the distance of the pin from the point "
+            "of the line that is nearest to the pivot."
+            if isinstance(m.line, Lever)
+            else "the joint of the slider it is a constant."
+        )
+        + "  With respect to the angle of the crank it vanishes where the crank is at right angles "
+        "to the line.  If A vanishes, the follower can move while the driver stands still "
+        "(parallel).  If B vanishes, the follower stands still (serial).",
         {"A": a, "B": b, "J": r"\frac{B}{A}"},
         proves="A and B are the derivatives.",
         equal=[(A[0], a), (B[0], b)],
         uses=[loop],
     )
     v = Program(list(at.program.body), at.program.taken)
-    seen = {sp.sin(x): at.pair.s, sp.cos(x): at.pair.c}
-    A_at, B_at = v.let("A", a.xreplace(seen)), v.let("B", b.xreplace(seen))
-    pole = "Not finite at a parallel singularity."
+    A_at, B_at = v.let("A", a.xreplace(at.known)), v.let("B", b.xreplace(at.known))
+    pole = ("Not finite at a parallel singularity.",) * bool(d.poles)
     functions: list[Exported] = [
         ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
         (
             "jacobian_serial",
             "B of A*dx = B*dq.",
             {"B": [B_at]},
-            ("Its sign distinguishes the working modes.",),
+            ("Its sign distinguishes the working modes.",) * (not m.is_linear(m.driver)),
         ),
-        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, (pole,)),
-        ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
+        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, pole),
+        ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, pole),
         ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
     ]
     export(d, v, at.modes, functions, {**EQUATIONS, "det": "J", "factors": "A"})
@@ -313,48 +348,52 @@ def _velocity(m: _Slotted, at: _Posture, loop: Step) -> None:
 
 def _inverse(m: _Slotted, loop: Step) -> None:
     d, g, sigma = m.d, m.d.program(), real("sigma_driver")
-    q, x = m.driver.joint, m.follower.joint
-    size = g.let("size", m.size())
-    solved = m.solve(m.driver, Naming(g, size, ""), sigma, 1)
-    inside = bounds_of(g)
+    q, x, linear = m.driver.joint, m.follower.joint, m.is_linear(m.driver)
+    names = m.names(g, m.follower, sp.S.Half)
+    solved, inside = m.solve(m.driver, names, sigma, 1), bounds_of(g)
     A = velocity_matrices([m.equation], (x,), (q,))[0][0]
-    seen = {sp.sin(q): solved.pair.s, sp.cos(q): solved.pair.c}
-    named = g.let("A", sp.expand(A).xreplace(seen))
-    meant = "the pin is where the follower can move alone"
-    g.determined(sp.Abs(named), size, meant, name="|A|", missed=solved.found.missed, size=size)
-    working = branches((sigma, SIGN))
+    alone, why = "the pin is where the follower can move alone", ""
+    if d.poles:
+        value, missed = g.let("A", sp.expand(A).xreplace(solved.known)), solved.found.missed
+        g.determined(sp.Abs(value), names.size, alone, name="|A|", missed=missed, size=names.size)
+        why = (
+            "  Near a parallel singularity rounded joints do not determine the follower, however "
+            "they are computed.  A rounding error of the lengths turns it by this error over A.  "
+            "The status is SINGULAR if A is less than 2^-10 of the sum of all lengths.  "
+            f"{MISSED}"
+        )
+    working = SINGLE if linear else branches((sigma, SIGN))
     d.branches = working.labels
+    solutions = "It is linear in it" if linear else "The sign of B tells its two solutions apart"
     d.step(
         "Inverse: the driver",
-        "The same equation is solved for the driver.  The sign of B tells its two solutions "
-        "apart.  Near a parallel singularity rounded joints do not determine the follower, however "
-        "they are computed.  A rounding error of the lengths turns it by this error over A.  The "
-        f"status is SINGULAR if A is less than 2^-10 of the sum of all lengths.  {MISSED}",
+        f"The same equation is solved for the driver.  {solutions}.{why}",
         {},
         uses=[loop],
     )
     d.function(
         "ik",
-        "The driven joint in both working modes.",
+        f"The driven joint in {'the only working mode' if linear else 'both working modes'}.",
         {"x": (x,)},
         {"q": [solved.found.value]},
         program=g,
         branches=working,
         result="Solutions",
         notes=(
-            "UNREACHABLE: the pin does not reach the line of the lever.",
+            *["UNREACHABLE: the pin does not reach the line."] * bool(inside.body),
             *where_free([solved.found]),
-            f"SINGULAR also near the parallel singularity, where {meant}.",
+            *[f"SINGULAR also near the parallel singularity, where {alone}."] * bool(d.poles),
         ),
     )
-    d.function(
-        "workspace_contains",
-        "Whether the follower can reach the target.",
-        {"p": (x,)},
-        {"inside": sp.true},
-        program=inside,
-        boolean=True,
-    )
+    if inside.body:
+        d.function(
+            "workspace_contains",
+            "Whether the follower can reach the target.",
+            {"p": (x,)},
+            {"inside": sp.true},
+            program=inside,
+            boolean=True,
+        )
     link = solved.found.link
     record_lemma(d, "ik", link)
     d.inverses.append(
@@ -365,7 +404,7 @@ def _inverse(m: _Slotted, loop: Step) -> None:
             (m.equation,),
             images="fk",
             links=(link,),
-            angles=(x,),
+            angles=() if isinstance(m.follower, Rail) else (x,),
         )
     )
 

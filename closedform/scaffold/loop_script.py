@@ -171,7 +171,7 @@ class _Way:
             return "linkage"
         if self.legs[0].call.startswith("Upright"):
             return "tripod"
-        if any(leg.call.startswith("Lever") for leg in self.legs):
+        if len(self.task) == 1 and any(leg.passive for leg in self.legs):
             return "slotted"
         if self.at:
             return "on_rod"

@@ -1,4 +1,4 @@
-"""Recognises a crank whose pin slides along a lever, in a loop of three moving bodies."""
+"""Recognises a crank whose pin slides along a lever or a slider, with three moving bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ BODIES = 3
 
 
 def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
-    """The driver and the follower, one of which is the lever; None if there is no lever."""
+    """The driver and the follower, a crank and a body with a line; None if there are none."""
     loop, driven = found.loop, found.driven()
     if loop.dimensions != 2 or len(loop.bodies) - 1 != BODIES or len(driven) != 1:
         return None
@@ -22,18 +22,18 @@ def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
     if not len(turning) == len(loop.of(block)) == 2 or len(pins) != 1 or len(slides) != 1:
         return None
     (pin,), (slide,) = pins, slides
-    bodies = pin.other(block), slide.other(block)
-    crank, lever = (turning[body] for body in bodies)
-    if {crank.kind, lever.kind} != {"revolute"}:
+    crank, carrier = turning[pin.other(block)], turning[slide.other(block)]
+    if crank.kind != "revolute":
         raise loop.error(
-            f"{slide.name} slides along {bodies[1]}; this is known if both {bodies[0]} and "
-            f"{bodies[1]} turn about the ground"
+            f"{crank.name} moves the pin of {pin.name}, which slides along {slide.other(block)}; "
+            f"this is known if {crank.other(GROUND)} turns about the ground"
         )
     if slide.axis is None:
         raise loop.error(f"{slide.name} slides; say in which direction with axis")
-    found.used |= {j.name for j in (crank, lever, pin, slide)}
-    legs = {crank: _crank(found, crank, pin), lever: _lever(found, lever, slide, (block, pin))}
-    return [legs[driven[0]], legs[follower]]
+    found.used |= {j.name for j in (crank, carrier, pin, slide)}
+    line = _lever if carrier.kind == "revolute" else _yoke
+    first, second = _crank(found, crank, pin), line(found, carrier, slide, (block, pin))
+    return [first, second] if crank.driven else [second, first]
 
 
 def _pivot(found: Legs, joint: Joint) -> sp.Matrix:
@@ -60,25 +60,46 @@ def _crank(found: Legs, joint: Joint, pin: Joint) -> LoopLeg:
         joint,
         f"Crank({joint.name}, {source(length)}, 0, {found.at(pivot)}, {found.at(along)}, "
         f"{found.at(across)})",
-        f"{joint.name} turns a crank of length {length}, whose pin slides along the lever",
+        f"{joint.name} turns a crank of length {length}, whose pin slides along a line",
         sp.zeros(2, 1),
     )
 
 
+def _beside(found: Legs, slide: Joint, held: tuple[str, Joint]) -> sp.Matrix:
+    """Where the pin is on its block, as seen from the line along which the block slides."""
+    block, pin = held
+    points = found.loop.bodies[block]
+    both = {pin.at, slide.at} <= set(points)
+    return points[pin.at] - points[slide.at] if both else sp.zeros(2, 1)
+
+
 def _lever(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> LoopLeg:
-    (block, pin), body, pivot = held, joint.other(GROUND), _pivot(found, joint)
+    body, pivot = joint.other(GROUND), _pivot(found, joint)
     assert slide.axis is not None
     across = sp.Matrix([-slide.axis[1], slide.axis[0]])
-    points = found.loop.bodies[block]
-    off = points[pin.at] - points[slide.at] if {pin.at, slide.at} <= set(points) else sp.zeros(2, 1)
-    line = pivot if slide.at == joint.at else found.point(body, slide)
-    offset = sp.simplify(across.dot(line + off - pivot))
+    start = pivot if slide.at == joint.at else found.point(body, slide)
+    offset = sp.simplify(across.dot(start + _beside(found, slide, held) - pivot))
     more = f", {source(offset)}" if offset else ""
     return LoopLeg(
         joint,
         f"Lever({joint.name}, {slide.name}, {found.at(pivot)}, {found.at(slide.axis)}, "
         f"{found.at(across)}{more})",
-        f"{joint.name} turns the lever",
+        f"{joint.name} turns a lever with the line",
+        sp.zeros(2, 1),
+        slide.name,
+    )
+
+
+def _yoke(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> LoopLeg:
+    if joint.axis is None:
+        raise found.loop.error(f"{joint.name} slides; say in which direction with axis")
+    assert slide.axis is not None
+    start = found.point(joint.other(GROUND), slide) + _beside(found, slide, held)
+    return LoopLeg(
+        joint,
+        f"Rail({joint.name}, {slide.name}, {found.at(start)}, {found.at(joint.axis)}, "
+        f"{found.at(slide.axis)})",
+        f"{joint.name} moves a slider with the line",
         sp.zeros(2, 1),
         slide.name,
     )

@@ -50,6 +50,11 @@ def newton(pose, target: np.ndarray, q: np.ndarray, steps: int = 60) -> np.ndarr
     return q[np.abs(pose(q) - target).max(axis=(-1, -2)) < 1e-10]
 
 
+def turned_by(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """A rotation about a unit vector through the origin, as a pose."""
+    return by_screws([(axis, np.zeros(3))], np.eye(4), np.asarray(angle)[..., None])
+
+
 def twists(matrices: list[np.ndarray]) -> np.ndarray:
     """Columns (v; omega) of matrices of se(3)."""
     rows = [(0, 3), (1, 3), (2, 3), (2, 1), (0, 2), (1, 0)]

@@ -151,13 +151,14 @@ PIPER = """<robot name="piper">
 
 
 def test_frames_turned_by_any_angle_keep_their_axes(tmp_path: Path) -> None:
-    """Sines of an angle are not rounded decimals; turns about parallel axes are one turn."""
+    """Sines of an angle are not rounded decimals; turns of joints about their axes are offsets."""
     path = tmp_path / "piper.urdf"
     path.write_text(PIPER, "utf-8")
     table = read_urdf(path)
     assert not any("rounded" in note for note in table.notes)
     values = {name: float(sp.Rational(given["value"])) for name, given in table.parameters.items()}
-    assert sorted(values.values()) == [0.1359, 1.658]
+    assert sorted(values.values()) == [0.1359, 1.7939]
+    assert not {s for _, w, p in table.axes for e in (*w, *p) for s in e.free_symbols}
     arm = arm_of(path)
     assert "axes 4, 5 and 6 meet in a point" in recognised(arm)
     pose = arm.pose.subs({s: values[str(s)] for s in arm.pose.free_symbols if str(s) in values})

@@ -488,14 +488,15 @@ def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
 
 def from_screws(
     d: Derivation,
-    axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]],
+    axes: Sequence[tuple[sp.Expr, Sequence[Any], Sequence[Any]]],
     home: Any,
     *,
     base: Any = None,
 ) -> Serial:
     """The chain of axes ``(joint, direction, point)`` at home; ``home`` is the pose of the tool.
 
-    A direction is a unit vector; the point of a prismatic joint does not matter.  All of them are
+    A joint that turns may have a constant angle added to it; home is where the sum is zero.  A
+    direction is a unit vector; the point of a prismatic joint does not matter.  All of them are
     seen from the frame ``base``, such as that of a tilted mount; its pose is the identity by
     default.  Raises :class:`RowError` if something is not an axis or not a pose.
     """
@@ -503,11 +504,16 @@ def from_screws(
         raise RowError(f"{d.name}: there are no axes")
     kinds = {j.symbol: j.kind for j in d.joints}
     motions: list[Motion] = []
-    directions, points, moves = [], [], []
-    for i, (joint, direction, point) in enumerate(axes, 1):
+    directions, points, turns, moves = [], [], [], []
+    for i, (variable, direction, point) in enumerate(axes, 1):
         where = f"{d.name}: axis {i}"
+        variable = exact(variable, where)
+        joint = next((s for s in variable.free_symbols if s in kinds), variable)
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
+        (offset,) = constant(d, [variable - joint], where)
+        if offset != 0 and kinds[joint] != "revolute":
+            raise RowError(f"{where}: {joint} slides; put {offset} into the points after it")
         w = constant(d, direction, where)
         at = constant(d, point, where)
         if len(w) != 3 or len(at) != 3:
@@ -518,7 +524,8 @@ def from_screws(
         motions.append(Motion(joint, not revolute))
         directions.append(w)
         points.append(at)
-        moves.append(exponential(twist, joint))
+        turns.append(variable)
+        moves.append(exponential(twist, variable))
     home = rigid(d, home, "the pose at home")
     frame = frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
@@ -532,7 +539,7 @@ def from_screws(
         sign = 1 if frame[:, 2] == directions[i] else -1
         last = i == len(motions) - 1
         step = _seen(frame, (home[:3, 3] if last else points[i + 1]) - points[i])
-        turn = sp.S.Zero if slides else sign * joint
+        turn = sp.S.Zero if slides else sp.expand(sign * turns[i])
         shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
         current.append(Row(sign, turn, shift, slides))
         if last or directions[i + 1] not in (frame[:, 2], -frame[:, 2]):

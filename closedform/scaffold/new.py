@@ -273,7 +273,7 @@ def _table_lines(table: Table) -> list[str]:
         end = "    modified=True,\n)" if table.modified else ")"
         return ["arm = from_dh(", "    d,", "    [", *rows, "    ],", end]
     axes = [
-        f"        ({joint}, ({', '.join(map(source, w))}), ({', '.join(map(source, p))})),"
+        f"        ({source(joint)}, ({', '.join(map(source, w))}), ({', '.join(map(source, p))})),"
         for joint, w, p in table.axes
     ]
     return [

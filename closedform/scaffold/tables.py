@@ -94,6 +94,7 @@ class Table:
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
     rows: list[tuple[Any, ...]] = field(default_factory=list)
     axes: list[tuple[Any, Any, Any]] = field(default_factory=list)
+    """What turns or slides, a joint to which an angle may be added; its direction and a point."""
     home: Any = None
     base: Any = None
     """The pose of the frame from which axes and home are seen, if it is not the identity."""
@@ -474,7 +475,10 @@ def use_exact(table: Table, file: str) -> None:
             )
     angles = _angles(table)
     table.axes = [
-        (joint, *([angles.read(e, f"{file}, axis {i}") for e in v] for v in vectors))
+        (
+            angles.read(joint, f"{file}, axis {i}", angle=True),
+            *([angles.read(e, f"{file}, axis {i}") for e in v] for v in vectors),
+        )
         for i, (joint, *vectors) in enumerate(axes, 1)
     ]
     table.home = table.home.applyfunc(lambda e: angles.read(e, f"{file}, [home]"))

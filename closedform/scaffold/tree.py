@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -61,40 +63,20 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
         raise TableError(f"{file}: there are no joints")
     chain = led(_chain(joints, choice.base, choice.tool, file), joints, file)
     table = Table(notes=[note for joint in chain for note in joint.notes])
-    moved = Displacement.of(chain)
+    as_written = chain
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.end = chain[-1].child
     table.doubt = _doubt(chain)
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
-    place = sp.eye(4)
-    mimics: list[Mimic] = []
-    for joint in chain:
-        where = f"{file}, joint {shown_name(joint.name)}"
-        there = _product(place, joint.origin)
-        place = _meant_turns(there, where, table.notes)
-        moved.turn(joint, between(place, there))
-        if joint.kind == "fixed":
-            continue
-        if joint.mimics:
-            mimics.append(Mimic(joint, place, len(table.axes), file))
-            place = _product(place, _offset(joint, where, table.notes))
-            continue
-        if not table.axes and not _along_axes(place):
-            table.base, place = place, sp.eye(4)  # what a tilted mount does to all axes stays apart
-        name = symbol_of(joint.name)
-        add_joint(table, name, MOVING[joint.kind], where)
-        axis = _unit(joint.axis, place[:3, :3], table, where)
-        direction = (place[:3, :3] * axis).applyfunc(sp.expand)
-        table.axes.append((real(name), list(direction), list(place[:3, 3])))
-        if name != joint.name:
-            table.notes.append(f"{where}: it is called {name}")
-        if joint.limits:
-            table.limits[name] = joint.limits
+    found = [_Placed.of(chain, table, Displacement.of(as_written), file)]
+    if found[0].angles:  # where joints have turned back what their origins turn them
+        found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
+    table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
     couple(mimics, table)
-    table.home = place
+    table.axes = [(joint + offsets.get(joint, 0), w, at) for joint, w, at in table.axes]
     table.notes.append(
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
         f"{shown_name(chain[-1].child)}"
@@ -102,6 +84,89 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     table.notes += moved.notes(file)
     use_exact(table, file)
     return table
+
+
+class _Placed(NamedTuple):
+    """A table with the axes of a chain at home, the joints that mimic others, and offsets."""
+
+    table: Table
+    moved: Displacement
+    mimics: list[Mimic]
+    offsets: dict[sp.Symbol, sp.Expr]
+
+    @classmethod
+    def of(
+        cls,
+        chain: Sequence[Joint],
+        table: Table,
+        moved: Displacement,
+        file: str,
+        *,
+        offsets: bool = False,
+    ) -> _Placed:
+        """The axes where all joints are zero; with ``offsets``, where they have turned back what
+        their origins turn them about their own axes."""
+        table, place = deepcopy(table), sp.eye(4)
+        mimics: list[Mimic] = []
+        turned: dict[sp.Symbol, sp.Expr] = {}
+        for joint in chain:
+            where = f"{file}, joint {shown_name(joint.name)}"
+            angle = _own_turn(joint) if offsets and not joint.mimics else sp.S.Zero
+            if angle != 0:
+                joint = replace(joint, origin=_turned_back(joint, angle))
+            there = _product(place, joint.origin)
+            place = _meant_turns(there, where, table.notes)
+            moved.turn(joint, between(place, there))
+            if joint.kind == "fixed":
+                continue
+            if joint.mimics:
+                mimics.append(Mimic(joint, place, len(table.axes), file))
+                place = _product(place, _offset(joint, where, table.notes))
+                continue
+            if not table.axes and not _along_axes(place):
+                # what a tilted mount does to all axes stays apart
+                table.base, place = place, sp.eye(4)
+            name = symbol_of(joint.name)
+            add_joint(table, name, MOVING[joint.kind], where)
+            axis = _unit(joint.axis, place[:3, :3], table, where)
+            direction = (place[:3, :3] * axis).applyfunc(sp.expand)
+            table.axes.append((real(name), list(direction), list(place[:3, 3])))
+            turned[real(name)] = angle
+            if name != joint.name:
+                table.notes.append(f"{where}: it is called {name}")
+            if joint.limits:
+                table.limits[name] = joint.limits
+        table.home = place
+        return cls(table, moved, mimics, turned)
+
+    @property
+    def angles(self) -> set[sp.Expr]:
+        """The angles whose sines and cosines the axes and the tool contain."""
+        vectors = [v for _, *both in self.table.axes for v in both]
+        entries = [*self.table.home, *(e for v in vectors for e in v)]
+        return {f.args[0] for e in entries for f in e.atoms(sp.sin, sp.cos)}
+
+
+def _own_turn(joint: Joint) -> sp.Expr:
+    """The angle of a turn about the axis of a joint after which its origin has no other turn.
+
+    It is 0 if there is none, and if the origin does not need it.
+    """
+    R = joint.origin[:3, :3]
+    if MOVING.get(joint.kind) != "revolute" or not R.has(sp.sin, sp.cos):
+        return sp.S.Zero
+    if not orthonormal(joint.axis):
+        return sp.S.Zero
+    held = {f.args[0] for f in R.atoms(sp.sin, sp.cos)}
+    for angle in (k * a for a in sorted(held, key=sp.default_sort_key) for k in (1, -1)):
+        if not _turned_back(joint, angle)[:3, :3].has(sp.sin, sp.cos):
+            return angle
+    return sp.S.Zero
+
+
+def _turned_back(joint: Joint, angle: sp.Expr) -> sp.Matrix:
+    """The origin of a joint, which has turned back by an angle."""
+    return _product(joint.origin, exponential(sp.Matrix([0, 0, 0, *joint.axis]), -angle))
 
 
 def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:

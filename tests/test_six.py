@@ -9,7 +9,7 @@ from sympy import pi
 from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.propose import propose
 
 H = sp.Rational(1, 2)
 WRIST = [(0, -pi / 2, 0), (0, pi / 2, 0), (0, 0, H)]
@@ -107,13 +107,6 @@ def test_why_a_rotation_is_one_about_z_must_follow() -> None:
     solved(d, serial, lines.replace("-R_last[0, k]", "R_last[0, k]"))
     with pytest.raises(ProofError, match=r"rotation is one about z.*does not follow so"):
         prove(d)
-
-
-def test_a_quartic_beside_three_parallel_axes_is_named() -> None:
-    rows = [(2, 0, 1), (1, 0, 0), (1, pi / 2, H), (1, pi / 2, H), (1, -pi / 2, 1), (0, 0, H)]
-    with pytest.raises(NoChainError) as caught:
-        propose(arm(rows)[1])
-    assert caught.value.degree == 4
 
 
 def test_ranks_are_those_of_the_jacobian() -> None:

@@ -1,9 +1,10 @@
 """Proposes chains for arms of six joints by where their axes are parallel, or meet in a point.
 
 - Three parallel axes leave the component along their direction to the other joints.  They are the
-  first or the last three, or three of the middle; two neighbours of the others meet.  If those
-  after three of the middle are skew, an equation of degree 4 is left.
-- Three axes in the middle that meet in a point leave its distance from where two others meet.
+  first or the last three, or three of the middle; two neighbours of the others meet, or see
+  :mod:`closedform.scaffold.around_parallel`.
+- Three axes in the middle that meet in a point leave its distance from where two others meet; if
+  these are skew, an equation of degree 4 is left.
 
 Each also for the arm seen from its tool.
 """
@@ -15,15 +16,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from closedform.scaffold.around_parallel import AroundParallelMaker
 from closedform.scaffold.chainlinks import Single, Singles, parallel
+from closedform.scaffold.ellipse import folds
 from closedform.scaffold.maker import Z, followed, heading, norm, point, sine_cosine, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
-from closedform.scaffold.subproblems import SubproblemMaker
 from closedform.scaffold.wrists import Carried, is_normal
-
-SHORT = sp.Rational(1, 1000)
-"""Of the sum of the lengths of an arm: a chain that divides by less loses too many digits."""
 
 
 @dataclass(frozen=True)
@@ -67,15 +66,16 @@ class TurnGoal:
 
 
 @dataclass
-class SixMaker(SubproblemMaker):
+class SixMaker(AroundParallelMaker):
     """Writes the lines for six joints that have no spherical wrist and no spherical shoulder."""
 
     def parallel_middle(self, arm: Singles) -> str:
         """Axes 2, 3 and 4 are parallel, and axes 5 and 6 meet or are skew."""
         self._require_parallel(arm, 1)
-        if not parallel(arm.joints[4]) and arm.met(4, 2) is None:
-            return self._middle_before_skew(arm)
-        arm = self._require_met(arm, 4)
+        found = arm.met(4, 2)
+        if found is None:
+            return self.around_parallel(arm, 1)
+        arm = found
         one, two, three, four, five, six = arm.joints
         self.require(
             not parallel(one) and not parallel(four),
@@ -107,109 +107,6 @@ class SixMaker(SubproblemMaker):
         names = [j.number for j in (two, three, four, five, six)]
         return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
 
-    def _middle_before_skew(self, arm: Singles) -> str:
-        """The same where axes 5 and 6 are skew: an equation of degree 4 for joint 1.
-
-        The direction of the three axes leaves two equations: how far axis 6 is turned toward it,
-        and how far its origin is along it.  Both are linear in the sine and the cosine of joint 5,
-        and in those of joint 1, so that the pair of joint 5 runs along an ellipse if joint 1 turns.
-        It is on the unit circle.
-        """
-        one, two, three, four, five, six = arm.joints
-        numbers = [j.number for j in arm.joints]
-        self.require(
-            not parallel(one) and not parallel(four),
-            f"axes {numbers[0]} and {numbers[1]} or {numbers[3]} and {numbers[4]} are parallel",
-            "Three parallel axes need others that are not parallel to them.",
-        )
-        low, high = sorted(numbers[4:])
-        if self.degree < 4:
-            raise NoChainError(
-                f"axes {low} and {high} do not meet",
-                "Besides the three axes, two neighbouring axes have to meet; otherwise an equation "
-                "of degree 4 remains.",
-                degree=4,
-            )
-        g, toward, w, s = one.end * Z, four.end.T * Z, five.end * Z, five.shift
-        turned = sp.Matrix([turning(w, toward)[::-1], turning(s, toward)[::-1]])
-        lever = sp.Abs(turned.det() / norm(toward[:2, 0])).simplify()
-        size = sum(norm(joint.shift) for joint in arm.joints)
-        if not (lever / size).free_symbols and lever < SHORT * size:
-            raise NoChainError(
-                f"axes {low} and {high} pass each other at a distance that is short",
-                "The known chain divides by this distance and loses digits.  If it is not meant, "
-                "let the axes meet.",
-                degree=4,
-            )
-        self._seen_from_tool(arm)
-        inverse = turned.inv().applyfunc(sp.simplify)
-        height = two.shift[2] + three.shift[2]
-        ends = (sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)]), point("p"))
-        still = (sp.S.Zero, g.dot(one.shift) + height + four.shift[2])
-        centre = [
-            g[2] * end[2] - rest - toward[2] * v[2]
-            for end, rest, v in zip(ends, still, (w, s), strict=True)
-        ]
-        along, aside = ([turning(g, end)[k] for end in ends] for k in (1, 0))
-        for name, seen in (("centre", centre), ("along", along), ("aside", aside)):
-            self.vector(name, source(inverse * sp.Matrix(seen)))
-        double = "(along.dot(along) - aside.dot(aside))/2", "along.dot(aside)"
-        first = self.met_by_circle(one, double, "1", self._near_parallel(one, toward, w))
-        self.vector("on_ellipse", f"centre + along*{first}.c + aside*{first}.s", "across")
-        because = f"{{{self.unknown(one)}: -1}}"
-        fifth = self._rotate(five, "(1, 0)", "on_ellipse", because, scale="1")
-        self.add(f"M = ik.matrix('M_wrist', {times(one.end.T, f'(turned({first}).T * M)')})")
-        q = times(one.end.T, f"(turned({first}).T * p - {source(one.shift)})")
-        self.vector("q", q)
-        inside = times(four.end, f"(turned({fifth}) * {source(s)})")
-        self.vector("to_end", f"{source(four.shift)} + {inside}")
-        lengths = [source(norm(x.shift[:2, 0])) for x in (two, three)]
-        self.carried = Carried("q", "to_end", lengths, point("to_end"))
-        lift = replace(four, turn=two.turn + three.turn + four.turn)
-        x, (along_w, aside_w) = self.unknown(five), turned.row(0)
-
-        def level(factor: str) -> str:
-            return f"{x}: (-{factor}*({source(along_w)}), -{factor}*({source(aside_w)}))"
-
-        self.around((lift, five, six), source(four.end), fifth, level)
-        self.add(f"play = ik.amplified_over({source(lever)})")
-        above = f"q[2] - to_end[2] - ({source(height)})" if height != 0 else "q[2] - to_end[2]"
-        for miss in ("ik.size*(axis[2] - M[2, 2])", above):
-            self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
-        self.vector("q", f"q - turned({self.lifted}) * to_end", "q2")
-        turns, links = [two.turn, three.turn], [two.shift[:2, 0], three.shift[:2, 0]]
-        self.two_links(turns, links, "q[0]", "q[1]")
-        return "axes {1}, {2} and {3} parallel, {4} and {5} skew".format(*numbers)
-
-    def _near_parallel(self, one: Single, toward: sp.Matrix, w: sp.Matrix) -> str:
-        """The argument that says how far the pair of joint 5 is from the unit circle.
-
-        Where axis 6 is nearly along the three axes, two solutions nearly meet, and a difference of
-        squares does not tell them apart.  The sine of joint 5, counted from there, is known to
-        rounding, and so is that of the angle between the axes, which gives the cosine.  Empty if
-        the axes are never parallel.
-        """
-        sense = next((k for k in (1, -1) if sp.simplify(toward[2] - k * w[2]) == 0), 0)
-        if not sense:
-            return ""
-        size = sp.simplify(1 - w[2] ** 2)
-        a, b = (sense * sp.simplify(e) / size for e in turning(w, toward))
-        off_axis, at = sp.Symbol("off_axis"), [sp.Symbol(f"pair_at[{i}]") for i in (0, 1)]
-        lines = [
-            "def missed_by(pair):",
-            "    pair_at = centre + along*pair.c + aside*pair.s",
-            f"    aimed = {times(one.end.T, '(turned(pair).T * M[:, 2])')}",
-            "    off_axis = aimed[0]**2 + aimed[1]**2",
-        ]
-        cosine = off_axis
-        if w[2] != 0:
-            least = f"Max(1 + {source(sense * sp.Symbol('aimed[2]'))}, {source(w[2] ** 2)})"
-            lines.append(f"    below_one = {source(off_axis / size)}/{least}")
-            cosine = sp.Symbol("below_one") * (2 - sp.Symbol("below_one"))
-        lines.append(f"    return {source((b * at[1] - a * at[0]) ** 2 - cosine)}")
-        self.lines += lines
-        return ", missed_by"
-
     def parallel_first(self, arm: Singles) -> str:
         """Axes 1, 2 and 3 are parallel, and axes 5 and 6 or 4 and 5 meet."""
         self._require_parallel(arm, 0)
@@ -221,13 +118,7 @@ class SixMaker(SubproblemMaker):
         at_end, inside = arm.met(4, 2), arm.met(3, 2)
         found = at_end or inside
         if found is None:
-            numbers = sorted(j.number for j in arm.joints[3:])
-            raise NoChainError(
-                "axes {0} and {1}, and {1} and {2}, do not meet".format(*numbers),
-                "Besides three parallel axes, two neighbouring axes have to meet; otherwise an "
-                "equation of degree 4 remains, which no known chain solves.",
-                degree=4,
-            )
+            return self.around_parallel(arm, 0)
         one, two, three, four, five, six = found.joints
         height = sum((s.shift[2] for s in (one, two, three)), sp.S.Zero)
         lift = replace(three, turn=one.turn + two.turn + three.turn)
@@ -289,12 +180,13 @@ class SixMaker(SubproblemMaker):
                 "axes {1}, {2} and {3} do not meet in a point".format(*numbers),
                 "Three neighbouring axes in the middle have to meet in a point.",
             )
-        outer = "meet"
+        met = found.met(4, 2)
         if parallel(found.joints[4]):
-            outer = "are parallel"
-            middle = self._between_parallel(found)
+            outer, middle = "are parallel", self._between_parallel(found)
+        elif met is not None:
+            outer, middle = "meet", self._between_meeting(met)
         else:
-            middle = self._between_meeting(self._require_met(found, 4))
+            outer, middle = "are skew", self._between_skew(found)
         self.add(f"left1 = ik.matrix('left1', {middle})")
         self.orientation(found.joints[1:4], "left1")
         text = "axes {1}, {2} and {3} meet in a point, {4} and {5} " + outer
@@ -325,6 +217,62 @@ class SixMaker(SubproblemMaker):
             f"{self.unknowns[six.number]}: -to_target[2] - ({source(w[2])})}}"
         )
         fifth = self._rotate(five, "to_target", source(w[:2, 0]), because)
+        middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
+        middle = f"{followed(middle, five.end.T)} * turned({fifth}).T"
+        return followed(middle, four.end.T)
+
+    def _between_skew(self, found: Singles) -> str:
+        """The same where axes 5 and 6 are skew: an equation of degree 4 for joint 1.
+
+        Joint 6 changes neither how far the point is along its axis nor how far it is from its
+        origin.  Both are linear in the sine and the cosine of joint 5, and in those of joint 1.
+        """
+        one, _, _, four, five, six = found.joints
+        v, w, s = -(four.end.T * four.shift).applyfunc(sp.simplify), five.end * Z, five.shift
+        low, high = sorted((five.number, six.number))
+        if self.degree < 4:
+            raise NoChainError(
+                f"axes {low} and {high} do not meet",
+                "Besides the three axes, two neighbouring axes have to meet; otherwise an equation "
+                "of degree 4 remains.",
+                degree=4,
+            )
+        ahead = replace(five, shift=-(five.end.T * s), end=five.end.T)
+        if folds(ahead, replace(four, shift=v)):
+            raise NoChainError(
+                f"the point where three axes meet can come to axis {six.number}, where three "
+                f"solutions meet",
+                "The known chain loses digits there; use ssik for a numeric inverse.",
+                degree=4,
+            )
+        seen, p = one.shift, point("p")
+        turned = sp.Matrix([turning(w, v)[::-1], turning(s, v)[::-1]])
+        lever = sp.Abs(turned.det() / norm(v[:2, 0])).simplify()
+        self.require_long(found, lever, (low, high))
+        self._seen_from_tool(found)
+        axis = sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)])
+        self.add("square = ik.coordinate('square', p.dot(p))")
+        lengths = sp.simplify(v.dot(v) + s.dot(s) - seen.dot(seen)) - sp.Symbol("square")
+        levels = (
+            w.dot(s) - axis.dot(p) + axis[2] * seen[2] - v[2] * w[2],
+            lengths / 2 + p[2] * seen[2] - v[2] * s[2],
+        )
+        fifth = self.met_by_ellipse(five, one, turned, levels, (seen, (axis, p)))
+        first = f"pair{one.number}"
+        self.vector("to_target", f"M.T * (turned({first}) * {source(seen)} - p)")
+        at_end = f"(turned({fifth}).T * {source(v)} - {source(s)})"
+        self.vector("to_end", times(five.end.T, at_end))
+        self.add(f"play = ik.amplified_over({source(lever)})")
+        for n in ("to_target", "to_end"):
+            self.add(f"radius_{n} = ik.let('radius_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
+        for miss in ("to_target[2] - to_end[2]", "radius_to_target - radius_to_end"):
+            self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
+        both = [
+            f"2*({source(b)}) + (to_target[2] + to_end[2])*({source(a)})"
+            for a, b in zip(turned.row(0), turned.row(1), strict=True)
+        ]
+        because = f"{{{self.unknown(five)}: ({', '.join(both)})}}"
+        sixth = self._rotate(six, "to_target", "to_end", because)
         middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
         middle = f"{followed(middle, five.end.T)} * turned({fifth}).T"
         return followed(middle, four.end.T)
@@ -383,12 +331,6 @@ class SixMaker(SubproblemMaker):
         self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {arguments})")
         self.more = ", reaching=reaching"
 
-    def _seen_from_tool(self, found: Singles) -> None:
-        """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""
-        R = self.centre(found)
-        M = self.without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
-        self.add(f"M = ik.matrix('M', {M})")
-
     def _require_parallel(self, arm: Singles, start: int) -> None:
         three = arm.joints[start : start + 3]
         numbers = [j.number for j in three]
@@ -397,23 +339,6 @@ class SixMaker(SubproblemMaker):
             "axes {}, {} and {} are not parallel".format(*numbers),
             "This chain needs three parallel axes.",
         )
-
-    def _require_met(self, arm: Singles, first: int) -> Singles:
-        found = arm.met(first, 2)
-        if found is None:
-            one, two = sorted(arm.joints[k].number for k in (first, first + 1))
-            self.require(
-                not parallel(arm.joints[first]),
-                f"axes {one} and {two} are parallel",
-                "Beside the three axes two neighbours have to meet.",
-            )
-            raise NoChainError(
-                f"axes {one} and {two} do not meet",
-                "Besides the three axes, two neighbouring axes have to meet; otherwise an "
-                "equation of degree 4 remains, which no known chain solves.",
-                degree=4,
-            )
-        return found
 
 
 __all__ = ["SixMaker"]

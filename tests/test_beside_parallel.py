@@ -1,0 +1,142 @@
+"""Three parallel axes beside which no two neighbours meet, and three in the middle that meet."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from arms import OK, SINGULAR, link, misses, newton, wrapped
+from chains import arm, printed, solved
+from sympy import pi
+
+from closedform.proof.prove import prove
+from closedform.scaffold.propose import NoChainError, propose
+
+
+def tenths(*lengths: int) -> list[sp.Rational]:
+    return [sp.Rational(n, 10) for n in lengths]
+
+
+A, B, C, D, E, F = tenths(3, 7, 6, 5, 12, 9)
+ARMS = {
+    "axes 1, 2 and 3 parallel, 4, 5 and 6 skew": [
+        (E, 0, 1), (F, 0, 0), (A, pi / 3, D), (B, pi / 4, A), (C, -pi / 3, 1), (0, 0, D),
+    ],
+    "axes 6, 5 and 4 parallel, 3, 2 and 1 skew": [
+        (A, pi / 2, D), (B, pi / 4, A), (C, pi / 2, 1), (F, 0, 0), (E, 0, D), (0, 0, D),
+    ],
+    "axes 1, 2 and 3 parallel, 4 and 5 parallel": [
+        (E, 0, 1), (F, 0, 0), (A, pi / 3, D), (B, 0, A), (C, pi / 4, 1), (0, 0, D),
+    ],
+    "axes 1, 2 and 3 parallel, 5 and 6 parallel": [
+        (E, 0, 1), (F, 0, 0), (A, pi / 2, D), (B, pi / 2, A), (C, 0, 1), (0, 0, D),
+    ],
+    "axes 2, 3 and 4 parallel, 5 and 6 parallel": [
+        (D, pi / 2, 1), (E, 0, 0), (F, 0, D), (B, pi / 2, A), (C, 0, 1), (0, 0, D),
+    ],
+    "axes 5, 4 and 3 parallel, 2 and 1 parallel": [
+        (C, 0, 1), (B, pi / 2, A), (E, 0, 0), (F, 0, D), (D, pi / 3, 1), (0, 0, D),
+    ],
+    "axes 2, 3 and 4 meet in a point, 5 and 6 are skew": [
+        (E, pi / 2, D), (0, pi / 2, 0), (0, -pi / 2, 0), (B, pi / 4, D), (A, pi / 2, A), (0, 0, D),
+    ],
+    "axes 5, 4 and 3 meet in a point, 2 and 1 are skew": [
+        (A, pi / 2, A), (B, pi / 4, D), (0, pi / 3, 0), (0, -pi / 2, 0), (E, pi / 2, D), (0, 0, D),
+    ],
+}  # fmt: skip
+Printed = Callable[[str], Any]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Printed:
+    """The printed module of an arm, whose inverse the proof has accepted."""
+
+    @cache
+    def printed_arm(structure: str) -> Any:
+        d, serial = arm(ARMS[structure])
+        found = propose(serial)
+        assert found.structure == structure
+        solved(d, serial, found.source)
+        (inverse,) = prove(d).inverses
+        assert inverse.branches == found.branches == 8
+        return printed(d, tmp_path_factory.mktemp("arm"))
+
+    return printed_arm
+
+
+def pose(structure: str, q: np.ndarray) -> np.ndarray:
+    T = np.eye(4)
+    for k, (a, alpha, d) in enumerate(ARMS[structure]):
+        T = T @ link(float(a), float(alpha), float(d), q[..., k])
+    return T
+
+
+def size(structure: str) -> float:
+    return sum(float(a + d) for a, _, d in ARMS[structure])
+
+
+@pytest.mark.parametrize("structure", ARMS)
+def test_every_posture_is_among_the_branches(made: Printed, structure: str) -> None:
+    q = np.random.default_rng(4).uniform(-3, 3, (500, 6))
+    T = pose(structure, q)
+    answers, status = made(structure).ik(T)
+    away, turned = misses(pose(structure, answers), T, status)
+    assert away < 1e-12 * size(structure) and turned < 1e-12
+    off = np.abs(np.exp(1j * answers) - np.exp(1j * q[:, None])).max(axis=-1)
+    assert (np.nanmin(off, axis=1) < 1e-6).all()
+
+
+@pytest.mark.parametrize("structure", ARMS)
+def test_newton_finds_no_posture_that_the_branches_lack(made: Printed, structure: str) -> None:
+    rng = np.random.default_rng(5)
+    for T in pose(structure, rng.uniform(-3, 3, (4, 6))):
+        answers, status = made(structure).ik(T)
+        there = answers[np.isin(status, (OK, SINGULAR))]
+        found = newton(lambda q: pose(structure, q), T, rng.uniform(-np.pi, np.pi, (200, 6)))
+        assert len(found) > 20
+        away = np.abs(wrapped(found[:, None] - there)).max(axis=-1)
+        assert away.min(axis=1).max() < 1e-6
+        assert away.min(axis=0).max() < 1e-6
+
+
+@pytest.mark.parametrize("structure", ARMS)
+def test_out_of_reach_is_said(made: Printed, structure: str) -> None:
+    q = np.random.default_rng(6).uniform(-3, 3, (20, 6))
+    T = pose(structure, q)
+    T[:, :3, 3] += 4 * size(structure)
+    answers, status = made(structure).ik(T)
+    assert not np.isin(status, (OK, SINGULAR)).any() and np.isnan(answers).all()
+
+
+def test_axes_that_nearly_meet_are_named() -> None:
+    """The distance of two skew axes divides rounding errors."""
+    near = sp.Rational(1, 10**5)
+    rows = [(E, 0, 1), (F, 0, 0), (A, pi / 3, D), (near, pi / 4, A), (C, -pi / 3, 1), (0, 0, D)]
+    with pytest.raises(NoChainError, match="axes 4 and 5 pass each other") as caught:
+        propose(arm(rows)[1])
+    assert caught.value.degree == 4 and "ssik" in caught.value.needed
+
+
+def test_a_point_that_comes_to_the_last_axis_is_named() -> None:
+    """There three solutions meet, and the inverse would lose digits."""
+    rows = [
+        (E, pi / 2, D),
+        (0, pi / 2, 0),
+        (0, -pi / 2, 0),
+        (B, pi / 2, 0),
+        (B, pi / 2, 0),
+        (0, 0, D),
+    ]
+    with pytest.raises(NoChainError, match="can come to axis 6") as caught:
+        propose(arm(rows)[1])
+    assert caught.value.degree == 4 and "ssik" in caught.value.needed
+
+
+def test_two_pairs_of_axes_alike_are_named() -> None:
+    """The ellipse of the pair of joint 4 is a circle for every target."""
+    rows = [(2, 0, 1), (1, 0, 0), (1, pi / 2, D), (1, pi / 2, D), (1, -pi / 2, 0), (0, 0, D)]
+    with pytest.raises(NoChainError, match="at the same angle and distance from axis 5") as caught:
+        propose(arm(rows)[1])
+    assert caught.value.degree == 2 and "ssik" in caught.value.needed

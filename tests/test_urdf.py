@@ -491,6 +491,31 @@ def test_names_of_joints_that_are_words_of_python_are_changed(tmp_path: Path) ->
         (PALLETISER.replace('"-1"', '"x"'), "joint level: multiplier"),
         (PALLETISER.replace("0 0 0.5", "0 0.1 0.5").replace('"0 0 0"', '"0.1 0 0"'), "neighbour"),
         (PALLETISER.replace('joint="lower"', 'joint="other"'), "the file has no such joint"),
+        (
+            PALLETISER.replace('multiplier="-1"', 'multiplier="0.5"'),
+            "by 1/2 times the angle, which is not a whole multiple",
+        ),
+        (
+            PALLETISER.replace('"0 0 0.5"/><axis xyz="0 1 0"', '"0 0 0.5"/><axis xyz="1 0 0"'),
+            "the motor of lower turns the arm about two axes at once, and .* the sines both of "
+            "an angle and of -1 times this angle",
+        ),
+        (
+            "<robot>"
+            + joint("one", "base", "arm", "0 0 0.4", "0 0 1")
+            + joint("two", "arm", "hand", "0 0 0", "0 0 1", more='<mimic joint="one"/>')
+            + joint("three", "hand", "tool", "0.3 0 0", "0 1 0")
+            + "</robot>",
+            "both turn about one axis, by 2 times the angle of the motor, of which the pose of the "
+            "tool determines only the fraction of a turn",
+        ),
+        (
+            "<robot>"
+            + joint("one", "base", "arm", "0 0 0.4", "0 0 1")
+            + slide("two", "arm", "tool", "0 0 0", "1 0 0", more='<mimic joint="one"/>')
+            + "</robot>",
+            "one of the two turns and the other slides, so that their inverse is not algebraic",
+        ),
     ],
 )
 def test_other_joints_that_mimic_are_refused(text: str, message: str, tmp_path: Path) -> None:

@@ -114,11 +114,15 @@ class Mimic:
     after: int
     file: str
 
+    @property
+    def slides(self) -> bool:
+        return MOVING[self.joint.kind] == "prismatic"
+
     def couple(self, table: Table) -> None:
         """Let a neighbour on the same axis turn by what this joint adds, or slide along with it."""
         mimicked, factor = symbol_of(self.joint.mimics), self.joint.factor
         told, kind = _where(self.joint, self.file), MOVING[self.joint.kind]
-        slides = kind == "prismatic"
+        slides = self.slides
         near = [
             (str(table.axes[k][0]), sense)
             for k in self._near(table)
@@ -128,10 +132,12 @@ class Mimic:
         near.sort(key=lambda found: found[0] != mimicked)
         whole = factor.is_Integer and kind == table.joints[mimicked]
         if not near or not (slides or (whole and near[0][0] != mimicked)):
+            alone = bool(near) and near[0][0] == mimicked
+            why = self._refusal(alone=alone, near=bool(near), alike=kind == table.joints[mimicked])
             raise TableError(
-                f"{told}; a mimic joint is read if it turns about the axis of a neighbour on the "
-                f"chain that has a motor of its own, and by a whole multiple of the angle of "
-                f"another, as in a parallelogram, or if it slides in the direction of a "
+                f"{told}; {why}.  A mimic joint is read if it turns about the axis of a neighbour "
+                f"on the chain that has a motor of its own, and by a whole multiple of the angle "
+                f"of another, as in a parallelogram, or if it slides in the direction of a "
                 f"neighbour, as in a telescope.  Write the arm as a table of joints and couple "
                 f"the two with d.joint(..., coupling=...)"
             )
@@ -145,6 +151,32 @@ class Mimic:
         )
         driven = f"{'; this is ' if slides else ' '}{table.couplings[name]}"
         table.notes.append(f"{told}; {both}{driven} in those of the motors")
+
+    def _refusal(self, *, near: bool, alone: bool, alike: bool) -> str:
+        """Why the joint is not one with another: is a neighbour ``near`` on its axis, the one that
+        it mimics ``alone``, and are the joint and the one that it mimics ``alike``?"""
+        mimicked = shown_name(self.joint.mimics)
+        if not alike:
+            return (
+                "one of the two turns and the other slides, so that their inverse is not algebraic"
+            )
+        if not near and self.slides:
+            return f"the motor of {mimicked} then moves the arm along two lines at once"
+        if not near:
+            return (
+                f"its axis is not that of a neighbour, so that the motor of {mimicked} turns the "
+                f"arm about two axes at once, and the equations of an inverse contain the sines "
+                f"both of an angle and of {self.joint.factor} times this angle"
+            )
+        if not alone:
+            return (
+                f"it turns by {self.joint.factor} times the angle, which is not a whole multiple, "
+                f"so that a turn of the motor does not lead back to the same posture"
+            )
+        return (
+            f"both turn about one axis, by {1 + self.joint.factor} times the angle of the motor, "
+            f"of which the pose of the tool determines only the fraction of a turn"
+        )
 
     def _near(self, table: Table) -> Iterator[int]:
         """The axes with which a joint can be one; slides do not change the direction of others."""

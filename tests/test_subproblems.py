@@ -40,6 +40,9 @@ CHAINS = {
         [(0, -pi / 2, 0), (0, pi / 2, 0), (1, pi / 2, 2), (-1, -pi / 2, 0),
          (0, pi / 2, 2), (ROOM, pi / 2, 0), (0, 0, 1)], 8,
     ),
+    "axes 1 and 2 meet, and 2 joints that turn the tool": (
+        [(0, pi / 2, 1), (ROOM, -pi / 3, ROOM), (ROOM, -pi / 2, 0), (0, -pi / 2, 1), (0, 0, 0)], 4,
+    ),
     "axes 2 and 3 parallel, and 2 joints that turn the tool": (
         [(0, pi / 2, 1), (2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (0, 0, ROOM)], 4,
     ),
@@ -100,6 +103,18 @@ def test_seven_joints_without_a_chain_have_a_degree_too() -> None:
     assert "ssik" in e.value.needed and "--given" in e.value.needed
     with pytest.raises(NoChainError, match="with t5 given there is no closed form"):
         propose(serial, "t5")
+
+
+def test_a_joint_is_given_that_leaves_a_regular_arm() -> None:
+    """The last four axes meet in a point, so one of them has to be given."""
+    rows = [
+        (0, -pi / 4, ROOM), (0, -pi / 2, 1), (ROOM, pi / 2, 2), (0, pi / 2, 1),
+        (0, pi / 2, 0), (0, pi / 2, 0), (0, 0, 1),
+    ]  # fmt: skip
+    serial = arm(rows)[1]
+    assert propose(serial).structure == "spherical wrist, axes 2 and 3 meet, with t7 given"
+    with pytest.raises(NoChainError, match="with t3 given, the other joints do not move the tool"):
+        propose(serial, "t3")
 
 
 def test_eight_joints_are_told_what_to_do() -> None:

@@ -112,7 +112,7 @@ class Correction:
                 for image, scale in zip(self.images, self.scales, strict=True)
             ]
             columns.append(
-                [e if e.is_number else let(f"rate_{j}_{k}", e) for k, e in enumerate(rates)]
+                [e if e.is_number else let(f"moves_{k}_by_{j}", e) for k, e in enumerate(rates)]
             )
         squares = [[sp.Add(*map(sp.Mul, a, b)) for b in columns] for a in columns]
         by = self._solved(squares, [sp.Add(*map(sp.Mul, a, missed)) for a in columns])

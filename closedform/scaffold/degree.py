@@ -266,6 +266,14 @@ def solutions(arm: Singles) -> Solutions | None:
     return None
 
 
+def is_regular(arm: Singles) -> bool:
+    """Whether six joints move the tool in six ways at some posture, with parameters at random."""
+    rng = np.random.default_rng(SEEDS[0])
+    numeric = Numeric.of(arm, rng)
+    _, twists = numeric.pose(rng.normal(size=(4, 6)) + 0j)
+    return bool((np.linalg.cond(twists) <= SINGULAR).any())
+
+
 def counted_once(arm: Singles, seed: int) -> Solutions | None:
     """The solutions that loops find; None if they could not be followed."""
     rng = np.random.default_rng(seed)
@@ -310,4 +318,4 @@ def solvable(group: PermutationGroup) -> bool:
     return not (last > 4 and onto.is_alt_sym()) and bool(group.is_solvable)
 
 
-__all__ = ["Solutions", "solutions", "steps"]
+__all__ = ["Solutions", "is_regular", "solutions", "steps"]

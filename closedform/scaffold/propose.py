@@ -9,7 +9,7 @@ joints that slide.  You accept or edit the lines, and the proof decides.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from closedform.mechanics.arm import Serial
@@ -17,7 +17,7 @@ from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.decoupled import DecoupledMaker
-from closedform.scaffold.degree import Solutions, solutions
+from closedform.scaffold.degree import Solutions, is_regular, solutions
 from closedform.scaffold.known import KnownMaker
 from closedform.scaffold.maker import Maker
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
@@ -237,10 +237,16 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
     left = whole if given is None else whole.with_given(given.number, GIVEN)
     more = "" if given is None else f", with {given.joint} given"
     views = (left, left.reversed())
+    regular = cache(partial(is_regular, left))
 
     def candidate(name: str, maker: SubproblemMaker, solve: _Solve, view: Singles) -> _Candidate:
         def write() -> str:
             if given is not None:
+                maker.require(
+                    regular(),
+                    f"with {given.joint} given, the other joints do not move the tool in six ways",
+                    "Give another joint.",
+                )
                 maker.give(given)
             return solve(maker, view) + more
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -140,3 +141,40 @@ def test_two_pairs_of_axes_alike_are_named() -> None:
     with pytest.raises(NoChainError, match="at the same angle and distance from axis 5") as caught:
         propose(arm(rows)[1])
     assert caught.value.degree == 2 and "ssik" in caught.value.needed
+
+
+MEET = {
+    "a UR with an offset wrist": (
+        [(0, pi / 2, 1), (1, 0, 0), (1, 0, 0), (0, pi / 2, 1), (1, -pi / 2, 1), (0, 0, 1)],
+        [-0.1 - np.pi / 2, np.pi + 1e-9, np.pi, -np.pi / 2 - 1e-6, -np.pi, -np.pi / 2 + 1e-9],
+    ),
+    "three parallel axes at the end": (
+        [(A, pi / 3, D), (B, pi / 4, sp.Rational(1, 3)), (C, -pi / 3, 1), (1, 0, 0), (2, 0, D),
+         (0, 0, D)],
+        [-np.pi / 2 - 1e-3, np.pi + 1e-6, -1e-15, np.pi / 2 - 1e-9, np.pi - 1e-9, np.pi],
+    ),
+}  # fmt: skip
+"""Arms, and a posture where two or three solutions meet and the elbow is stretched or folded."""
+
+
+@pytest.mark.parametrize("name", MEET)
+def test_links_reach_where_solutions_meet(name: str, tmp_path: Path) -> None:
+    """Rounding turns a joint by the root of an error, and the links seemed to be too short."""
+    rows, posture = MEET[name]
+    d, serial = arm(rows)
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    rng = np.random.default_rng(8)
+    q = np.array(posture) + rng.choice([0, 1e-15, 1e-13], (200, 6))
+    q[0] = posture
+    T = np.eye(4)
+    for k, (a, alpha, length) in enumerate(rows):
+        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    answers, status = robot.ik(T)
+    found = np.isin(status, (OK, SINGULAR))
+    length = sum(float(abs(a) + abs(d)) for a, _, d in rows)
+    away, turned = misses(robot.pose(answers), T, status)
+    assert away < 1e-12 * length and turned < 4e-12
+    first = np.abs(wrapped(answers[..., 0] - q[:, None, 0]))
+    assert (np.where(found, first, np.inf).min(axis=1) < 1e-4).all()

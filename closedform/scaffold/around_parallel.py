@@ -273,8 +273,9 @@ class AroundParallelMaker(SubproblemMaker):
         self.require_long(arm, lever, (low, high))
         self._seen_from_tool(arm)
         near = self._near_parallel(beside, w)
-        first = self.met_by_ellipse(a, c, turned, beside.levels, (seen, beside.ends), near=near)
-        third = f"pair{c.number}"
+        third = self.met_by_ellipse(c, turned, beside.levels, (seen, beside.ends), near)
+        self._within_links(beside, third)
+        first = self.on_ellipse(a, c)
         self.vector("q", beside.place(third))
         self.add(f"M = ik.matrix('M_wrist', {beside.left(third)})")
         self.vector("to_end", beside.to_end(first))
@@ -288,22 +289,22 @@ class AroundParallelMaker(SubproblemMaker):
         self.add(f"play = ik.amplified_over({source(lever)})")
         height = beside.height
         above = f"q[2] - to_end[2] - ({source(height)})" if height != 0 else "q[2] - to_end[2]"
-        for miss in ("ik.size*(axis[2] - M[2, 2])", above):
+        across = [f"sqrt({v}[0]**2 + {v}[1]**2)" for v in ("axis", "M[:, 2]")]
+        aside = f"ik.size*({across[0]} - {across[1]})"
+        for miss in ("ik.size*(axis[2] - M[2, 2])", aside, above):
             self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
         self._two_links_less(beside)
         return beside.told("{} and {} skew" if beside.start else "{}, {} and {} skew")
 
     def met_by_ellipse(
         self,
-        a: Single,
         c: Single,
         turned: sp.Matrix,
         levels: Sequence[sp.Expr],
         other: tuple[sp.Matrix, Sequence[sp.Matrix]],
-        *,
         near: str = "",
     ) -> str:
-        """Solve joints a and c for two equations linear in the pairs of both; returns that of a.
+        """Solve joint c by two equations linear in its pair and in that of another joint, a.
 
         They say that ``turned``, times the pair of a, is the sum of ``levels`` and of what joint c
         turns: a vector, seen along others.  So the pair of a runs along an ellipse if c turns.
@@ -315,10 +316,24 @@ class AroundParallelMaker(SubproblemMaker):
         for name, value in (("centre", levels), ("along", along), ("aside", aside)):
             self.vector(name, source(inverse * sp.Matrix(value)))
         double = "(along.dot(along) - aside.dot(aside))/2", "along.dot(aside)"
-        third = self.met_by_circle(c, double, "1", near)
-        self.vector("on_ellipse", f"centre + along*{third}.c + aside*{third}.s", "across")
+        return self.met_by_circle(c, double, "1", near)
+
+    def on_ellipse(self, a: Single, c: Single) -> str:
+        """Solve joint a, whose pair is on the ellipse; return that pair."""
+        pair = f"pair{c.number}"
+        self.vector("on_ellipse", f"centre + along*{pair}.c + aside*{pair}.s", "across")
         because = f"{{{self.unknown(c)}: -1}}"
         return self._rotate(a, "(1, 0)", "on_ellipse", because, scale="1")
+
+    def _within_links(self, beside: Beside, third: str) -> None:
+        """Keep the two links within reach where solutions of the quartic nearly meet."""
+        a, _, c = beside.others
+        axis = f"{source(beside.group[2].end)} * turned(other) * {source(a.end * Z)}"
+        parts = beside.place("pair"), axis, beside.axis("pair"), beside.to_end("other")
+        self.lines += ["def carried(pair, other):", f"    return {', '.join(parts)}"]
+        lengths = ", ".join(beside.lengths)
+        arguments = f"{self.unknown(c)}, {third}, on_circle, carried, ({lengths})"
+        self.add(f"{third} = within_links(ik, {arguments})")
 
     def require_long(self, arm: Singles, lever: sp.Expr, axes: tuple[int, int]) -> None:
         """Refuse a short ``lever``, by which a chain divides."""

@@ -257,8 +257,8 @@ class SixMaker(AroundParallelMaker):
             w.dot(s) - axis.dot(p) + axis[2] * seen[2] - v[2] * w[2],
             lengths / 2 + p[2] * seen[2] - v[2] * s[2],
         )
-        fifth = self.met_by_ellipse(five, one, turned, levels, (seen, (axis, p)))
-        first = f"pair{one.number}"
+        first = self.met_by_ellipse(one, turned, levels, (seen, (axis, p)))
+        fifth = self.on_ellipse(five, one)
         self.vector("to_target", f"M.T * (turned({first}) * {source(seen)} - p)")
         at_end = f"(turned({fifth}).T * {source(v)} - {source(s)})"
         self.vector("to_end", times(five.end.T, at_end))

@@ -44,7 +44,8 @@ ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Rational", "atan", "atan2")
 CHAIN = (
-    "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_tilt",
+    "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_links",
+    "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (
@@ -69,7 +70,7 @@ LINES = {
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "offset",
-    "missed_by", "pair_at", "aimed", "off_axis", "below_one",
+    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -1,0 +1,252 @@
+"""Keeps a point within reach of two links where two solutions of a quartic nearly meet.
+
+There a rounding error of the target turns the joint by the root of that error, or by its third root
+where three solutions meet.  The joint that the quartic determines with it, the direction in which
+three parallel axes turn an offset, and so the point that two links have to reach, are then wrong by
+more than rounding, and a stretched or folded elbow seems to be out of reach.  Of the turns of the
+joint that the target does not distinguish, one is taken for which the links reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import sympy as sp
+
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.quartic import OnCircle
+from closedform.lemmas.tangent import ROUNDING
+from closedform.model.functions import choose, sign_of
+from closedform.model.lemma import label
+from closedform.model.pair import Pair
+
+UNDISTINGUISHED = sp.Rational(1, 2**48), sp.Rational(1, 2**21)
+"""By how much rounding may move a point of the circle, in units of the terms it is a sum of: in
+double and in single precision."""
+FARTHEST = sp.Rational(1, 2**12), sp.Rational(1, 2**6)
+"""The largest turn, far more than the third root of a rounding error."""
+ALIGNED = sp.Rational(1, 2**46), sp.Rational(1, 2**19)
+"""The sine between two axes that count as parallel, more than the rounding of a direction."""
+SHORT = ROUNDING, sp.Rational(1, 2**20)
+"""By how much links have to be too short before it matters, in units of the size of the arm."""
+
+Turning = Callable[[Pair, Pair], tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]]
+"""What the pairs of both joints carry: a point q, an axis, where it is aimed, and an offset.
+
+Three parallel axes turn the axis to its aim and the offset with it; two links reach q less that.
+"""
+
+
+def within_links(
+    chain: Chain,
+    x: sp.Symbol,
+    pair: Pair,
+    on_circle: OnCircle,
+    carried: Turning,
+    lengths: tuple[sp.Expr, sp.Expr],
+) -> Pair:
+    """The pair of a joint, turned by no more than rounding so that two links reach what follows.
+
+    Parameters
+    ----------
+    chain
+        the chain, which has solved for the joint by a quartic
+    x
+        the joint
+    pair
+        its pair
+    on_circle
+        the meaning of the quartic; the point is the pair of the other joint
+    carried
+        what follows from both pairs
+    lengths
+        those of the two links
+    """
+    single = chain.program.vanishes(
+        f"single_{label(x)}", sp.Rational(1, 2**30), 1, "numbers have single precision"
+    )
+    start = _Place(chain, on_circle, carried, single, pair, f"{label(x)}_reach0")
+    low, high = sp.Abs(lengths[0] - lengths[1]), sp.Add(*lengths)
+    goal = start.let("goal", sp.Min(sp.Max(start.distance, low), high))
+    away = start.let("away", start.distance - goal)
+    loose = chain.program.vanishes(
+        f"loose_{label(x)}",
+        sp.Max(0, chain.size * start.of(SHORT) - sp.Abs(away)),
+        chain.size,
+        "the links seem to be too short or too long",
+    )
+    chain.notes.append(
+        "SINGULAR: where solutions nearly meet, and two links are stretched or folded, a joint is "
+        "turned by no more than rounding so that they reach the target."
+    )
+    # far from where solutions meet the turn is too small to matter
+    found = start.secant(goal, away)
+    aligned = start.aligned().aligned()
+    there = sp.And(
+        aligned.beside <= start.of(ALIGNED),
+        aligned.wrong <= 1,
+        sp.Abs(start.to_aligned) <= start.of(FARTHEST),
+    )
+    s, c = (
+        start.let(n, sp.Piecewise((a, there), (b, found.wrong <= 1), (e, True)))
+        for n, a, b, e in (
+            ("s", aligned.pair.s, found.pair.s, pair.s),
+            ("c", aligned.pair.c, found.pair.c, pair.c),
+        )
+    )
+    kept = Pair(choose(loose, s, pair.s), choose(loose, c, pair.c))
+    kept = kept.known_as(chain.program, f"_reached{label(x)}")
+    chain.meaning |= {kept.s: sp.sin(x), kept.c: sp.cos(x)}
+    chain.values[x] = kept.angle
+    return kept
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A turn of the joint, and what follows from it.  Names end in ``name``."""
+
+    chain: Chain
+    on_circle: OnCircle
+    carried: Turning
+    single: sp.Symbol
+    """The flag of single precision."""
+    pair: Pair
+    name: str
+
+    def of(self, tolerance: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+        """The tolerance of the precision of numbers."""
+        double, single = tolerance
+        return choose(self.single, single, double)
+
+    def let(self, name: str, value: sp.Expr) -> sp.Expr:
+        return self.chain.let(f"{name}_{self.name}", value)
+
+    def by(self, angle: sp.Expr, suffix: str) -> _Place:
+        """Turned by the angle with this tangent."""
+        name = f"{self.name}{suffix}"
+        t = self.chain.let(f"t_{name}", angle)
+        unit = self.chain.let(f"unit_{name}", sp.sqrt(1 + t**2))
+        pair = (self.pair + Pair(t / unit, 1 / unit)).known_as(self.chain.program, f"_{name}")
+        return replace(self, pair=pair, name=name)
+
+    def _with_rates(self, name: str, value: Callable[[Pair], sp.Matrix]) -> list[list[sp.Expr]]:
+        """The first two entries of a vector that is linear in the pair, and both derivatives."""
+        s, c = sp.Dummy("s"), sp.Dummy("c")
+        here = {s: self.pair.s, c: self.pair.c}
+        rows = []
+        for k, e in enumerate(value(Pair(s, c))[:2]):
+            e = sp.sympify(e)
+            by_s, by_c = e.diff(s), e.diff(c)
+            values = (
+                e.xreplace(here),
+                by_s * self.pair.c - by_c * self.pair.s,
+                -by_s * self.pair.s - by_c * self.pair.c,
+            )
+            rows.append([self.let(f"{name}{k}{i}", v) for i, v in enumerate(values)])
+        return rows
+
+    @cached_property
+    def point(self) -> list[list[sp.Expr]]:
+        return self._with_rates("point", self.on_circle.point)
+
+    @cached_property
+    def missed(self) -> sp.Expr:
+        """How far the point is from the unit circle."""
+        (x, *_), (y, *_) = self.point
+        return self.let("missed", sp.sqrt(x**2 + y**2) - self.on_circle.radius)
+
+    @cached_property
+    def rounding(self) -> sp.Expr:
+        """By how much rounding may move the point: the terms are at least its derivatives."""
+        terms = sp.Add(*(sp.Abs(e) for row in self.point for e in row))
+        return self.let("rounding", self.of(UNDISTINGUISHED) * (1 + terms))
+
+    @cached_property
+    def _other(self) -> Pair:
+        (x, *_), (y, *_) = self.point
+        r = self.let("r", sp.sqrt(x**2 + y**2))
+        return direction(y, x, r, sp.Eq(r, 0)).known_as(self.chain.program, f"_other_{self.name}")
+
+    @cached_property
+    def distance(self) -> sp.Expr:
+        """How far from each other the links have their ends."""
+        q, axis, aimed, offset = self.carried(self.pair, self._other)
+        (a, b), (u, v), (x, y), (e, f) = (
+            [self.let(f"{n}{k}", m[k]) for k in (0, 1)]
+            for n, m in (("axis", axis), ("aimed", aimed), ("q", q), ("offset", offset))
+        )
+        sine, cosine = self.let("cross", a * v - b * u), self.let("dot", a * u + b * v)
+        length = self.let("length", sp.sqrt(sine**2 + cosine**2))
+        lift = direction(sine, cosine, length, sp.Eq(length, 0))
+        s, c = self.let("lift_s", lift.s), self.let("lift_c", lift.c)
+        dx, dy = self.let("dx", x - c * e + s * f), self.let("dy", y - s * e - c * f)
+        return self.let("distance", sp.sqrt(dx**2 + dy**2))
+
+    @cached_property
+    def wrong(self) -> sp.Expr:
+        """By how much more than rounding the place misses the target.
+
+        The point is on its circle, and the axis is as far from being parallel as its aim.
+        """
+        _, axis, aimed, _ = self.carried(self.pair, self._other)
+        (a, b), (u, v) = (v[:2] for v in (axis, aimed))
+        turned = self.let("turned", sp.sqrt(a**2 + b**2) - sp.sqrt(u**2 + v**2))
+        return self.let(
+            "wrong", sp.Max(sp.Abs(self.missed) / self.rounding, sp.Abs(turned) / self.of(ALIGNED))
+        )
+
+    @cached_property
+    def _aim(self) -> list[list[sp.Expr]]:
+        return self._with_rates("aim", lambda pair: self.carried(pair, self._other)[2])
+
+    @cached_property
+    def beside(self) -> sp.Expr:
+        """The sine between the axis and those that are parallel."""
+        (x, *_), (y, *_) = self._aim
+        return self.let("beside", sp.sqrt(x**2 + y**2))
+
+    @cached_property
+    def to_aligned(self) -> sp.Expr:
+        """The turn to where the axis is nearest to those that are parallel."""
+        (x, dx, _), (y, dy, _) = self._aim
+        size = self.let("aim_rate", dx**2 + dy**2)
+        turn = choose(sp.Eq(size, 0), 1, -(x * dx + y * dy) / size)
+        return self.let("to_aligned", turn)
+
+    def aligned(self) -> _Place:
+        """Turned to there, as if the turn were small."""
+        return self.by(sp.Max(-1, sp.Min(1, self.to_aligned)), "a")
+
+    @cached_property
+    def undistinguished(self) -> sp.Expr:
+        """The largest turn that moves the point along the circle up to rounding."""
+        (x, dx, ddx), (y, dy, ddy) = self.point
+        rate = self.let("rate", x * dx + y * dy)
+        bend = self.let("bend", sp.Abs(dx**2 + dy**2 + x * ddx + y * ddy))
+        R = self.rounding
+        whole = self.let("whole", sp.Abs(rate) + sp.sqrt(rate**2 + 2 * bend * R))
+        most = self.let("farthest", self.of(FARTHEST))
+        return self.let("most", choose(whole * most <= 2 * R, most, 2 * R / whole))
+
+    def secant(self, goal: sp.Expr, away: sp.Expr) -> _Place:
+        """Turned so far that the distance is the goal, as if it were linear in the turn."""
+        most = self.undistinguished
+        ends = [(k * most, self.by(k * most, n)) for k, n in ((1, "p"), (-1, "m"))]
+        (t1, g1), (t2, g2) = ((t, place.let("gap", place.distance - goal)) for t, place in ends)
+        side = self.let("side", sign_of(away))
+        first = self.let("one", g1 * side) <= self.let("two", g2 * side)
+        t = self.let("turn", sp.Piecewise((t1, first), (t2, True)))
+        gap = self.let("gap", sp.Piecewise((g1, first), (g2, True)))
+        crosses = self.let("beyond", gap * side) < 0
+        t = self.let("inside", sp.Piecewise((t * away / (away - gap), crosses), (0, True)))
+        near = self.by(t, "n")
+        gap = near.let("gap", near.distance - goal)
+        apart = sp.Abs(away - gap) > sp.Abs(away) / 2
+        t = self.let("nearer", sp.Piecewise((t * away / (away - gap), apart), (t, True)))
+        return self.by(t, "f")
+
+
+__all__ = ["within_links"]

@@ -46,6 +46,7 @@ def within_links(
     pair: Pair,
     on_circle: OnCircle,
     carried: Turning,
+    *,
     lengths: tuple[sp.Expr, sp.Expr],
 ) -> Pair:
     """The pair of a joint, turned by no more than rounding so that two links reach what follows.

@@ -332,7 +332,7 @@ class AroundParallelMaker(SubproblemMaker):
         parts = beside.place("pair"), axis, beside.axis("pair"), beside.to_end("other")
         self.lines += ["def carried(pair, other):", f"    return {', '.join(parts)}"]
         lengths = ", ".join(beside.lengths)
-        arguments = f"{self.unknown(c)}, {third}, on_circle, carried, ({lengths})"
+        arguments = f"{self.unknown(c)}, {third}, on_circle, carried, lengths=({lengths})"
         self.add(f"{third} = within_links(ik, {arguments})")
 
     def require_long(self, arm: Singles, lever: sp.Expr, axes: tuple[int, int]) -> None:

@@ -139,7 +139,7 @@ class _Place:
         here = {s: self.pair.s, c: self.pair.c}
         rows = []
         for k, e in enumerate(value(Pair(s, c))[:2]):
-            e = sp.sympify(e)
+            e = sp.sympify(e, strict=True)
             by_s, by_c = e.diff(s), e.diff(c)
             values = (
                 e.xreplace(here),

@@ -67,7 +67,7 @@ def within_links(
         those of the two links
     """
     single = chain.program.vanishes(
-        f"single_{label(x)}", sp.Rational(1, 2**30), 1, "numbers have single precision"
+        f"single_{label(x)}", sp.Rational(1, 2**30), 1, "rounding is that of single precision"
     )
     start = _Place(chain, on_circle, carried, single, pair, f"{label(x)}_reach0")
     low, high = sp.Abs(lengths[0] - lengths[1]), sp.Add(*lengths)

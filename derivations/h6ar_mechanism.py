@@ -320,7 +320,7 @@ def allowances(
     stretched by its root; there the status is SINGULAR.
     """
     base = m.al + m.gs + apart
-    by_root = m.al * base / (2**9 * wrist + base / 2**14)
+    by_root = m.al * base / (2**9 * wrist + sqrt(m.al * base) / 2**15 + base / 2**60)
     stretched = program.vanishes(
         "stretched", wrist - m.al / 2**10, m.al, "the wrist links are stretched"
     )

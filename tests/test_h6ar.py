@@ -6,6 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
+from fuzz.lengths import draw_lengths
+from fuzz.robots import robot
 
 MODELS = ("h6ar", "h6ar_loop_closed")
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -350,8 +352,11 @@ def test_no_posture_is_lost_where_two_events_meet(model, dimensions: dict) -> No
         assert lost.mean() < 5e-3 and np.abs(off[status == OK]).max() < 2e-11 * sum(params)
 
 
-def with_stretched_wrist(model, n: int, seed: int) -> np.ndarray:
-    """Arms a right angle apart at one joint, and at the other as far as the wrist spans."""
+def with_stretched_wrist(model, n: int, seed: int, params=P) -> np.ndarray:
+    """Arms a right angle apart at one joint, and at the other as far as the wrist spans.
+
+    NaN where the wrist spans all postures or none.
+    """
     rng = np.random.default_rng(seed)
     waist, upper, bend, pitch = rng.uniform(-3, 3, (4, n))
     right = rng.choice((-1, 1), n) * np.pi / 2
@@ -364,7 +369,7 @@ def with_stretched_wrist(model, n: int, seed: int) -> np.ndarray:
         return np.stack((*columns, upper - alpha, bend - beta + alpha, pitch), -1)
 
     def spans(other: np.ndarray) -> np.ndarray:
-        return np.isfinite(model.fk(posture(other))).all(-1)
+        return np.isfinite(model.fk(posture(other), params)).all(-1)
 
     places = np.linspace(-3.2, 3.2, 41)
     within = np.stack([spans(np.full(n, place)) for place in places], -1)
@@ -377,7 +382,7 @@ def with_stretched_wrist(model, n: int, seed: int) -> np.ndarray:
             np.where(spans(middle) == k, middle, e) for k, e in ((1, near), (0, beyond))
         )
     inwards = np.sign(near - beyond) * rng.choice((0, 1e-14, 1e-12, 1e-11, 1e-10), n)
-    return posture(near + inwards)[change.any(-1)]
+    return np.where(change.any(-1)[:, None], posture(near + inwards), np.nan)
 
 
 def test_a_stretched_wrist_at_a_right_angle_is_not_lost(published) -> None:
@@ -391,6 +396,19 @@ def test_a_stretched_wrist_at_a_right_angle_is_not_lost(published) -> None:
     assert lost.mean() < 2e-4
     off = missed(published, solutions, x, P)[status == SINGULAR]
     assert np.nanmax(np.abs(off)) < 1e-5  # NaN: rounded joints stretch the wrist a little further
+
+
+def test_a_stretched_wrist_with_dissimilar_lengths_is_not_lost(published) -> None:
+    """Arms close to each other: a unit in the last place of yaw moves the tips farther."""
+    rng = np.random.default_rng(44)
+    lengths = draw_lengths(rng, robot("h6ar"), 40_000)
+    q = with_stretched_wrist(published, len(lengths), 45, published.Parameters(*lengths.T))
+    x = published.fk(q, published.Parameters(*lengths.T))
+    rows = np.isfinite(x).all(-1)
+    assert rows.sum() > 10_000
+    _, status = published.ik(x[rows], published.Parameters(*lengths[rows].T))
+    lost = ~np.isin(status, (OK, SINGULAR)).any(-1)  # docs/reliability.md: waists tangent too
+    assert lost.mean() < 5e-4
 
 
 def test_a_virtual_arm_without_direction_is_singular(closed) -> None:

@@ -13,8 +13,8 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
- *   ik: 594 compare and select, 467 add, 33 atan2, 156 divide, 580 multiply, 1 reduce to a turn, 3
- *     sincos, 50 sqrt
+ *   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
+ *     sincos, 51 sqrt
  *   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt

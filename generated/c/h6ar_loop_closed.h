@@ -13,8 +13,8 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 866 compare and select, 642 add, 28 atan2, 161 divide, 918 multiply, 1 reduce to a turn, 3
- *     sincos, 41 sqrt
+ *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
+ *     sincos, 42 sqrt
  *   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt

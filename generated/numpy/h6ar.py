@@ -12,8 +12,8 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 594 compare and select, 467 add, 33 atan2, 156 divide, 580 multiply, 1 reduce to a turn, 3
-#     sincos, 50 sqrt
+#   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
+#     sincos, 51 sqrt
 #   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
@@ -1531,54 +1531,57 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     ahead = d * t_psi
     t17 = np.abs(t_psi * ahead)
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
-    t18 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t16 * 6.103515625e-05
-    t19 = al * (t1 + t16 + t17) / (t18 + t17 * 6.103515625e-05 + 512.0 * wrist)
-    del t18
-    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + _runtime.select(stretched, t19, 0.0)
-    del stretched, t16, t17, t19
+    t18 = al * (t1 + t16 + t17)
+    t19 = al * 8.673617379884035e-19 + gs * 8.673617379884035e-19
+    t20 = t19 + t16 * 8.673617379884035e-19 + t17 * 8.673617379884035e-19
+    del t19
+    t21 = t20 + 512.0 * wrist + np.sqrt(t18) * 3.0517578125e-05
+    del t20
+    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + _runtime.select(stretched, t18 / t21, 0.0)
+    del stretched, t16, t17, t18, t21
     slack = lengths * 0.25 + far_apart
-    t20 = h * slack
+    t22 = h * slack
     del h
-    tangent = 4.0 * root * t15 - t20 * 0.00390625 <= _runtime.VANISHING * t20
+    tangent = 4.0 * root * t15 - t22 * 0.00390625 <= _runtime.VANISHING * t22
     gap_size = np.sqrt(higher * higher + ahead * ahead)
     fore_size = np.sqrt(L2 * L2 + a3 * a3)
-    t21 = L1 < fore_size
-    shorter = _runtime.select(t21, L1, fore)
-    t22 = z - d1
-    t23 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
-    t24 = 1.0 / (t23 + gap_size)
-    del t23
-    t25 = 1.0 / fore_size
-    t26 = _runtime.select(t21, t25 * (L2 * L_2W + a3 * a_3W), L1)
-    t27 = t24 * t26
-    del t26
-    t28 = _runtime.select(t21, -(t25 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    t23 = L1 < fore_size
+    shorter = _runtime.select(t23, L1, fore)
+    t24 = z - d1
+    t25 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    t26 = 1.0 / (t25 + gap_size)
     del t25
-    long_x = t24 * t28
+    t27 = 1.0 / fore_size
+    t28 = _runtime.select(t23, t27 * (L2 * L_2W + a3 * a_3W), L1)
+    t29 = t26 * t28
     del t28
-    t29 = ahead * t27 - higher * long_x
-    beyond_gap_behind = t22 - t29
-    t30 = gap_size * (shorter - np.abs(beyond_gap_behind))
-    t31 = np.abs(higher)
-    across_long = _runtime.select(t21, L1 * t31 * t24, fore_size)
-    del t21, t24
-    long_r = ahead * long_x + higher * t27
-    del long_x, t27
-    t32 = long_r * long_r
+    t30 = _runtime.select(t23, -(t27 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    del t27
+    long_x = t26 * t30
+    del t30
+    t31 = ahead * t29 - higher * long_x
+    beyond_gap_behind = t24 - t31
+    t32 = gap_size * (shorter - np.abs(beyond_gap_behind))
+    t33 = np.abs(higher)
+    across_long = _runtime.select(t23, L1 * t33 * t26, fore_size)
+    del t23, t26
+    long_r = ahead * long_x + higher * t29
+    del long_x, t29
+    t34 = long_r * long_r
     del long_r
     short_h_behind = np.maximum(-shorter, np.minimum(beyond_gap_behind, shorter))
-    beyond_gap_ahead = t22 + t29
-    del t29
-    t33 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
-    left_r_behind = np.sqrt(np.maximum(0.0, t32 - t33))
-    del t33
-    t34 = -t30 <= across_long * left_r_behind
-    del t30
-    t35 = gap_size <= np.maximum(L1, fore_size)
-    t36 = (shorter - short_h_behind) * (shorter + short_h_behind)
+    beyond_gap_ahead = t24 + t31
+    del t31
+    t35 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
+    left_r_behind = np.sqrt(np.maximum(0.0, t34 - t35))
+    del t35
+    t36 = -t32 <= across_long * left_r_behind
+    del t32
+    t37 = gap_size <= np.maximum(L1, fore_size)
+    t38 = (shorter - short_h_behind) * (shorter + short_h_behind)
     del short_h_behind
-    short_r_behind = np.sqrt(t36)
-    del t36
+    short_r_behind = np.sqrt(t38)
+    del t38
     root_apart_behind = np.abs(left_r_behind - short_r_behind)
     root_apart_behind_squared = root_apart_behind * root_apart_behind
     del root_apart_behind
@@ -1587,19 +1590,19 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_behind_squared = root_same_behind * root_same_behind
     del root_same_behind
     root_same_behind_away = np.abs(t14 - root_same_behind_squared)
-    t37 = gap_size * (shorter - np.abs(beyond_gap_ahead))
+    t39 = gap_size * (shorter - np.abs(beyond_gap_ahead))
     del gap_size
     short_h_ahead = np.maximum(-shorter, np.minimum(beyond_gap_ahead, shorter))
-    t38 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
+    t40 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
     del beyond_gap_ahead, beyond_gap_behind
-    left_r_ahead = np.sqrt(np.maximum(0.0, t32 - t38))
-    del t32, t38
-    t39 = (-t37 <= across_long * left_r_ahead) & t35
-    del across_long, t37
-    t40 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
+    left_r_ahead = np.sqrt(np.maximum(0.0, t34 - t40))
+    del t34, t40
+    t41 = (-t39 <= across_long * left_r_ahead) & t37
+    del across_long, t39
+    t42 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
     del short_h_ahead, shorter
-    short_r_ahead = np.sqrt(t40)
-    del t40
+    short_r_ahead = np.sqrt(t42)
+    del t42
     root_apart_ahead = np.abs(left_r_ahead - short_r_ahead)
     root_apart_ahead_squared = root_apart_ahead * root_apart_ahead
     del root_apart_ahead
@@ -1609,1302 +1612,1302 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_ahead_squared = root_same_ahead * root_same_ahead
     del root_same_ahead
     root_same_ahead_away = np.abs(t14 - root_same_ahead_squared)
-    t41 = t20 * 1.8189894035458565e-12
-    t42 = t39 & (root_same_ahead_away <= t41)
-    root_same_ahead_least = _runtime.select(t42, root_same_ahead_away, t41)
-    del root_same_ahead_away, t41
-    t43 = root_apart_ahead_away <= root_same_ahead_least
-    t44 = t39 & t43
-    del t39, t43
-    root_apart_ahead_least = _runtime.select(t44, root_apart_ahead_away, root_same_ahead_least)
+    t43 = t22 * 1.8189894035458565e-12
+    t44 = t41 & (root_same_ahead_away <= t43)
+    root_same_ahead_least = _runtime.select(t44, root_same_ahead_away, t43)
+    del root_same_ahead_away, t43
+    t45 = root_apart_ahead_away <= root_same_ahead_least
+    t46 = t41 & t45
+    del t41, t45
+    root_apart_ahead_least = _runtime.select(t46, root_apart_ahead_away, root_same_ahead_least)
     del root_apart_ahead_away, root_same_ahead_least
-    t45 = root_same_behind_away <= root_apart_ahead_least
-    t46 = t45 & t34 & t35
-    del t45
-    root_same_behind_least = _runtime.select(t46, root_same_behind_away, root_apart_ahead_least)
+    t47 = root_same_behind_away <= root_apart_ahead_least
+    t48 = t47 & t36 & t37
+    del t47
+    root_same_behind_least = _runtime.select(t48, root_same_behind_away, root_apart_ahead_least)
     del root_apart_ahead_least, root_same_behind_away
-    t47 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
+    t49 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
     del root_same_behind_least
-    t48 = L1 - fore
-    t49 = t48 * t48
-    t50 = t22 * t22
-    t51 = t15 * t15
-    wanted = np.maximum(np.maximum(0.0, t49 - t50), np.minimum(t14, t51 - t50))
-    t52 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t20, wanted, t14)
-    del t14, t20, wanted
-    root_same_ahead_held = _runtime.select(t42, root_same_ahead_squared, t52)
-    del root_same_ahead_squared, t42, t52
-    root_apart_ahead_held = _runtime.select(t44, root_apart_ahead_squared, root_same_ahead_held)
-    del root_apart_ahead_squared, root_same_ahead_held, t44
-    root_same_behind_held = _runtime.select(t46, root_same_behind_squared, root_apart_ahead_held)
-    del root_apart_ahead_held, root_same_behind_squared, t46
-    root_apart_behind_held = _runtime.select(t34 & t35 & t47, root_apart_behind_squared, root_same_behind_held)
-    del root_apart_behind_squared, root_same_behind_held, t34, t35, t47
-    t53 = np.sqrt(root_apart_behind_held)
+    t50 = L1 - fore
+    t51 = t50 * t50
+    t52 = t24 * t24
+    t53 = t15 * t15
+    wanted = np.maximum(np.maximum(0.0, t51 - t52), np.minimum(t14, t53 - t52))
+    t54 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t22, wanted, t14)
+    del t14, t22, wanted
+    root_same_ahead_held = _runtime.select(t44, root_same_ahead_squared, t54)
+    del root_same_ahead_squared, t44, t54
+    root_apart_ahead_held = _runtime.select(t46, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t46
+    root_same_behind_held = _runtime.select(t48, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t48
+    root_apart_behind_held = _runtime.select(t36 & t37 & t49, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t36, t37, t49
+    t55 = np.sqrt(root_apart_behind_held)
     del root_apart_behind_held
-    t54 = _runtime.select(tangent, np.arctan2(t53, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    t56 = _runtime.select(tangent, np.arctan2(t55, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below
-    t55 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t54))
-    t56 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t57 = t56 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t56
-    t58 = t57 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t57
-    t59 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t60 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    t57 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t56))
+    t58 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t59 = t58 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t58
+    t60 = t59 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t59
+    t61 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t62 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
     del t2
-    t61 = t58 & (0.0 <= loff) & (0.0 <= lp) & t59 & (t60 <= _runtime.ROTATION)
-    del t58, t59, t60
-    invalid = np.logical_not(t61)
-    del t61
-    t62 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t63 = t60 & (0.0 <= loff) & (0.0 <= lp) & t61 & (t62 <= _runtime.ROTATION)
+    del t60, t61, t62
+    invalid = np.logical_not(t63)
+    del t63
+    t64 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
     del c_psi, s_psi
-    t63 = -(_runtime.FEASIBILITY * (t1 * t62))
-    del t1, t62
-    t64 = (-_runtime.FEASIBILITY <= c_phi) & (t63 <= t5)
+    t65 = -(_runtime.FEASIBILITY * (t1 * t64))
+    del t1, t64
+    t66 = (-_runtime.FEASIBILITY <= c_phi) & (t65 <= t5)
     del c_phi, t5
-    t65 = -(_runtime.FEASIBILITY * slack)
-    t66 = t64 & (t63 <= t6) & (t65 <= t13) & (t65 <= t12)
-    del t12, t13, t6, t63, t64, t65
-    t67 = 2.0 * fore
-    t68 = _runtime.FEASIBILITY * ((L1 * 2.0 + t67) * slack)
-    in_reach = _runtime.select(tangent, t53, root)
-    del root, t53, tangent
-    square = t50 + in_reach * in_reach
-    del t50
-    t69 = t51 - square
-    t70 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t71 = _runtime.FEASIBILITY * ((t70 + 2.0 * np.abs(t48)) * slack)
-    del t70
-    t72 = square - t49
-    del square, t49
-    t73 = t66 & (-t68 <= t69) & (-t71 <= t72)
-    del t66, t68, t71
-    t74 = d * 0.25 + t31 * 0.25 + np.abs(ahead) * 0.25 + far_apart
-    del far_apart, t31
-    play = t74 + lengths * 0.00048828125
-    del lengths, t74
-    t75 = fore_size * play
-    t76 = _runtime.VANISHING * t15
-    folded = np.abs(t22) + np.abs(in_reach) <= t76
-    short = L1 * fore <= _runtime.VANISHING * t51
-    del t51
-    M = np.maximum(t72, 0.0)
+    t67 = -(_runtime.FEASIBILITY * slack)
+    t68 = t66 & (t65 <= t6) & (t67 <= t13) & (t67 <= t12)
+    del t12, t13, t6, t65, t66, t67
+    t69 = 2.0 * fore
+    t70 = _runtime.FEASIBILITY * ((L1 * 2.0 + t69) * slack)
+    in_reach = _runtime.select(tangent, t55, root)
+    del root, t55, tangent
+    square = t52 + in_reach * in_reach
+    del t52
+    t71 = t53 - square
+    t72 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t73 = _runtime.FEASIBILITY * ((t72 + 2.0 * np.abs(t50)) * slack)
     del t72
-    N = np.maximum(t69, 0.0)
-    del t69
-    t77 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t15, t48 + t67 * M * t77)
-    del t15, t48, t67
-    t78 = in_reach * ahead_1
-    t79 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t77 * t79)
-    t80 = fore * s_bend_front_elbow_down
-    t81 = t22 * t80
-    out_2 = t78 - t81
-    t82 = t22 * ahead_1
-    del ahead_1, t22
-    t83 = in_reach * t80
-    del in_reach, t80
-    up = t82 + t83
-    t84 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t85 = out_2 * t84
-    ctheta2A = _runtime.select(folded, 1.0, t85)
-    stheta2A = _runtime.select(folded, 0.0, up * t84)
-    del t84
-    t86 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t86
-    bare = fore <= t76
-    del t76
-    t87 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t87)
-    t88 = M - N
+    t74 = square - t51
+    del square, t51
+    t75 = t68 & (-t70 <= t71) & (-t73 <= t74)
+    del t68, t70, t73
+    t76 = d * 0.25 + t33 * 0.25 + np.abs(ahead) * 0.25 + far_apart
+    del far_apart, t33
+    play = t76 + lengths * 0.00048828125
+    del lengths, t76
+    t77 = fore_size * play
+    t78 = _runtime.VANISHING * t15
+    folded = np.abs(t24) + np.abs(in_reach) <= t78
+    short = L1 * fore <= _runtime.VANISHING * t53
+    del t53
+    M = np.maximum(t74, 0.0)
+    del t74
+    N = np.maximum(t71, 0.0)
+    del t71
+    t79 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t15, t50 + t69 * M * t79)
+    del t15, t50, t69
+    t80 = in_reach * ahead_1
+    t81 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t79 * t81)
+    t82 = fore * s_bend_front_elbow_down
+    t83 = t24 * t82
+    out_2 = t80 - t83
+    t84 = t24 * ahead_1
+    del ahead_1, t24
+    t85 = in_reach * t82
+    del in_reach, t82
+    up = t84 + t85
+    t86 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t87 = out_2 * t86
+    ctheta2A = _runtime.select(folded, 1.0, t87)
+    stheta2A = _runtime.select(folded, 0.0, up * t86)
+    del t86
+    t88 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t88
+    bare = fore <= t78
+    del t78
+    t89 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t89)
+    t90 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t77 * t88)
-    del t77
-    t89 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t87)
-    del bare, t87
-    t90 = c_lag * s_bend_front_elbow_down
-    s_relative = t89 - t90
-    t91 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t79 * t90)
+    del t79
+    t91 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t89)
+    del bare, t89
+    t92 = c_lag * s_bend_front_elbow_down
+    s_relative = t91 - t92
+    t93 = c_lag * c_bend
     del c_bend
-    t92 = s_lag * s_bend_front_elbow_down
+    t94 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t91 + t92
+    c_relative = t93 + t94
     v_2 = L2 * s_relative + a3 * c_relative
-    t93 = ahead * stheta2A
+    t95 = ahead * stheta2A
     del stheta2A
-    t94 = t93 - higher * ctheta2A
+    t96 = t95 - higher * ctheta2A
     del ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t95 = p_1 * v_2 + t94 * v_1
+    t97 = p_1 * v_2 + t96 * v_1
     whole_alpha = L1 * v_1
-    t96 = np.abs(whole_alpha)
-    t97 = np.abs(t95) - t96
-    t98 = np.maximum(t97 * 9.094947017729282e-13, -t97)
-    t99 = _runtime.VANISHING * t75
-    spent_alpha = t98 <= t99
-    del t98
-    t100 = v_2 * _runtime.sign(whole_alpha)
+    t98 = np.abs(whole_alpha)
+    t99 = np.abs(t97) - t98
+    t100 = np.maximum(t99 * 9.094947017729282e-13, -t99)
+    t101 = _runtime.VANISHING * t77
+    spent_alpha = t100 <= t101
+    del t100
+    t102 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t101 = t100 * drawn
-    t102 = _runtime.sign(-t95) * (p_1 * v_1 - v_2 * t94)
-    del t95
-    t103 = t101 - t102
-    del t102
-    t104 = np.abs(t103)
-    t105 = 1.0 / slack
-    t106 = 1.4142135623730951 * np.sqrt(slack)
-    del slack
-    t107 = 1.0 / L1
-    t108 = 1.0 - t107 * drawn
-    t109 = t106 * np.sqrt(fore + L1 * (t108 * t108)) / 2000000.0
-    del t108
-    t110 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    del c_relative, s_relative
-    t111 = t105 * (t109 + t110)
-    del t109, t110
-    heavy_0_alpha = _runtime.select(spent_alpha, t111, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t104 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t100
-    del t100
-    t112 = np.abs(slope_aside_alpha)
-    t113 = t105 * (L1 + np.sqrt(L1) * t106 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t113, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t112 / heavy_1_alpha, 0.0)
-    t114 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t115 = -(_runtime.FEASIBILITY * (t75 + t114)) <= -t97
-    del t114
-    t116 = L1 * play
-    t117 = gain_1_alpha * gain_1_alpha
-    del gain_1_alpha
-    t118 = play * play
-    t119 = fore_size * fore_size * t118
-    del fore_size
-    t120 = t117 / (t117 + t119 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t117
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t97 < 0.0, t120, 0.0), 0.0)
-    del t120
-    t121 = _runtime.sign(slope_aside_alpha)
-    del slope_aside_alpha
-    t122 = t112 + t75 * heavy_1_alpha * 5.960464477539063e-08
-    del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t97 * share_alpha * t121 / t122, 0.0)
-    del t122
-    lack_alpha = t97 * (1.0 - share_alpha)
-    del share_alpha, t97
-    t123 = t104 + t75 * heavy_0_alpha * 5.960464477539063e-08
+    t103 = t102 * drawn
+    t104 = _runtime.sign(-t97) * (p_1 * v_1 - v_2 * t96)
+    del t97
+    t105 = t103 - t104
     del t104
-    t124 = 1.0 / t123
-    del t123
-    t125 = heavy_0_alpha * lack_alpha * t124 <= 9.094947017729282e-13
+    t106 = np.abs(t105)
+    t107 = 1.0 / slack
+    t108 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t109 = 1.0 / L1
+    t110 = 1.0 - t109 * drawn
+    t111 = t108 * np.sqrt(fore + L1 * (t110 * t110)) / 2000000.0
+    del t110
+    t112 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    del c_relative, s_relative
+    t113 = t107 * (t111 + t112)
+    del t111, t112
+    heavy_0_alpha = _runtime.select(spent_alpha, t113, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t106 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t102
+    del t102
+    t114 = np.abs(slope_aside_alpha)
+    t115 = t107 * (L1 + np.sqrt(L1) * t108 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t115, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t114 / heavy_1_alpha, 0.0)
+    t116 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t117 = -(_runtime.FEASIBILITY * (t77 + t116)) <= -t99
+    del t116
+    t118 = L1 * play
+    t119 = gain_1_alpha * gain_1_alpha
+    del gain_1_alpha
+    t120 = play * play
+    t121 = fore_size * fore_size * t120
+    del fore_size
+    t122 = t119 / (t119 + t121 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t119
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t99 < 0.0, t122, 0.0), 0.0)
+    del t122
+    t123 = _runtime.sign(slope_aside_alpha)
+    del slope_aside_alpha
+    t124 = t114 + t77 * heavy_1_alpha * 5.960464477539063e-08
+    del heavy_1_alpha
+    aside_alpha = _runtime.select(spent_alpha, t99 * share_alpha * t123 / t124, 0.0)
+    del t124
+    lack_alpha = t99 * (1.0 - share_alpha)
+    del share_alpha, t99
+    t125 = t106 + t77 * heavy_0_alpha * 5.960464477539063e-08
+    del t106
+    t126 = 1.0 / t125
+    del t125
+    t127 = heavy_0_alpha * lack_alpha * t126 <= 9.094947017729282e-13
     del heavy_0_alpha
-    t126 = lack_alpha * t124
-    del lack_alpha, t124
-    t127 = _runtime.select(t125 & (0.0 < t126), t126, 0.0)
-    del t125, t126
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t103) * t127, 0.0)
-    del t103, t127
-    t128 = aside_alpha + turn_alpha - t107 * (drawn * turn_alpha)
+    t128 = lack_alpha * t126
+    del lack_alpha, t126
+    t129 = _runtime.select(t127 & (0.0 < t128), t128, 0.0)
+    del t127, t128
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t105) * t129, 0.0)
+    del t105, t129
+    t130 = aside_alpha + turn_alpha - t109 * (drawn * turn_alpha)
     del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t128, 0.0)
-    del t128
-    t129 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t130 = 1.0 / t129
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t130 - t94 * lean_alpha * t130, p_1)
-    part_beta = L1 * p_1_alpha
-    t131 = t129 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t129
+    lean_alpha = _runtime.select(spent_alpha, t130, 0.0)
+    del t130
+    t131 = np.sqrt(1.0 + lean_alpha * lean_alpha)
     t132 = 1.0 / t131
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t132 - t96 * lean_alpha * t132, p_1)
+    part_beta = L1 * p_1_alpha
+    t133 = t131 * np.sqrt(1.0 + turn_alpha * turn_alpha)
     del t131
-    t133 = t132 + t132 * (turn_alpha * lean_alpha)
-    t134 = lean_alpha * t132 - turn_alpha * t132
-    del t132
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t133 + v_2 * t134, v_1)
+    t134 = 1.0 / t133
+    del t133
+    t135 = t134 + t134 * (turn_alpha * lean_alpha)
+    t136 = lean_alpha * t134 - turn_alpha * t134
+    del t134
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t135 + v_2 * t136, v_1)
     whole_beta = L1 * v_1_alpha
-    t135 = np.abs(part_beta) - np.abs(whole_beta)
-    t136 = np.maximum(t135 * 9.094947017729282e-13, -t135)
-    t137 = _runtime.VANISHING * t116
-    spent_beta = t136 <= t137
-    del t136
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t133 - v_1 * t134, v_2)
-    del t133, t134
-    t138 = v_2_alpha * _runtime.sign(whole_beta)
+    t137 = np.abs(part_beta) - np.abs(whole_beta)
+    t138 = np.maximum(t137 * 9.094947017729282e-13, -t137)
+    t139 = _runtime.VANISHING * t118
+    spent_beta = t138 <= t139
+    del t138
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t135 - v_1 * t136, v_2)
+    del t135, t136
+    t140 = v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    t139 = _runtime.select(spent_alpha, t130 * (p_1 * lean_alpha) + t94 * t130, t94)
-    del p_1, t130, t94
-    t140 = t139 * _runtime.sign(part_beta)
+    t141 = _runtime.select(spent_alpha, t132 * (p_1 * lean_alpha) + t96 * t132, t96)
+    del p_1, t132, t96
+    t142 = t141 * _runtime.sign(part_beta)
     del part_beta
-    t141 = L1 - drawn
-    t142 = drawn * t138 - t140 * t141
-    t143 = np.abs(t142)
-    heavy_0_beta = _runtime.select(spent_beta, t111, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t143 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t138 + t140)
-    del t138, t140
-    t144 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t113, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t144 / heavy_1_beta, 0.0)
-    t145 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t146 = -(_runtime.FEASIBILITY * (t116 + t145)) <= -t135
-    del t145
-    t147 = -(_runtime.FEASIBILITY * play)
-    t148 = gain_1_beta * gain_1_beta
+    t143 = L1 - drawn
+    t144 = drawn * t140 - t142 * t143
+    t145 = np.abs(t144)
+    heavy_0_beta = _runtime.select(spent_beta, t113, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t145 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t140 + t142)
+    del t140, t142
+    t146 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t115, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t146 / heavy_1_beta, 0.0)
+    t147 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t148 = -(_runtime.FEASIBILITY * (t118 + t147)) <= -t137
+    del t147
+    t149 = -(_runtime.FEASIBILITY * play)
+    t150 = gain_1_beta * gain_1_beta
     del gain_1_beta
-    t149 = L1 * L1 * t118
-    del t118
-    t150 = t148 / (t148 + t149 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t148
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t135 < 0.0, t150, 0.0), 0.0)
-    del t150
-    lack_beta = t135 * (1.0 - share_beta)
-    t151 = t143 + t116 * heavy_0_beta * 5.960464477539063e-08
-    del t143
-    t152 = 1.0 / t151
-    del t151
-    t153 = heavy_0_beta * lack_beta * t152 <= 9.094947017729282e-13
+    t151 = L1 * L1 * t120
+    del t120
+    t152 = t150 / (t150 + t151 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t150
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t137 < 0.0, t152, 0.0), 0.0)
+    del t152
+    lack_beta = t137 * (1.0 - share_beta)
+    t153 = t145 + t118 * heavy_0_beta * 5.960464477539063e-08
+    del t145
+    t154 = 1.0 / t153
+    del t153
+    t155 = heavy_0_beta * lack_beta * t154 <= 9.094947017729282e-13
     del heavy_0_beta
-    t154 = lack_beta * t152
-    del lack_beta, t152
-    t155 = _runtime.select(t153 & (0.0 < t154), t154, 0.0)
-    del t153, t154
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t142) * t155, 0.0)
-    del t142, t155
-    t156 = t135 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t135
-    t157 = t144 + t116 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t144
-    aside_beta = _runtime.select(spent_beta, t156 / t157, 0.0)
-    del t156, t157
-    t158 = turn_beta + aside_beta - t107 * (drawn * turn_beta)
+    t156 = lack_beta * t154
+    del lack_beta, t154
+    t157 = _runtime.select(t155 & (0.0 < t156), t156, 0.0)
+    del t155, t156
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t144) * t157, 0.0)
+    del t144, t157
+    t158 = t137 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t137
+    t159 = t146 + t118 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t146
+    aside_beta = _runtime.select(spent_beta, t158 / t159, 0.0)
+    del t158, t159
+    t160 = turn_beta + aside_beta - t109 * (drawn * turn_beta)
     del aside_beta
-    lean_beta = _runtime.select(spent_beta, t158, 0.0)
-    del t158
-    t159 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t160 = 1.0 / (t159 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t161 = t160 + t160 * (turn_beta * lean_beta)
-    t162 = lean_beta * t160 - turn_beta * t160
+    lean_beta = _runtime.select(spent_beta, t160, 0.0)
     del t160
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t161 + v_2_alpha * t162, v_1_alpha)
+    t161 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t162 = 1.0 / (t161 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t163 = t162 + t162 * (turn_beta * lean_beta)
+    t164 = lean_beta * t162 - turn_beta * t162
+    del t162
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t163 + v_2_alpha * t164, v_1_alpha)
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t163 = 1.0 / t159
-    del t159
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t163 - t139 * lean_beta * t163, p_1_alpha)
-    t164 = sigma_uv * p_1_beta
-    t165 = v_1_beta * sigma_uv
+    t165 = 1.0 / t161
+    del t161
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t165 - t141 * lean_beta * t165, p_1_alpha)
+    t166 = sigma_uv * p_1_beta
+    t167 = v_1_beta * sigma_uv
     del sigma_uv
-    t166 = t73 & t115 & t146 & (t147 <= t164 - t165) & (t147 <= -(t165 + t164))
-    del t115, t146
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t161 - v_1_alpha * t162, v_2_alpha)
-    del t161, t162, v_1_alpha, v_2_alpha
-    t167 = np.abs(v_2_beta)
-    parallel = -t165 <= _runtime.VANISHING * (64.0 * t167)
-    whole_y = _runtime.select(parallel, L1 + t167, -t165)
-    t168 = _runtime.select(spent_beta, t163 * (p_1_alpha * lean_beta) + t139 * t163, t139)
-    del p_1_alpha, t139, t163
-    t169 = _runtime.select(parallel, t168 * _runtime.sign(v_2_beta), t164)
-    del t164
-    t170 = whole_y + t169
-    t171 = whole_y - t169
-    t172 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t170, t172)
-    above_beta_0 = np.maximum(t171, t172)
-    t173 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t168 = t75 & t117 & t148 & (t149 <= t166 - t167) & (t149 <= -(t167 + t166))
+    del t117, t148
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t163 - v_1_alpha * t164, v_2_alpha)
+    del t163, t164, v_1_alpha, v_2_alpha
+    t169 = np.abs(v_2_beta)
+    parallel = -t167 <= _runtime.VANISHING * (64.0 * t169)
+    whole_y = _runtime.select(parallel, L1 + t169, -t167)
+    t170 = _runtime.select(spent_beta, t165 * (p_1_alpha * lean_beta) + t141 * t165, t141)
+    del p_1_alpha, t141, t165
+    t171 = _runtime.select(parallel, t170 * _runtime.sign(v_2_beta), t166)
+    del t166
+    t172 = whole_y + t171
+    t173 = whole_y - t171
+    t174 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t172, t174)
+    above_beta_0 = np.maximum(t173, t174)
+    t175 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t174 = t168 - v_2_beta * t173
-    del t173
-    left_along = L1 - np.abs(t174)
-    t175 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t176 = _runtime.VANISHING * play
-    spent_along = t175 <= t176
+    t176 = t170 - v_2_beta * t175
     del t175
-    t177 = L1 / 1000000000.0
-    t178 = _runtime.select(spent_along, t167 / (t177 - t165), 0.0)
-    del t167
-    t179 = -(_runtime.FEASIBILITY * (play * (1.0 + t178)))
-    del t178
-    t180 = t166 & (t147 <= t170) & (t147 <= t171) & (t179 <= left_along)
-    del t166, t170, t171, t179
-    t181 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    left_along = L1 - np.abs(t176)
+    t177 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t178 = _runtime.VANISHING * play
+    spent_along = t177 <= t178
+    del t177
+    t179 = L1 / 1000000000.0
+    t180 = _runtime.select(spent_along, t169 / (t179 - t167), 0.0)
+    del t169
+    t181 = -(_runtime.FEASIBILITY * (play * (1.0 + t180)))
+    del t180
+    t182 = t168 & (t149 <= t172) & (t149 <= t173) & (t181 <= left_along)
+    del t168, t172, t173, t181
+    t183 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t182 = t181 / (t165 * t165 + v_2_beta * v_2_beta) * _runtime.sign(-t174)
-    del t165, t174, t181
-    t183 = _runtime.select(spent_along, t169 + whole_y * t182, t169)
-    del t169, t182
-    t184 = whole_y + t183
-    t185 = whole_y - t183
-    del t183, whole_y
-    below_beta = np.maximum(t184, t172)
-    above_beta = np.maximum(t185, t172)
-    t186 = 1.0 / (below_beta + above_beta)
-    t187 = (below_beta - above_beta) * t186
-    t188 = t168 - v_2_beta * t187
-    del t168, v_2_beta
-    t189 = L1 + t188
-    t190 = t180 & (t147 <= t184) & (t147 <= t185) & (t147 <= t189)
-    del t180, t184, t185
-    t191 = L1 - t188
-    unreachable = np.logical_not(t190 & (t147 <= t191))
-    del t190
-    t192 = _runtime.poison(invalid | unreachable)
-    t193 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t194 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    t184 = t183 / (t167 * t167 + v_2_beta * v_2_beta) * _runtime.sign(-t176)
+    del t167, t176, t183
+    t185 = _runtime.select(spent_along, t171 + whole_y * t184, t171)
+    del t171, t184
+    t186 = whole_y + t185
+    t187 = whole_y - t185
+    del t185, whole_y
+    below_beta = np.maximum(t186, t174)
+    above_beta = np.maximum(t187, t174)
+    t188 = 1.0 / (below_beta + above_beta)
+    t189 = (below_beta - above_beta) * t188
+    t190 = t170 - v_2_beta * t189
+    del t170, v_2_beta
+    t191 = L1 + t190
+    t192 = t182 & (t149 <= t186) & (t149 <= t187) & (t149 <= t191)
+    del t182, t186, t187
+    t193 = L1 - t190
+    unreachable = np.logical_not(t192 & (t149 <= t193))
+    del t192
+    t194 = _runtime.poison(invalid | unreachable)
+    t195 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t196 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
     del lean_alpha, lean_beta
-    t195 = t193 + t194
-    del t193
-    below_alpha = np.maximum(t189, t172)
-    del t189
-    above_alpha = np.maximum(t191, t172)
+    t197 = t195 + t196
+    del t195
+    below_alpha = np.maximum(t191, t174)
     del t191
-    t196 = 1.0 / (below_alpha + above_alpha)
-    t197 = (below_alpha - above_alpha) * t196
-    t198 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    above_alpha = np.maximum(t193, t174)
+    del t193
+    t198 = 1.0 / (below_alpha + above_alpha)
+    t199 = (below_alpha - above_alpha) * t198
+    t200 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t199 = np.arctan2(t197, t196 * t198)
-    del t196, t198
-    t200 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    t201 = np.arctan2(t199, t198 * t200)
+    del t198, t200
+    t202 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
     del turn_alpha, turn_beta
-    t201 = np.arctan2(s_lag, c_lag)
+    t203 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t202 = _runtime.select(short, 0.0, np.arctan2(t79, t88))
-    del t79, t88
-    t203 = t201 - t202
-    t204 = t200 - (t194 - t203)
-    del t194, t200
-    t205 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t204 = _runtime.select(short, 0.0, np.arctan2(t81, t90))
+    del t81, t90
+    t205 = t203 - t204
+    t206 = t202 - (t196 - t205)
+    del t196, t202
+    t207 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t206 = t199 - np.arctan2(t187, t186 * t205)
-    del t186, t205
-    t207 = _runtime.wrap(principal_pitch)
+    t208 = t201 - np.arctan2(t189, t188 * t207)
+    del t188, t207
+    t209 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    out_front_elbow_down = t78 + t81
-    del t78, t81
-    up_front_elbow_down = t82 - t83
-    del t82, t83
-    t208 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t209 = 1.0 / np.sqrt(t208)
-    del t208
-    t210 = out_front_elbow_down * t209
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t210)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t209)
-    del t209
-    t211 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t211
-    s_relative_front_elbow_down = t89 + t90
-    del t89, t90
-    c_relative_front_elbow_down = t91 - t92
+    out_front_elbow_down = t80 + t83
+    del t80, t83
+    up_front_elbow_down = t84 - t85
+    del t84, t85
+    t210 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t211 = 1.0 / np.sqrt(t210)
+    del t210
+    t212 = out_front_elbow_down * t211
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t212)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t211)
+    del t211
+    t213 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t213
+    s_relative_front_elbow_down = t91 + t92
     del t91, t92
+    c_relative_front_elbow_down = t93 - t94
+    del t93, t94
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t212 = ahead * stheta2A_front_elbow_down
+    t214 = ahead * stheta2A_front_elbow_down
     del stheta2A_front_elbow_down
-    t213 = t212 - higher * ctheta2A_front_elbow_down
+    t215 = t214 - higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t214 = p_1_front_elbow_down * v_2_front_elbow_down + t213 * v_1_front_elbow_down
+    t216 = p_1_front_elbow_down * v_2_front_elbow_down + t215 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t215 = np.abs(whole_alpha_front_elbow_down)
-    t216 = np.abs(t214) - t215
-    t217 = np.maximum(t216 * 9.094947017729282e-13, -t216)
-    spent_alpha_front_elbow_down = t217 <= t99
-    del t217
-    t218 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t217 = np.abs(whole_alpha_front_elbow_down)
+    t218 = np.abs(t216) - t217
+    t219 = np.maximum(t218 * 9.094947017729282e-13, -t218)
+    spent_alpha_front_elbow_down = t219 <= t101
+    del t219
+    t220 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t219 = t218 * drawn_front_elbow_down
-    t220 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t213
-    t221 = t219 - _runtime.sign(-t214) * t220
-    del t214, t220
-    t222 = np.abs(t221)
-    t223 = 1.0 - t107 * drawn_front_elbow_down
-    t224 = t106 * np.sqrt(fore + L1 * (t223 * t223)) / 2000000.0
-    del fore, t106, t223
+    t221 = t220 * drawn_front_elbow_down
+    t222 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t215
+    t223 = t221 - _runtime.sign(-t216) * t222
+    del t216, t222
+    t224 = np.abs(t223)
+    t225 = 1.0 - t109 * drawn_front_elbow_down
+    t226 = t108 * np.sqrt(fore + L1 * (t225 * t225)) / 2000000.0
+    del fore, t108, t225
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t225 = t105 * (t224 + np.abs(tilt_front_elbow_down))
-    del t105, t224, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t225, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t222 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t218
-    del t218
-    t226 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t113, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226 / heavy_1_alpha_front_elbow_down, 0.0)
-    t227 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t228 = _runtime.select(spent_alpha_front_elbow_down, t227, 0.0)
-    del t227
-    t229 = -(_runtime.FEASIBILITY * (t75 + t228)) <= -t216
-    del t228
-    t230 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    t227 = t107 * (t226 + np.abs(tilt_front_elbow_down))
+    del t107, t226, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t227, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t224 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t220
+    del t220
+    t228 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t115, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t228 / heavy_1_alpha_front_elbow_down, 0.0)
+    t229 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t230 = _runtime.select(spent_alpha_front_elbow_down, t229, 0.0)
+    del t229
+    t231 = -(_runtime.FEASIBILITY * (t77 + t230)) <= -t218
+    del t230
+    t232 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
     del gain_1_alpha_front_elbow_down
-    t231 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t233 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
     del gain_0_alpha_front_elbow_down
-    t232 = _runtime.select(-t216 < 0.0, t230 / (t119 + t230 + t231), 0.0)
-    del t230, t231
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t232, 0.0)
-    del t232
-    t233 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    del slope_aside_alpha_front_elbow_down
-    t234 = t75 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t235 = t216 * share_alpha_front_elbow_down * t233 / (t226 + t234)
+    t234 = _runtime.select(-t218 < 0.0, t232 / (t121 + t232 + t233), 0.0)
+    del t232, t233
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t234, 0.0)
     del t234
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t235, 0.0)
-    del t235
-    lack_alpha_front_elbow_down = t216 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t216
-    t236 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t237 = t75 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    t235 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    del slope_aside_alpha_front_elbow_down
+    t236 = t77 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t237 = t218 * share_alpha_front_elbow_down * t235 / (t228 + t236)
+    del t236
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t237, 0.0)
+    del t237
+    lack_alpha_front_elbow_down = t218 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t218
+    t238 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t239 = t77 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t238 = 1.0 / (t222 + t237)
-    del t222, t237
-    t239 = lack_alpha_front_elbow_down * t238
+    t240 = 1.0 / (t224 + t239)
+    del t224, t239
+    t241 = lack_alpha_front_elbow_down * t240
     del lack_alpha_front_elbow_down
-    t240 = (t236 * t238 <= 9.094947017729282e-13) & (0.0 < t239)
-    del t236, t238
-    t241 = _runtime.sign(-t221) * _runtime.select(t240, t239, 0.0)
-    del t221, t239, t240
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241, 0.0)
-    del t241
-    t242 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    t242 = (t238 * t240 <= 9.094947017729282e-13) & (0.0 < t241)
+    del t238, t240
+    t243 = _runtime.sign(-t223) * _runtime.select(t242, t241, 0.0)
+    del t223, t241, t242
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243, 0.0)
+    del t243
+    t244 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
     del aside_alpha_front_elbow_down
-    t243 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t242 - t107 * t243, 0.0)
-    del t242, t243
-    t244 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t245 = np.sqrt(1.0 + t244)
-    del t244
-    t246 = 1.0 / t245
-    t247 = p_1_front_elbow_down * t246 - t213 * lean_alpha_front_elbow_down * t246
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247, p_1_front_elbow_down)
-    del t247
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t248 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t249 = 1.0 / (t245 * np.sqrt(1.0 + t248))
-    del t245, t248
-    t250 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t251 = t249 + t249 * t250
-    del t250
-    t252 = lean_alpha_front_elbow_down * t249 - turn_alpha_front_elbow_down * t249
+    t245 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t244 - t109 * t245, 0.0)
+    del t244, t245
+    t246 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t247 = np.sqrt(1.0 + t246)
+    del t246
+    t248 = 1.0 / t247
+    t249 = p_1_front_elbow_down * t248 - t215 * lean_alpha_front_elbow_down * t248
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t249, p_1_front_elbow_down)
     del t249
-    t253 = v_1_front_elbow_down * t251 + v_2_front_elbow_down * t252
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t253, v_1_front_elbow_down)
-    del t253
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t254 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t255 = np.maximum(t254 * 9.094947017729282e-13, -t254)
-    spent_beta_front_elbow_down = t255 <= t137
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    t250 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t251 = 1.0 / (t247 * np.sqrt(1.0 + t250))
+    del t247, t250
+    t252 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t253 = t251 + t251 * t252
+    del t252
+    t254 = lean_alpha_front_elbow_down * t251 - turn_alpha_front_elbow_down * t251
+    del t251
+    t255 = v_1_front_elbow_down * t253 + v_2_front_elbow_down * t254
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t255, v_1_front_elbow_down)
     del t255
-    t256 = v_2_front_elbow_down * t251 - v_1_front_elbow_down * t252
-    del t251, t252
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t256, v_2_front_elbow_down)
-    del t256
-    t257 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t256 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t257 = np.maximum(t256 * 9.094947017729282e-13, -t256)
+    spent_beta_front_elbow_down = t257 <= t139
+    del t257
+    t258 = v_2_front_elbow_down * t253 - v_1_front_elbow_down * t254
+    del t253, t254
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t258, v_2_front_elbow_down)
+    del t258
+    t259 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    t258 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t260 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t259 = _runtime.select(spent_alpha_front_elbow_down, t246 * t258 + t213 * t246, t213)
-    del t213, t246, t258
-    t260 = t259 * _runtime.sign(part_beta_front_elbow_down)
+    t261 = _runtime.select(spent_alpha_front_elbow_down, t248 * t260 + t215 * t248, t215)
+    del t215, t248, t260
+    t262 = t261 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t261 = L1 - drawn_front_elbow_down
-    t262 = drawn_front_elbow_down * t257 - t260 * t261
-    t263 = np.abs(t262)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t225, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t263 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t257 + t260)
-    del t257, t260
-    t264 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t113, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264 / heavy_1_beta_front_elbow_down, 0.0)
-    t265 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t266 = _runtime.select(spent_beta_front_elbow_down, t265, 0.0)
-    del t265
-    t267 = -(_runtime.FEASIBILITY * (t116 + t266)) <= -t254
-    del t266
-    t268 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t263 = L1 - drawn_front_elbow_down
+    t264 = drawn_front_elbow_down * t259 - t262 * t263
+    t265 = np.abs(t264)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t227, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t265 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t259 + t262)
+    del t259, t262
+    t266 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t115, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t266 / heavy_1_beta_front_elbow_down, 0.0)
+    t267 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t268 = _runtime.select(spent_beta_front_elbow_down, t267, 0.0)
+    del t267
+    t269 = -(_runtime.FEASIBILITY * (t118 + t268)) <= -t256
+    del t268
+    t270 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
     del gain_1_beta_front_elbow_down
-    t269 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t271 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down
-    t270 = _runtime.select(-t254 < 0.0, t268 / (t149 + t268 + t269), 0.0)
-    del t268, t269
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 0.0)
-    del t270
-    lack_beta_front_elbow_down = t254 * (1.0 - share_beta_front_elbow_down)
-    t271 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t272 = t116 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t272 = _runtime.select(-t256 < 0.0, t270 / (t151 + t270 + t271), 0.0)
+    del t270, t271
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t272, 0.0)
+    del t272
+    lack_beta_front_elbow_down = t256 * (1.0 - share_beta_front_elbow_down)
+    t273 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t274 = t118 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t273 = 1.0 / (t263 + t272)
-    del t263, t272
-    t274 = lack_beta_front_elbow_down * t273
+    t275 = 1.0 / (t265 + t274)
+    del t265, t274
+    t276 = lack_beta_front_elbow_down * t275
     del lack_beta_front_elbow_down
-    t275 = (t271 * t273 <= 9.094947017729282e-13) & (0.0 < t274)
-    del t271, t273
-    t276 = _runtime.sign(-t262) * _runtime.select(t275, t274, 0.0)
-    del t262, t274, t275
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t276, 0.0)
-    del t276
-    t277 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    t277 = (t273 * t275 <= 9.094947017729282e-13) & (0.0 < t276)
+    del t273, t275
+    t278 = _runtime.sign(-t264) * _runtime.select(t277, t276, 0.0)
+    del t264, t276, t277
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t278, 0.0)
+    del t278
+    t279 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t278 = t116 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t280 = t118 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t279 = t254 * share_beta_front_elbow_down * t277 / (t264 + t278)
-    del share_beta_front_elbow_down, t254, t264, t277, t278
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t279, 0.0)
-    del t279
-    t280 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    t281 = t256 * share_beta_front_elbow_down * t279 / (t266 + t280)
+    del share_beta_front_elbow_down, t256, t266, t279, t280
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t281, 0.0)
+    del t281
+    t282 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
     del aside_beta_front_elbow_down
-    t281 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t280 - t107 * t281, 0.0)
-    del t280, t281
-    t282 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t283 = np.sqrt(1.0 + t282)
-    del t282
-    t284 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t285 = 1.0 / (t283 * np.sqrt(1.0 + t284))
+    t283 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t282 - t109 * t283, 0.0)
+    del t282, t283
+    t284 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t285 = np.sqrt(1.0 + t284)
     del t284
-    t286 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t287 = t285 + t285 * t286
+    t286 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t287 = 1.0 / (t285 * np.sqrt(1.0 + t286))
     del t286
-    t288 = lean_beta_front_elbow_down * t285 - turn_beta_front_elbow_down * t285
-    del t285
-    t289 = v_1_alpha_front_elbow_down * t287 + v_2_alpha_front_elbow_down * t288
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289, v_1_alpha_front_elbow_down)
-    del t289
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t290 = 1.0 / t283
-    del t283
-    t291 = p_1_alpha_front_elbow_down * t290 - t259 * lean_beta_front_elbow_down * t290
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291, p_1_alpha_front_elbow_down)
+    t288 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t289 = t287 + t287 * t288
+    del t288
+    t290 = lean_beta_front_elbow_down * t287 - turn_beta_front_elbow_down * t287
+    del t287
+    t291 = v_1_alpha_front_elbow_down * t289 + v_2_alpha_front_elbow_down * t290
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291, v_1_alpha_front_elbow_down)
     del t291
-    t292 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t293 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t292 = 1.0 / t285
+    del t285
+    t293 = p_1_alpha_front_elbow_down * t292 - t261 * lean_beta_front_elbow_down * t292
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t293, p_1_alpha_front_elbow_down)
+    del t293
+    t294 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t295 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del sigma_uv_front_elbow_down
-    t294 = t73 & t229 & t267 & (t147 <= t292 - t293) & (t147 <= -(t293 + t292))
-    del t229, t267
-    t295 = v_2_alpha_front_elbow_down * t287 - v_1_alpha_front_elbow_down * t288
-    del t287, t288, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t295, v_2_alpha_front_elbow_down)
-    del t295, v_2_alpha_front_elbow_down
-    t296 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t293 <= _runtime.VANISHING * (64.0 * t296)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t296, -t293)
-    t297 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t296 = t75 & t231 & t269 & (t149 <= t294 - t295) & (t149 <= -(t295 + t294))
+    del t231, t269
+    t297 = v_2_alpha_front_elbow_down * t289 - v_1_alpha_front_elbow_down * t290
+    del t289, t290, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t297, v_2_alpha_front_elbow_down)
+    del t297, v_2_alpha_front_elbow_down
+    t298 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t295 <= _runtime.VANISHING * (64.0 * t298)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t298, -t295)
+    t299 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t298 = _runtime.select(spent_beta_front_elbow_down, t290 * t297 + t259 * t290, t259)
-    del t259, t290, t297
-    t299 = t298 * _runtime.sign(v_2_beta_front_elbow_down)
-    t300 = _runtime.select(parallel_front_elbow_down, t299, t292)
-    del t292, t299
-    t301 = whole_y_front_elbow_down + t300
-    t302 = whole_y_front_elbow_down - t300
-    below_beta_0_front_elbow_down = np.maximum(t301, t172)
-    above_beta_0_front_elbow_down = np.maximum(t302, t172)
-    t303 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t300 = _runtime.select(spent_beta_front_elbow_down, t292 * t299 + t261 * t292, t261)
+    del t261, t292, t299
+    t301 = t300 * _runtime.sign(v_2_beta_front_elbow_down)
+    t302 = _runtime.select(parallel_front_elbow_down, t301, t294)
+    del t294, t301
+    t303 = whole_y_front_elbow_down + t302
+    t304 = whole_y_front_elbow_down - t302
+    below_beta_0_front_elbow_down = np.maximum(t303, t174)
+    above_beta_0_front_elbow_down = np.maximum(t304, t174)
+    t305 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t304 = v_2_beta_front_elbow_down * (t303 / total_beta_0_front_elbow_down)
-    del t303, total_beta_0_front_elbow_down
-    t305 = t298 - t304
-    del t304
-    left_along_front_elbow_down = L1 - np.abs(t305)
-    t306 = left_along_front_elbow_down * 9.094947017729282e-13
-    t307 = np.maximum(-t306, left_along_front_elbow_down)
+    t306 = v_2_beta_front_elbow_down * (t305 / total_beta_0_front_elbow_down)
+    del t305, total_beta_0_front_elbow_down
+    t307 = t300 - t306
     del t306
-    spent_along_front_elbow_down = t307 <= t176
-    del t307
-    t308 = _runtime.select(spent_along_front_elbow_down, t296 / (t177 - t293), 0.0)
-    del t296
-    t309 = -(_runtime.FEASIBILITY * (play * (1.0 + t308)))
+    left_along_front_elbow_down = L1 - np.abs(t307)
+    t308 = left_along_front_elbow_down * 9.094947017729282e-13
+    t309 = np.maximum(-t308, left_along_front_elbow_down)
     del t308
-    t310 = t294 & (t147 <= t301) & (t147 <= t302) & (t309 <= left_along_front_elbow_down)
-    del t294, t301, t302, t309
-    t311 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    spent_along_front_elbow_down = t309 <= t178
+    del t309
+    t310 = _runtime.select(spent_along_front_elbow_down, t298 / (t179 - t295), 0.0)
+    del t298
+    t311 = -(_runtime.FEASIBILITY * (play * (1.0 + t310)))
+    del t310
+    t312 = t296 & (t149 <= t303) & (t149 <= t304) & (t311 <= left_along_front_elbow_down)
+    del t296, t303, t304, t311
+    t313 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t312 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t313 = v_2_beta_front_elbow_down * t311 / (t293 * t293 + t312)
-    del t293, t311, t312
-    t314 = whole_y_front_elbow_down * (t313 * _runtime.sign(-t305))
-    del t305, t313
-    t315 = _runtime.select(spent_along_front_elbow_down, t300 + t314, t300)
-    del t300, t314
-    t316 = whole_y_front_elbow_down + t315
-    t317 = whole_y_front_elbow_down - t315
-    del t315, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t316, t172)
-    above_beta_front_elbow_down = np.maximum(t317, t172)
-    t318 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t314 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t315 = v_2_beta_front_elbow_down * t313 / (t295 * t295 + t314)
+    del t295, t313, t314
+    t316 = whole_y_front_elbow_down * (t315 * _runtime.sign(-t307))
+    del t307, t315
+    t317 = _runtime.select(spent_along_front_elbow_down, t302 + t316, t302)
+    del t302, t316
+    t318 = whole_y_front_elbow_down + t317
+    t319 = whole_y_front_elbow_down - t317
+    del t317, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t318, t174)
+    above_beta_front_elbow_down = np.maximum(t319, t174)
+    t320 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t319 = 1.0 / total_beta_front_elbow_down
+    t321 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t320 = t318 * t319
-    del t318
-    t321 = t298 - v_2_beta_front_elbow_down * t320
-    del t298, v_2_beta_front_elbow_down
-    t322 = L1 + t321
-    t323 = t310 & (t147 <= t316) & (t147 <= t317) & (t147 <= t322)
-    del t310, t316, t317
-    t324 = L1 - t321
-    unreachable_2 = np.logical_not(t323 & (t147 <= t324))
-    del t323
-    t325 = _runtime.poison(invalid | unreachable_2)
-    t326 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t327 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
+    t322 = t320 * t321
+    del t320
+    t323 = t300 - v_2_beta_front_elbow_down * t322
+    del t300, v_2_beta_front_elbow_down
+    t324 = L1 + t323
+    t325 = t312 & (t149 <= t318) & (t149 <= t319) & (t149 <= t324)
+    del t312, t318, t319
+    t326 = L1 - t323
+    unreachable_2 = np.logical_not(t325 & (t149 <= t326))
+    del t325
+    t327 = _runtime.poison(invalid | unreachable_2)
+    t328 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t329 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t328 = _runtime.select(folded, 0.0, t326) + t327
-    del t326
-    below_alpha_front_elbow_down = np.maximum(t322, t172)
-    del t322
-    above_alpha_front_elbow_down = np.maximum(t324, t172)
+    t330 = _runtime.select(folded, 0.0, t328) + t329
+    del t328
+    below_alpha_front_elbow_down = np.maximum(t324, t174)
     del t324
-    t329 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    above_alpha_front_elbow_down = np.maximum(t326, t174)
+    del t326
+    t331 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t330 = 1.0 / total_alpha_front_elbow_down
+    t332 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t331 = t329 * t330
-    del t329
-    t332 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t333 = t331 * t332
+    del t331
+    t334 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t333 = np.arctan2(t331, t330 * t332)
-    del t330, t332
-    t334 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    t335 = np.arctan2(t333, t332 * t334)
+    del t332, t334
+    t336 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t335 = t201 + t202
-    del t201, t202
-    t336 = t334 - (t327 - t335)
-    del t327, t334
-    t337 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t337 = t203 + t204
+    del t203, t204
+    t338 = t336 - (t329 - t337)
+    del t329, t336
+    t339 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t338 = t333 - np.arctan2(t320, t319 * t337)
-    del t319, t337
-    t339 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t54))
-    del t3, t54
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t85)
-    del t85
-    p_1_rear_elbow_up = t86 + ahead * ctheta2A_rear_elbow_up
-    del t86
-    t340 = t93 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t93
-    t341 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t340
-    margin_alpha_rear_elbow_up = t215 - np.abs(t341)
-    del t215
-    t342 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t343 = np.maximum(-t342, margin_alpha_rear_elbow_up)
-    del t342
-    spent_alpha_rear_elbow_up = t343 <= t99
-    del t343
-    t344 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t340
-    t345 = t219 - _runtime.sign(-t341) * t344
-    del t219, t341, t344
-    t346 = np.abs(t345)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t346 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t113, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t226 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t347 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t348 = _runtime.select(spent_alpha_rear_elbow_up, t347, 0.0)
-    del t347
-    t349 = -(_runtime.FEASIBILITY * (t75 + t348)) <= margin_alpha_rear_elbow_up
-    del t348
-    t350 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    t340 = t335 - np.arctan2(t322, t321 * t339)
+    del t321, t339
+    t341 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t56))
+    del t3, t56
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t87)
+    del t87
+    p_1_rear_elbow_up = t88 + ahead * ctheta2A_rear_elbow_up
+    del t88
+    t342 = t95 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t95
+    t343 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t342
+    margin_alpha_rear_elbow_up = t217 - np.abs(t343)
+    del t217
+    t344 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t345 = np.maximum(-t344, margin_alpha_rear_elbow_up)
+    del t344
+    spent_alpha_rear_elbow_up = t345 <= t101
+    del t345
+    t346 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t342
+    t347 = t221 - _runtime.sign(-t343) * t346
+    del t221, t343, t346
+    t348 = np.abs(t347)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t348 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t115, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t228 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t349 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t350 = _runtime.select(spent_alpha_rear_elbow_up, t349, 0.0)
+    del t349
+    t351 = -(_runtime.FEASIBILITY * (t77 + t350)) <= margin_alpha_rear_elbow_up
+    del t350
+    t352 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     del gain_1_alpha_rear_elbow_up
-    t351 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t353 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up
-    t352 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t350 / (t119 + t350 + t351), 0.0)
-    del t350, t351
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352, 0.0)
-    del t352
-    t353 = t233 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t233
-    t354 = t75 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t354 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t352 / (t121 + t352 + t353), 0.0)
+    del t352, t353
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t354, 0.0)
+    del t354
+    t355 = t235 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t235
+    t356 = t77 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t353 / (t226 + t354)), 0.0)
-    del t226, t353, t354
-    t355 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t355 / (t228 + t356)), 0.0)
+    del t228, t355, t356
+    t357 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del margin_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t356 = t75 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t357 = 1.0 / (t346 + t356)
-    del t346, t356
-    t358 = -(heavy_0_alpha_rear_elbow_up * t355 * t357) <= 9.094947017729282e-13
+    t358 = t77 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t359 = 1.0 / (t348 + t358)
+    del t348, t358
+    t360 = -(heavy_0_alpha_rear_elbow_up * t357 * t359) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t359 = -(t355 * t357)
-    del t355, t357
-    t360 = _runtime.select(t358 & (0.0 < t359), t359, 0.0)
-    del t358, t359
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t345) * t360, 0.0)
-    del t345, t360
-    t361 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t361 = -(t357 * t359)
+    del t357, t359
+    t362 = _runtime.select(t360 & (0.0 < t361), t361, 0.0)
+    del t360, t361
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t347) * t362, 0.0)
+    del t347, t362
+    t363 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t362 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t361 - t107 * t362, 0.0)
-    del t361, t362
-    t363 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t364 = np.sqrt(1.0 + t363)
-    del t363
-    t365 = 1.0 / t364
-    t366 = p_1_rear_elbow_up * t365 - t340 * lean_alpha_rear_elbow_up * t365
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t366, p_1_rear_elbow_up)
-    del t366
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t367 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t368 = 1.0 / (t364 * np.sqrt(1.0 + t367))
-    del t364, t367
-    t369 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t370 = t368 + t368 * t369
-    del t369
-    t371 = lean_alpha_rear_elbow_up * t368 - turn_alpha_rear_elbow_up * t368
+    t364 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t363 - t109 * t364, 0.0)
+    del t363, t364
+    t365 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t366 = np.sqrt(1.0 + t365)
+    del t365
+    t367 = 1.0 / t366
+    t368 = p_1_rear_elbow_up * t367 - t342 * lean_alpha_rear_elbow_up * t367
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t368, p_1_rear_elbow_up)
     del t368
-    t372 = v_1_front_elbow_down * t370 + v_2_front_elbow_down * t371
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t372, v_1_front_elbow_down)
-    del t372
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t373 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t374 = np.maximum(t373 * 9.094947017729282e-13, -t373)
-    spent_beta_rear_elbow_up = t374 <= t137
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    t369 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t370 = 1.0 / (t366 * np.sqrt(1.0 + t369))
+    del t366, t369
+    t371 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t372 = t370 + t370 * t371
+    del t371
+    t373 = lean_alpha_rear_elbow_up * t370 - turn_alpha_rear_elbow_up * t370
+    del t370
+    t374 = v_1_front_elbow_down * t372 + v_2_front_elbow_down * t373
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t374, v_1_front_elbow_down)
     del t374
-    t375 = v_2_front_elbow_down * t370 - v_1_front_elbow_down * t371
-    del t370, t371, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t375, v_2_front_elbow_down)
-    del t375, v_2_front_elbow_down
-    t376 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t375 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t376 = np.maximum(t375 * 9.094947017729282e-13, -t375)
+    spent_beta_rear_elbow_up = t376 <= t139
+    del t376
+    t377 = v_2_front_elbow_down * t372 - v_1_front_elbow_down * t373
+    del t372, t373, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t377, v_2_front_elbow_down)
+    del t377, v_2_front_elbow_down
+    t378 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    t377 = t365 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t379 = t367 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t378 = _runtime.select(spent_alpha_rear_elbow_up, t377 + t340 * t365, t340)
-    del t340, t365, t377
-    t379 = t378 * _runtime.sign(part_beta_rear_elbow_up)
+    t380 = _runtime.select(spent_alpha_rear_elbow_up, t379 + t342 * t367, t342)
+    del t342, t367, t379
+    t381 = t380 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t380 = drawn_front_elbow_down * t376 - t261 * t379
-    del t261
-    t381 = np.abs(t380)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t225, 1.0)
-    del t225
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t381 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t376 + t379)
-    del t376, t379
-    t382 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t113, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t382 / heavy_1_beta_rear_elbow_up, 0.0)
-    t383 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t384 = _runtime.select(spent_beta_rear_elbow_up, t383, 0.0)
-    del t383
-    t385 = -(_runtime.FEASIBILITY * (t116 + t384)) <= -t373
-    del t384
-    t386 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t382 = drawn_front_elbow_down * t378 - t263 * t381
+    del t263
+    t383 = np.abs(t382)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t227, 1.0)
+    del t227
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t383 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t378 + t381)
+    del t378, t381
+    t384 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t115, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384 / heavy_1_beta_rear_elbow_up, 0.0)
+    t385 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t386 = _runtime.select(spent_beta_rear_elbow_up, t385, 0.0)
+    del t385
+    t387 = -(_runtime.FEASIBILITY * (t118 + t386)) <= -t375
+    del t386
+    t388 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
     del gain_1_beta_rear_elbow_up
-    t387 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t389 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
     del gain_0_beta_rear_elbow_up
-    t388 = _runtime.select(-t373 < 0.0, t386 / (t149 + t386 + t387), 0.0)
-    del t386, t387
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388, 0.0)
-    del t388
-    lack_beta_rear_elbow_up = t373 * (1.0 - share_beta_rear_elbow_up)
-    t389 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t390 = t116 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t390 = _runtime.select(-t375 < 0.0, t388 / (t151 + t388 + t389), 0.0)
+    del t388, t389
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t390, 0.0)
+    del t390
+    lack_beta_rear_elbow_up = t375 * (1.0 - share_beta_rear_elbow_up)
+    t391 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t392 = t118 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t391 = 1.0 / (t381 + t390)
-    del t381, t390
-    t392 = lack_beta_rear_elbow_up * t391
+    t393 = 1.0 / (t383 + t392)
+    del t383, t392
+    t394 = lack_beta_rear_elbow_up * t393
     del lack_beta_rear_elbow_up
-    t393 = (t389 * t391 <= 9.094947017729282e-13) & (0.0 < t392)
-    del t389, t391
-    t394 = _runtime.sign(-t380) * _runtime.select(t393, t392, 0.0)
-    del t380, t392, t393
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t394, 0.0)
-    del t394
-    t395 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    t395 = (t391 * t393 <= 9.094947017729282e-13) & (0.0 < t394)
+    del t391, t393
+    t396 = _runtime.sign(-t382) * _runtime.select(t395, t394, 0.0)
+    del t382, t394, t395
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t396, 0.0)
+    del t396
+    t397 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t396 = t116 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t398 = t118 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t397 = t373 * share_beta_rear_elbow_up * t395 / (t382 + t396)
-    del share_beta_rear_elbow_up, t373, t382, t395, t396
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t397, 0.0)
-    del t397
-    t398 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    t399 = t375 * share_beta_rear_elbow_up * t397 / (t384 + t398)
+    del share_beta_rear_elbow_up, t375, t384, t397, t398
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399, 0.0)
+    del t399
+    t400 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
     del aside_beta_rear_elbow_up
-    t399 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    t401 = drawn_front_elbow_down * turn_beta_rear_elbow_up
     del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t398 - t107 * t399, 0.0)
-    del t398, t399
-    t400 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t401 = np.sqrt(1.0 + t400)
-    del t400
-    t402 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t403 = 1.0 / (t401 * np.sqrt(1.0 + t402))
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t400 - t109 * t401, 0.0)
+    del t400, t401
+    t402 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t403 = np.sqrt(1.0 + t402)
     del t402
-    t404 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t405 = t403 + t403 * t404
+    t404 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t405 = 1.0 / (t403 * np.sqrt(1.0 + t404))
     del t404
-    t406 = lean_beta_rear_elbow_up * t403 - turn_beta_rear_elbow_up * t403
-    del t403
-    t407 = v_1_alpha_rear_elbow_up * t405 + v_2_alpha_rear_elbow_up * t406
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t407, v_1_alpha_rear_elbow_up)
-    del t407
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t408 = 1.0 / t401
-    del t401
-    t409 = p_1_alpha_rear_elbow_up * t408 - t378 * lean_beta_rear_elbow_up * t408
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t409, p_1_alpha_rear_elbow_up)
+    t406 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t407 = t405 + t405 * t406
+    del t406
+    t408 = lean_beta_rear_elbow_up * t405 - turn_beta_rear_elbow_up * t405
+    del t405
+    t409 = v_1_alpha_rear_elbow_up * t407 + v_2_alpha_rear_elbow_up * t408
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t409, v_1_alpha_rear_elbow_up)
     del t409
-    t410 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t411 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t410 = 1.0 / t403
+    del t403
+    t411 = p_1_alpha_rear_elbow_up * t410 - t380 * lean_beta_rear_elbow_up * t410
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t411, p_1_alpha_rear_elbow_up)
+    del t411
+    t412 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t413 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t412 = t73 & t349 & t385 & (t147 <= t410 - t411) & (t147 <= -(t411 + t410))
-    del t349, t385
-    t413 = v_2_alpha_rear_elbow_up * t405 - v_1_alpha_rear_elbow_up * t406
-    del t405, t406, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t413, v_2_alpha_rear_elbow_up)
-    del t413, v_2_alpha_rear_elbow_up
-    t414 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t411 <= _runtime.VANISHING * (64.0 * t414)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t414, -t411)
-    t415 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t414 = t75 & t351 & t387 & (t149 <= t412 - t413) & (t149 <= -(t413 + t412))
+    del t351, t387
+    t415 = v_2_alpha_rear_elbow_up * t407 - v_1_alpha_rear_elbow_up * t408
+    del t407, t408, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t415, v_2_alpha_rear_elbow_up)
+    del t415, v_2_alpha_rear_elbow_up
+    t416 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t413 <= _runtime.VANISHING * (64.0 * t416)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t416, -t413)
+    t417 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    t416 = _runtime.select(spent_beta_rear_elbow_up, t408 * t415 + t378 * t408, t378)
-    del t378, t408, t415
-    t417 = _runtime.select(parallel_rear_elbow_up, t416 * _runtime.sign(v_2_beta_rear_elbow_up), t410)
-    del t410
-    t418 = whole_y_rear_elbow_up + t417
-    t419 = whole_y_rear_elbow_up - t417
-    below_beta_0_rear_elbow_up = np.maximum(t418, t172)
-    above_beta_0_rear_elbow_up = np.maximum(t419, t172)
-    t420 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t418 = _runtime.select(spent_beta_rear_elbow_up, t410 * t417 + t380 * t410, t380)
+    del t380, t410, t417
+    t419 = _runtime.select(parallel_rear_elbow_up, t418 * _runtime.sign(v_2_beta_rear_elbow_up), t412)
+    del t412
+    t420 = whole_y_rear_elbow_up + t419
+    t421 = whole_y_rear_elbow_up - t419
+    below_beta_0_rear_elbow_up = np.maximum(t420, t174)
+    above_beta_0_rear_elbow_up = np.maximum(t421, t174)
+    t422 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t421 = v_2_beta_rear_elbow_up * (t420 / total_beta_0_rear_elbow_up)
-    del t420, total_beta_0_rear_elbow_up
-    t422 = t416 - t421
-    del t421
-    left_along_rear_elbow_up = L1 - np.abs(t422)
-    t423 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t423, left_along_rear_elbow_up) <= t176
+    t423 = v_2_beta_rear_elbow_up * (t422 / total_beta_0_rear_elbow_up)
+    del t422, total_beta_0_rear_elbow_up
+    t424 = t418 - t423
     del t423
-    t424 = _runtime.select(spent_along_rear_elbow_up, t414 / (t177 - t411), 0.0)
-    del t414
-    t425 = -(_runtime.FEASIBILITY * (play * (1.0 + t424)))
-    del t424
-    t426 = t412 & (t147 <= t418) & (t147 <= t419) & (t425 <= left_along_rear_elbow_up)
-    del t412, t418, t419, t425
-    t427 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    left_along_rear_elbow_up = L1 - np.abs(t424)
+    t425 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t425, left_along_rear_elbow_up) <= t178
+    del t425
+    t426 = _runtime.select(spent_along_rear_elbow_up, t416 / (t179 - t413), 0.0)
+    del t416
+    t427 = -(_runtime.FEASIBILITY * (play * (1.0 + t426)))
+    del t426
+    t428 = t414 & (t149 <= t420) & (t149 <= t421) & (t427 <= left_along_rear_elbow_up)
+    del t414, t420, t421, t427
+    t429 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t428 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t429 = v_2_beta_rear_elbow_up * t427 / (t411 * t411 + t428)
-    del t411, t427, t428
-    t430 = whole_y_rear_elbow_up * (t429 * _runtime.sign(-t422))
-    del t422, t429
-    t431 = _runtime.select(spent_along_rear_elbow_up, t417 + t430, t417)
-    del t417, t430
-    t432 = whole_y_rear_elbow_up + t431
-    t433 = whole_y_rear_elbow_up - t431
-    del t431, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t432, t172)
-    above_beta_rear_elbow_up = np.maximum(t433, t172)
-    t434 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t430 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t431 = v_2_beta_rear_elbow_up * t429 / (t413 * t413 + t430)
+    del t413, t429, t430
+    t432 = whole_y_rear_elbow_up * (t431 * _runtime.sign(-t424))
+    del t424, t431
+    t433 = _runtime.select(spent_along_rear_elbow_up, t419 + t432, t419)
+    del t419, t432
+    t434 = whole_y_rear_elbow_up + t433
+    t435 = whole_y_rear_elbow_up - t433
+    del t433, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t434, t174)
+    above_beta_rear_elbow_up = np.maximum(t435, t174)
+    t436 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t435 = 1.0 / total_beta_rear_elbow_up
+    t437 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t436 = t434 * t435
-    del t434
-    t437 = t416 - v_2_beta_rear_elbow_up * t436
-    del t416, v_2_beta_rear_elbow_up
-    t438 = L1 + t437
-    t439 = t426 & (t147 <= t432) & (t147 <= t433) & (t147 <= t438)
-    del t426, t432, t433
-    t440 = L1 - t437
-    unreachable_3 = np.logical_not(t439 & (t147 <= t440))
-    del t439
-    t441 = _runtime.poison(invalid | unreachable_3)
-    t442 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    t438 = t436 * t437
+    del t436
+    t439 = t418 - v_2_beta_rear_elbow_up * t438
+    del t418, v_2_beta_rear_elbow_up
+    t440 = L1 + t439
+    t441 = t428 & (t149 <= t434) & (t149 <= t435) & (t149 <= t440)
+    del t428, t434, t435
+    t442 = L1 - t439
+    unreachable_3 = np.logical_not(t441 & (t149 <= t442))
+    del t441
+    t443 = _runtime.poison(invalid | unreachable_3)
+    t444 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t443 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    t445 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t444 = t442 + t443
-    del t442
-    below_alpha_rear_elbow_up = np.maximum(t438, t172)
-    del t438
-    above_alpha_rear_elbow_up = np.maximum(t440, t172)
+    t446 = t444 + t445
+    del t444
+    below_alpha_rear_elbow_up = np.maximum(t440, t174)
     del t440
-    t445 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    above_alpha_rear_elbow_up = np.maximum(t442, t174)
+    del t442
+    t447 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t446 = 1.0 / total_alpha_rear_elbow_up
+    t448 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t447 = t445 * t446
-    del t445
-    t448 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t449 = t447 * t448
+    del t447
+    t450 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t449 = np.arctan2(t447, t446 * t448)
-    del t446, t448
-    t450 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    t451 = np.arctan2(t449, t448 * t450)
+    del t448, t450
+    t452 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t451 = t450 + (t335 - t443)
-    del t335, t443, t450
-    t452 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t453 = t452 + (t337 - t445)
+    del t337, t445, t452
+    t454 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t453 = t449 - np.arctan2(t436, t435 * t452)
-    del t435, t452
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t210)
-    del t210
-    p_1_rear_elbow_down = t211 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t211
-    t454 = t212 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t212
-    t455 = v_2 * p_1_rear_elbow_down + v_1 * t454
-    margin_alpha_rear_elbow_down = t96 - np.abs(t455)
-    del t96
-    t456 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t457 = np.maximum(-t456, margin_alpha_rear_elbow_down)
-    del t456
-    spent_alpha_rear_elbow_down = t457 <= t99
-    del t457, t99
-    t458 = _runtime.sign(-t455) * (v_1 * p_1_rear_elbow_down - v_2 * t454)
-    del t455
-    t459 = t101 - t458
-    del t101, t458
-    t460 = np.abs(t459)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t111, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t460 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t112 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t461 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t462 = _runtime.select(spent_alpha_rear_elbow_down, t461, 0.0)
-    del t461
-    t463 = -(_runtime.FEASIBILITY * (t75 + t462)) <= margin_alpha_rear_elbow_down
-    del t462
-    t464 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t455 = t451 - np.arctan2(t438, t437 * t454)
+    del t437, t454
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t212)
+    del t212
+    p_1_rear_elbow_down = t213 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t213
+    t456 = t214 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t214
+    t457 = v_2 * p_1_rear_elbow_down + v_1 * t456
+    margin_alpha_rear_elbow_down = t98 - np.abs(t457)
+    del t98
+    t458 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t459 = np.maximum(-t458, margin_alpha_rear_elbow_down)
+    del t458
+    spent_alpha_rear_elbow_down = t459 <= t101
+    del t101, t459
+    t460 = _runtime.sign(-t457) * (v_1 * p_1_rear_elbow_down - v_2 * t456)
+    del t457
+    t461 = t103 - t460
+    del t103, t460
+    t462 = np.abs(t461)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t462 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t115, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t114 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t463 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t464 = _runtime.select(spent_alpha_rear_elbow_down, t463, 0.0)
+    del t463
+    t465 = -(_runtime.FEASIBILITY * (t77 + t464)) <= margin_alpha_rear_elbow_down
+    del t464
+    t466 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     del gain_1_alpha_rear_elbow_down
-    t465 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t467 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down
-    t466 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t464 / (t119 + t464 + t465), 0.0)
-    del t119, t464, t465
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t466, 0.0)
-    del t466
-    t467 = t121 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t121
-    t468 = t75 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    t468 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t466 / (t121 + t466 + t467), 0.0)
+    del t121, t466, t467
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t468, 0.0)
+    del t468
+    t469 = t123 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t123
+    t470 = t77 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t467 / (t112 + t468)), 0.0)
-    del t112, t467, t468
-    t469 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t469 / (t114 + t470)), 0.0)
+    del t114, t469, t470
+    t471 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t470 = t75 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t75
-    t471 = 1.0 / (t460 + t470)
-    del t460, t470
-    t472 = -(heavy_0_alpha_rear_elbow_down * t469 * t471)
+    t472 = t77 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    del t77
+    t473 = 1.0 / (t462 + t472)
+    del t462, t472
+    t474 = -(heavy_0_alpha_rear_elbow_down * t471 * t473)
     del heavy_0_alpha_rear_elbow_down
-    t473 = -(t469 * t471)
-    del t469, t471
-    t474 = (t472 <= 9.094947017729282e-13) & (0.0 < t473)
-    del t472
-    t475 = _runtime.sign(-t459) * _runtime.select(t474, t473, 0.0)
-    del t459, t473, t474
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t475, 0.0)
-    del t475
-    t476 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
-    del aside_alpha_rear_elbow_down
-    t477 = t476 - t107 * (drawn * turn_alpha_rear_elbow_down)
-    del t476
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t477, 0.0)
+    t475 = -(t471 * t473)
+    del t471, t473
+    t476 = (t474 <= 9.094947017729282e-13) & (0.0 < t475)
+    del t474
+    t477 = _runtime.sign(-t461) * _runtime.select(t476, t475, 0.0)
+    del t461, t475, t476
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t477, 0.0)
     del t477
-    t478 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t479 = np.sqrt(1.0 + t478)
+    t478 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    del aside_alpha_rear_elbow_down
+    t479 = t478 - t109 * (drawn * turn_alpha_rear_elbow_down)
     del t478
-    t480 = 1.0 / t479
-    t481 = p_1_rear_elbow_down * t480 - t454 * lean_alpha_rear_elbow_down * t480
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t481, p_1_rear_elbow_down)
-    del t481
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t482 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t483 = 1.0 / (t479 * np.sqrt(1.0 + t482))
-    del t479, t482
-    t484 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t485 = t483 + t483 * t484
-    del t484
-    t486 = lean_alpha_rear_elbow_down * t483 - turn_alpha_rear_elbow_down * t483
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t479, 0.0)
+    del t479
+    t480 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t481 = np.sqrt(1.0 + t480)
+    del t480
+    t482 = 1.0 / t481
+    t483 = p_1_rear_elbow_down * t482 - t456 * lean_alpha_rear_elbow_down * t482
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t483, p_1_rear_elbow_down)
     del t483
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t485 + v_2 * t486, v_1)
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    t484 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t485 = 1.0 / (t481 * np.sqrt(1.0 + t484))
+    del t481, t484
+    t486 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t487 = t485 + t485 * t486
+    del t486
+    t488 = lean_alpha_rear_elbow_down * t485 - turn_alpha_rear_elbow_down * t485
+    del t485
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t487 + v_2 * t488, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t487 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t488 = np.maximum(t487 * 9.094947017729282e-13, -t487)
-    spent_beta_rear_elbow_down = t488 <= t137
-    del t137, t488
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t485 - v_1 * t486, v_2)
-    del t485, t486, v_1, v_2
-    t489 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    t489 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t490 = np.maximum(t489 * 9.094947017729282e-13, -t489)
+    spent_beta_rear_elbow_down = t490 <= t139
+    del t139, t490
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t487 - v_1 * t488, v_2)
+    del t487, t488, v_1, v_2
+    t491 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    t490 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t492 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t491 = _runtime.select(spent_alpha_rear_elbow_down, t480 * t490 + t454 * t480, t454)
-    del t454, t480, t490
-    t492 = t491 * _runtime.sign(part_beta_rear_elbow_down)
+    t493 = _runtime.select(spent_alpha_rear_elbow_down, t482 * t492 + t456 * t482, t456)
+    del t456, t482, t492
+    t494 = t493 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    t493 = drawn * t489 - t141 * t492
-    del t141
-    t494 = np.abs(t493)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t111, 1.0)
-    del t111
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t489 + t492)
-    del t489, t492
-    t495 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t113, 1.0)
+    t495 = drawn * t491 - t143 * t494
+    del t143
+    t496 = np.abs(t495)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t113, 1.0)
     del t113
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t495 / heavy_1_beta_rear_elbow_down, 0.0)
-    t496 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t497 = _runtime.select(spent_beta_rear_elbow_down, t496, 0.0)
-    del t496
-    t498 = -(_runtime.FEASIBILITY * (t116 + t497)) <= -t487
-    del t497
-    t499 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t491 + t494)
+    del t491, t494
+    t497 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t115, 1.0)
+    del t115
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t497 / heavy_1_beta_rear_elbow_down, 0.0)
+    t498 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t499 = _runtime.select(spent_beta_rear_elbow_down, t498, 0.0)
+    del t498
+    t500 = -(_runtime.FEASIBILITY * (t118 + t499)) <= -t489
+    del t499
+    t501 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
     del gain_1_beta_rear_elbow_down
-    t500 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t502 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down
-    t501 = _runtime.select(-t487 < 0.0, t499 / (t149 + t499 + t500), 0.0)
-    del t149, t499, t500
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t501, 0.0)
-    del t501
-    lack_beta_rear_elbow_down = t487 * (1.0 - share_beta_rear_elbow_down)
-    t502 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t503 = t116 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t503 = _runtime.select(-t489 < 0.0, t501 / (t151 + t501 + t502), 0.0)
+    del t151, t501, t502
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t503, 0.0)
+    del t503
+    lack_beta_rear_elbow_down = t489 * (1.0 - share_beta_rear_elbow_down)
+    t504 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t505 = t118 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t504 = 1.0 / (t494 + t503)
-    del t494, t503
-    t505 = lack_beta_rear_elbow_down * t504
+    t506 = 1.0 / (t496 + t505)
+    del t496, t505
+    t507 = lack_beta_rear_elbow_down * t506
     del lack_beta_rear_elbow_down
-    t506 = (t502 * t504 <= 9.094947017729282e-13) & (0.0 < t505)
-    del t502, t504
-    t507 = _runtime.sign(-t493) * _runtime.select(t506, t505, 0.0)
-    del t493, t505, t506
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t507, 0.0)
-    del t507
-    t508 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    t508 = (t504 * t506 <= 9.094947017729282e-13) & (0.0 < t507)
+    del t504, t506
+    t509 = _runtime.sign(-t495) * _runtime.select(t508, t507, 0.0)
+    del t495, t507, t508
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t509, 0.0)
+    del t509
+    t510 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t509 = t116 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t116
-    t510 = t487 * share_beta_rear_elbow_down * t508 / (t495 + t509)
-    del share_beta_rear_elbow_down, t487, t495, t508, t509
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t510, 0.0)
-    del t510
-    t511 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
-    del aside_beta_rear_elbow_down
-    t512 = t511 - t107 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t107, t511
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t512, 0.0)
+    t511 = t118 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t118
+    t512 = t489 * share_beta_rear_elbow_down * t510 / (t497 + t511)
+    del share_beta_rear_elbow_down, t489, t497, t510, t511
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t512, 0.0)
     del t512
-    t513 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t514 = np.sqrt(1.0 + t513)
-    del t513
-    t515 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t516 = 1.0 / (t514 * np.sqrt(1.0 + t515))
-    del t515
-    t517 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t518 = t516 + t516 * t517
-    del t517
-    t519 = lean_beta_rear_elbow_down * t516 - turn_beta_rear_elbow_down * t516
-    del t516
-    t520 = v_1_alpha_rear_elbow_down * t518 + v_2_alpha_rear_elbow_down * t519
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t520, v_1_alpha_rear_elbow_down)
-    del t520
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t521 = 1.0 / t514
+    t513 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    del aside_beta_rear_elbow_down
+    t514 = t513 - t109 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t109, t513
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t514, 0.0)
     del t514
-    t522 = p_1_alpha_rear_elbow_down * t521 - t491 * lean_beta_rear_elbow_down * t521
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t522, p_1_alpha_rear_elbow_down)
+    t515 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t516 = np.sqrt(1.0 + t515)
+    del t515
+    t517 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t518 = 1.0 / (t516 * np.sqrt(1.0 + t517))
+    del t517
+    t519 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t520 = t518 + t518 * t519
+    del t519
+    t521 = lean_beta_rear_elbow_down * t518 - turn_beta_rear_elbow_down * t518
+    del t518
+    t522 = v_1_alpha_rear_elbow_down * t520 + v_2_alpha_rear_elbow_down * t521
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t522, v_1_alpha_rear_elbow_down)
     del t522
-    t523 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t524 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t523 = 1.0 / t516
+    del t516
+    t524 = p_1_alpha_rear_elbow_down * t523 - t493 * lean_beta_rear_elbow_down * t523
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t524, p_1_alpha_rear_elbow_down)
+    del t524
+    t525 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t526 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t525 = t73 & t463 & t498 & (t147 <= t523 - t524) & (t147 <= -(t524 + t523))
-    del t463, t498, t73
-    t526 = v_2_alpha_rear_elbow_down * t518 - v_1_alpha_rear_elbow_down * t519
-    del t518, t519, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t526, v_2_alpha_rear_elbow_down)
-    del t526, v_2_alpha_rear_elbow_down
-    t527 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t524 <= _runtime.VANISHING * (64.0 * t527)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t527, -t524)
-    t528 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t527 = t75 & t465 & t500 & (t149 <= t525 - t526) & (t149 <= -(t526 + t525))
+    del t465, t500, t75
+    t528 = v_2_alpha_rear_elbow_down * t520 - v_1_alpha_rear_elbow_down * t521
+    del t520, t521, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t528, v_2_alpha_rear_elbow_down)
+    del t528, v_2_alpha_rear_elbow_down
+    t529 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t526 <= _runtime.VANISHING * (64.0 * t529)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t529, -t526)
+    t530 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t529 = _runtime.select(spent_beta_rear_elbow_down, t521 * t528 + t491 * t521, t491)
-    del t491, t521, t528
-    t530 = t529 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t531 = _runtime.select(parallel_rear_elbow_down, t530, t523)
-    del t523, t530
-    t532 = whole_y_rear_elbow_down + t531
-    t533 = whole_y_rear_elbow_down - t531
-    below_beta_0_rear_elbow_down = np.maximum(t532, t172)
-    above_beta_0_rear_elbow_down = np.maximum(t533, t172)
-    t534 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t531 = _runtime.select(spent_beta_rear_elbow_down, t523 * t530 + t493 * t523, t493)
+    del t493, t523, t530
+    t532 = t531 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t533 = _runtime.select(parallel_rear_elbow_down, t532, t525)
+    del t525, t532
+    t534 = whole_y_rear_elbow_down + t533
+    t535 = whole_y_rear_elbow_down - t533
+    below_beta_0_rear_elbow_down = np.maximum(t534, t174)
+    above_beta_0_rear_elbow_down = np.maximum(t535, t174)
+    t536 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t535 = v_2_beta_rear_elbow_down * (t534 / total_beta_0_rear_elbow_down)
-    del t534, total_beta_0_rear_elbow_down
-    t536 = t529 - t535
-    del t535
-    left_along_rear_elbow_down = L1 - np.abs(t536)
-    t537 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t538 = np.maximum(-t537, left_along_rear_elbow_down)
+    t537 = v_2_beta_rear_elbow_down * (t536 / total_beta_0_rear_elbow_down)
+    del t536, total_beta_0_rear_elbow_down
+    t538 = t531 - t537
     del t537
-    spent_along_rear_elbow_down = t538 <= t176
-    del t176, t538
-    t539 = _runtime.select(spent_along_rear_elbow_down, t527 / (t177 - t524), 0.0)
-    del t177, t527
-    t540 = -(_runtime.FEASIBILITY * (play * (1.0 + t539)))
-    del play, t539
-    t541 = t525 & (t147 <= t532) & (t147 <= t533) & (t540 <= left_along_rear_elbow_down)
-    del t525, t532, t533, t540
-    t542 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    left_along_rear_elbow_down = L1 - np.abs(t538)
+    t539 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t540 = np.maximum(-t539, left_along_rear_elbow_down)
+    del t539
+    spent_along_rear_elbow_down = t540 <= t178
+    del t178, t540
+    t541 = _runtime.select(spent_along_rear_elbow_down, t529 / (t179 - t526), 0.0)
+    del t179, t529
+    t542 = -(_runtime.FEASIBILITY * (play * (1.0 + t541)))
+    del play, t541
+    t543 = t527 & (t149 <= t534) & (t149 <= t535) & (t542 <= left_along_rear_elbow_down)
+    del t527, t534, t535, t542
+    t544 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t543 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t544 = v_2_beta_rear_elbow_down * t542 / (t524 * t524 + t543)
-    del t524, t542, t543
-    t545 = whole_y_rear_elbow_down * (t544 * _runtime.sign(-t536))
-    del t536, t544
-    t546 = _runtime.select(spent_along_rear_elbow_down, t531 + t545, t531)
-    del t531, t545
-    t547 = whole_y_rear_elbow_down + t546
-    t548 = whole_y_rear_elbow_down - t546
-    del t546, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t547, t172)
-    above_beta_rear_elbow_down = np.maximum(t548, t172)
-    t549 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t545 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t546 = v_2_beta_rear_elbow_down * t544 / (t526 * t526 + t545)
+    del t526, t544, t545
+    t547 = whole_y_rear_elbow_down * (t546 * _runtime.sign(-t538))
+    del t538, t546
+    t548 = _runtime.select(spent_along_rear_elbow_down, t533 + t547, t533)
+    del t533, t547
+    t549 = whole_y_rear_elbow_down + t548
+    t550 = whole_y_rear_elbow_down - t548
+    del t548, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t549, t174)
+    above_beta_rear_elbow_down = np.maximum(t550, t174)
+    t551 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t550 = 1.0 / total_beta_rear_elbow_down
+    t552 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t551 = t549 * t550
-    del t549
-    t552 = t529 - v_2_beta_rear_elbow_down * t551
-    del t529, v_2_beta_rear_elbow_down
-    t553 = L1 + t552
-    t554 = t541 & (t147 <= t547) & (t147 <= t548) & (t147 <= t553)
-    del t541, t547, t548
-    t555 = L1 - t552
-    unreachable_4 = np.logical_not(t554 & (t147 <= t555))
-    del t147, t554
-    t556 = _runtime.poison(invalid | unreachable_4)
-    t557 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t553 = t551 * t552
+    del t551
+    t554 = t531 - v_2_beta_rear_elbow_down * t553
+    del t531, v_2_beta_rear_elbow_down
+    t555 = L1 + t554
+    t556 = t543 & (t149 <= t549) & (t149 <= t550) & (t149 <= t555)
+    del t543, t549, t550
+    t557 = L1 - t554
+    unreachable_4 = np.logical_not(t556 & (t149 <= t557))
+    del t149, t556
+    t558 = _runtime.poison(invalid | unreachable_4)
+    t559 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t558 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t560 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t559 = _runtime.select(folded, 0.0, t557) + t558
-    del t557
-    below_alpha_rear_elbow_down = np.maximum(t553, t172)
-    del t553
-    above_alpha_rear_elbow_down = np.maximum(t555, t172)
-    del t172, t555
-    t560 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t561 = _runtime.select(folded, 0.0, t559) + t560
+    del t559
+    below_alpha_rear_elbow_down = np.maximum(t555, t174)
+    del t555
+    above_alpha_rear_elbow_down = np.maximum(t557, t174)
+    del t174, t557
+    t562 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t561 = 1.0 / total_alpha_rear_elbow_down
+    t563 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t562 = t560 * t561
-    del t560
-    t563 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t564 = t562 * t563
+    del t562
+    t565 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t564 = np.arctan2(t562, t561 * t563)
-    del t561, t563
-    t565 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    t566 = np.arctan2(t564, t563 * t565)
+    del t563, t565
+    t567 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t566 = t565 + (t203 - t558)
-    del t203, t558, t565
-    t567 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t568 = t567 + (t205 - t560)
+    del t205, t560, t567
+    t569 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t568 = t564 - np.arctan2(t551, t550 * t567)
-    del t550, t567
-    t569 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t570 = t566 - np.arctan2(t553, t552 * t569)
+    del t552, t569
+    t571 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t570 = t569 | folded | short
-    del folded, short, t569
-    t571 = spent_along | spent_alpha | spent_beta
+    t572 = t571 | folded | short
+    del folded, short, t571
+    t573 = spent_along | spent_alpha | spent_beta
     del spent_along, spent_alpha, spent_beta
-    t572 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t573 = t572 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t572
-    t574 = t573 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t573
-    t575 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t574 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t575 = t574 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t574
+    t576 = t575 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t575
+    t577 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t576 = t574 * t575
-    del t574, t575
-    t577 = np.abs(p_1_beta + v_1_beta * t187) + np.abs(t188 - L1 * t197)
-    del p_1_beta, t187, t188, t197, v_1_beta
-    t578 = 1125899906842624.0 * _runtime.select(t571, t577, 0.0)
-    del t577
-    t579 = _runtime.select(t571, t576, 1.0) <= _runtime.DETERMINED * t578
-    del t571, t578
-    t580 = _runtime.status(invalid, unreachable, t570 | parallel | t579)
-    del parallel, t579, unreachable
-    t581 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t578 = t576 * t577
+    del t576, t577
+    t579 = np.abs(p_1_beta + v_1_beta * t189) + np.abs(t190 - L1 * t199)
+    del p_1_beta, t189, t190, t199, v_1_beta
+    t580 = 1125899906842624.0 * _runtime.select(t573, t579, 0.0)
+    del t579
+    t581 = _runtime.select(t573, t578, 1.0) <= _runtime.DETERMINED * t580
+    del t573, t580
+    t582 = _runtime.status(invalid, unreachable, t572 | parallel | t581)
+    del parallel, t581, unreachable
+    t583 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
     del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t582 = t581 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t581
-    t583 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t320
-    del p_1_beta_front_elbow_down, t320, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t582, np.abs(t583) + np.abs(t321 - L1 * t331), 0.0)
-    del t321, t331, t583
-    t584 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t584 = t583 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t583
+    t585 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t322
+    del p_1_beta_front_elbow_down, t322, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t584, np.abs(t585) + np.abs(t323 - L1 * t333), 0.0)
+    del t323, t333, t585
+    t586 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t585 = t570 | parallel_front_elbow_down | (_runtime.select(t582, t576, 1.0) <= t584)
-    del parallel_front_elbow_down, t582, t584
-    t586 = _runtime.status(invalid, unreachable_2, t585)
-    del t585, unreachable_2
-    t587 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t587 = t572 | parallel_front_elbow_down | (_runtime.select(t584, t578, 1.0) <= t586)
+    del parallel_front_elbow_down, t584, t586
+    t588 = _runtime.status(invalid, unreachable_2, t587)
+    del t587, unreachable_2
+    t589 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
     del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t588 = t587 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t587
-    t589 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t436
-    del p_1_beta_rear_elbow_up, t436, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t588, np.abs(t589) + np.abs(t437 - L1 * t447), 0.0)
-    del t437, t447, t589
-    t590 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t590 = t589 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t589
+    t591 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t438
+    del p_1_beta_rear_elbow_up, t438, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t590, np.abs(t591) + np.abs(t439 - L1 * t449), 0.0)
+    del t439, t449, t591
+    t592 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t591 = t570 | parallel_rear_elbow_up | (_runtime.select(t588, t576, 1.0) <= t590)
-    del parallel_rear_elbow_up, t588, t590
-    t592 = _runtime.status(invalid, unreachable_3, t591)
-    del t591, unreachable_3
-    t593 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t593 = t572 | parallel_rear_elbow_up | (_runtime.select(t590, t578, 1.0) <= t592)
+    del parallel_rear_elbow_up, t590, t592
+    t594 = _runtime.status(invalid, unreachable_3, t593)
+    del t593, unreachable_3
+    t595 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
     del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t594 = t593 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t593
-    t595 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t551
-    del p_1_beta_rear_elbow_down, t551, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t594, np.abs(t595) + np.abs(t552 - L1 * t562), 0.0)
-    del t552, t562, t595
-    t596 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t596 = t595 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t595
+    t597 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t553
+    del p_1_beta_rear_elbow_down, t553, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t596, np.abs(t597) + np.abs(t554 - L1 * t564), 0.0)
+    del t554, t564, t597
+    t598 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t597 = t570 | parallel_rear_elbow_down | (_runtime.select(t594, t576, 1.0) <= t596)
-    del parallel_rear_elbow_down, t570, t576, t594, t596
-    t598 = _runtime.status(invalid, unreachable_4, t597)
-    del invalid, t597, unreachable_4
+    t599 = t572 | parallel_rear_elbow_down | (_runtime.select(t596, t578, 1.0) <= t598)
+    del parallel_rear_elbow_down, t572, t578, t596, t598
+    t600 = _runtime.status(invalid, unreachable_4, t599)
+    del invalid, t599, unreachable_4
     return (
-        t55 + t192,
-        _runtime.wrap(t195 - t199) + t192,
-        _runtime.wrap(t204 + t206) + t192,
-        _runtime.wrap(t195 + t199) + t192,
-        _runtime.wrap(t204 - t206) + t192,
-        t207 + t192,
-        t55 + t325,
-        _runtime.wrap(t328 - t333) + t325,
-        _runtime.wrap(t336 + t338) + t325,
-        _runtime.wrap(t328 + t333) + t325,
-        _runtime.wrap(t336 - t338) + t325,
-        t207 + t325,
-        t339 + t441,
-        _runtime.wrap(t444 - t449) + t441,
-        _runtime.wrap(t451 + t453) + t441,
-        _runtime.wrap(t444 + t449) + t441,
-        _runtime.wrap(t451 - t453) + t441,
-        t207 + t441,
-        t339 + t556,
-        _runtime.wrap(t559 - t564) + t556,
-        _runtime.wrap(t566 + t568) + t556,
-        _runtime.wrap(t559 + t564) + t556,
-        _runtime.wrap(t566 - t568) + t556,
-        t207 + t556,
-        t580,
-        t586,
-        t592,
-        t598,
+        t57 + t194,
+        _runtime.wrap(t197 - t201) + t194,
+        _runtime.wrap(t206 + t208) + t194,
+        _runtime.wrap(t197 + t201) + t194,
+        _runtime.wrap(t206 - t208) + t194,
+        t209 + t194,
+        t57 + t327,
+        _runtime.wrap(t330 - t335) + t327,
+        _runtime.wrap(t338 + t340) + t327,
+        _runtime.wrap(t330 + t335) + t327,
+        _runtime.wrap(t338 - t340) + t327,
+        t209 + t327,
+        t341 + t443,
+        _runtime.wrap(t446 - t451) + t443,
+        _runtime.wrap(t453 + t455) + t443,
+        _runtime.wrap(t446 + t451) + t443,
+        _runtime.wrap(t453 - t455) + t443,
+        t209 + t443,
+        t341 + t558,
+        _runtime.wrap(t561 - t566) + t558,
+        _runtime.wrap(t568 + t570) + t558,
+        _runtime.wrap(t561 + t566) + t558,
+        _runtime.wrap(t568 - t570) + t558,
+        t209 + t558,
+        t582,
+        t588,
+        t594,
+        t600,
     )
 
 

@@ -12,8 +12,8 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 866 compare and select, 642 add, 28 atan2, 161 divide, 918 multiply, 1 reduce to a turn, 3
-#     sincos, 41 sqrt
+#   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
+#     sincos, 42 sqrt
 #   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
@@ -2086,2093 +2086,2096 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t19 = np.abs(t_psi * base)
     del base
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
-    t20 = al * 6.103515625e-05 + gs * 6.103515625e-05 + t18 * 6.103515625e-05
-    t21 = al * (t1 + t18 + t19) / (t20 + t19 * 6.103515625e-05 + 512.0 * wrist)
-    del t20
-    far_apart = t18 * 0.001953125 + t19 * 0.001953125 + _runtime.select(stretched, t21, 0.0)
-    del stretched, t18, t19, t21
-    slack = lengths * 0.25 + far_apart
-    t22 = h * slack
-    del h
-    tangent = 4.0 * root * t16 - t22 * 0.00390625 <= _runtime.VANISHING * t22
-    t23 = L1 - fore
-    t24 = t23 * t23
-    t25 = z - d1
-    t26 = t25 * t25
-    t27 = t16 * t16
-    wanted = np.maximum(np.maximum(0.0, t24 - t26), np.minimum(t15, t27 - t26))
-    t28 = 8796093022208.0 * np.abs(t15 - wanted) <= t22
+    t20 = al * (t1 + t18 + t19)
+    t21 = al * 8.673617379884035e-19 + gs * 8.673617379884035e-19
+    t22 = t21 + t18 * 8.673617379884035e-19 + t19 * 8.673617379884035e-19
+    del t21
+    t23 = t22 + 512.0 * wrist + np.sqrt(t20) * 3.0517578125e-05
     del t22
-    t29 = np.sqrt(_runtime.select(t28, wanted, t15))
-    del t15, t28, wanted
-    t30 = _runtime.select(tangent, np.arctan2(t29, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    far_apart = t18 * 0.001953125 + t19 * 0.001953125 + _runtime.select(stretched, t20 / t23, 0.0)
+    del stretched, t18, t19, t20, t23
+    slack = lengths * 0.25 + far_apart
+    t24 = h * slack
+    del h
+    tangent = 4.0 * root * t16 - t24 * 0.00390625 <= _runtime.VANISHING * t24
+    t25 = L1 - fore
+    t26 = t25 * t25
+    t27 = z - d1
+    t28 = t27 * t27
+    t29 = t16 * t16
+    wanted = np.maximum(np.maximum(0.0, t26 - t28), np.minimum(t15, t29 - t28))
+    t30 = 8796093022208.0 * np.abs(t15 - wanted) <= t24
+    del t24
+    t31 = np.sqrt(_runtime.select(t30, wanted, t15))
+    del t15, t30, wanted
+    t32 = _runtime.select(tangent, np.arctan2(t31, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below
-    t31 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t30))
-    t32 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t33 = t32 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t32
-    t34 = t33 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t33
-    t35 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t36 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    t33 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t32))
+    t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t34
+    t36 = t35 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t35
+    t37 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t38 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
     del t2
-    t37 = t34 & (0.0 <= loff) & (0.0 <= lp) & t35 & (t36 <= _runtime.ROTATION)
-    del t34, t35, t36
-    invalid = np.logical_not(t37)
-    del t37
-    t38 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t5) * 0.001953125
+    t39 = t36 & (0.0 <= loff) & (0.0 <= lp) & t37 & (t38 <= _runtime.ROTATION)
+    del t36, t37, t38
+    invalid = np.logical_not(t39)
+    del t39
+    t40 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t5) * 0.001953125
     del c_psi, s_phi, t5
-    t39 = _runtime.FEASIBILITY * (t1 * (t38 + 1.015625 * t6))
-    del t1, t38, t6
-    t40 = (-_runtime.FEASIBILITY <= c_phi) & (-t39 <= t8)
+    t41 = _runtime.FEASIBILITY * (t1 * (t40 + 1.015625 * t6))
+    del t1, t40, t6
+    t42 = (-_runtime.FEASIBILITY <= c_phi) & (-t41 <= t8)
     del c_phi, t8
-    t41 = -(_runtime.FEASIBILITY * slack)
-    t42 = t40 & (-t39 <= t9) & (t41 <= t14) & (t41 <= t13)
-    del t13, t14, t39, t40, t41, t9
-    t43 = L1 * 2.0
-    t44 = 2.0 * fore
-    t45 = -(_runtime.FEASIBILITY * ((t43 + t44) * slack))
-    in_reach = _runtime.select(tangent, t29, root)
-    del root, t29, tangent
-    square = t26 + in_reach * in_reach
-    del t26
-    t46 = t27 - square
-    t47 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t48 = _runtime.FEASIBILITY * ((t47 + 2.0 * np.abs(t23)) * slack)
-    del t47
-    t49 = square - t24
-    del square, t24
-    t50 = t42 & (t45 <= t46) & (-t48 <= t49)
-    del t42, t45, t48
+    t43 = -(_runtime.FEASIBILITY * slack)
+    t44 = t42 & (-t41 <= t9) & (t43 <= t14) & (t43 <= t13)
+    del t13, t14, t41, t42, t43, t9
+    t45 = L1 * 2.0
+    t46 = 2.0 * fore
+    t47 = -(_runtime.FEASIBILITY * ((t45 + t46) * slack))
+    in_reach = _runtime.select(tangent, t31, root)
+    del root, t31, tangent
+    square = t28 + in_reach * in_reach
+    del t28
+    t48 = t29 - square
+    t49 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t50 = _runtime.FEASIBILITY * ((t49 + 2.0 * np.abs(t25)) * slack)
+    del t49
+    t51 = square - t26
+    del square, t26
+    t52 = t44 & (t47 <= t48) & (-t50 <= t51)
+    del t44, t47, t50
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     play = d * 0.25 + far_apart + lengths * 0.00048828125
     del far_apart
-    t51 = size * play
-    t52 = size * size
-    t53 = _runtime.VANISHING * t16
-    folded = np.abs(t25) + np.abs(in_reach) <= t53
-    short = L1 * fore <= _runtime.VANISHING * t27
-    del t27
-    M = np.maximum(t49, 0.0)
-    del t49
-    N = np.maximum(t46, 0.0)
-    del t46
-    t54 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t16, t23 + t44 * M * t54)
-    del t16, t23, t44
-    t55 = t25 * ahead_1
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t54 * (2.0 * np.sqrt(M * N)))
-    t56 = fore * s_bend_front_elbow_down_alike
-    t57 = in_reach * t56
-    up = t55 + t57
-    t58 = in_reach * ahead_1
+    t53 = size * play
+    t54 = size * size
+    t55 = _runtime.VANISHING * t16
+    folded = np.abs(t27) + np.abs(in_reach) <= t55
+    short = L1 * fore <= _runtime.VANISHING * t29
+    del t29
+    M = np.maximum(t51, 0.0)
+    del t51
+    N = np.maximum(t48, 0.0)
+    del t48
+    t56 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t16, t25 + t46 * M * t56)
+    del t16, t25, t46
+    t57 = t27 * ahead_1
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t56 * (2.0 * np.sqrt(M * N)))
+    t58 = fore * s_bend_front_elbow_down_alike
+    t59 = in_reach * t58
+    up = t57 + t59
+    t60 = in_reach * ahead_1
     del ahead_1, in_reach
-    t59 = t25 * t56
-    del t25, t56
-    out_2 = t58 - t59
-    t60 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    stheta2A = _runtime.select(folded, 0.0, up * t60)
+    t61 = t27 * t58
+    del t27, t58
+    out_2 = t60 - t61
+    t62 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    stheta2A = _runtime.select(folded, 0.0, up * t62)
     del up
     elbow_21 = L1 * stheta2A
-    t61 = out_2 * t60
-    del out_2, t60
-    ctheta2A = _runtime.select(folded, 1.0, t61)
-    bare = fore <= t53
-    del t53
-    t62 = 1.0 / fore
-    c_lag = _runtime.select(bare, 1.0, a_3W * t62)
-    c_bend = _runtime.select(short, 1.0, t54 * (M - N))
-    del M, N, t54
-    t63 = c_lag * c_bend
-    s_lag = _runtime.select(bare, 0.0, L_2W * t62)
-    del bare, t62
-    t64 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t63 + t64
-    t65 = s_lag * c_bend
+    t63 = out_2 * t62
+    del out_2, t62
+    ctheta2A = _runtime.select(folded, 1.0, t63)
+    bare = fore <= t55
+    del t55
+    t64 = 1.0 / fore
+    c_lag = _runtime.select(bare, 1.0, a_3W * t64)
+    c_bend = _runtime.select(short, 1.0, t56 * (M - N))
+    del M, N, t56
+    t65 = c_lag * c_bend
+    s_lag = _runtime.select(bare, 0.0, L_2W * t64)
+    del bare, t64
+    t66 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t65 + t66
+    t67 = s_lag * c_bend
     del c_bend, s_lag
-    t66 = c_lag * s_bend_front_elbow_down_alike
+    t68 = c_lag * s_bend_front_elbow_down_alike
     del c_lag, s_bend_front_elbow_down_alike
-    s_relative = t65 - t66
+    s_relative = t67 - t68
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     point_21 = elbow_21 - L2 * ctheta23A + a3 * stheta23A
-    t67 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A
-    t68 = d * t67
-    del t67
-    h_right_0 = point_21 - t68
-    elbow_11 = L1 * ctheta2A
-    point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A
-    t69 = t_phi * ctheta23A - t17 * (t_psi * stheta23A)
-    del ctheta23A, stheta23A
+    t69 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A
     t70 = d * t69
     del t69
-    r_right_0 = point_11 - t70
-    t71 = h_right_0 * h_right_0 + r_right_0 * r_right_0
-    gap = t70 * t70 + t68 * t68
-    t72 = gap * gap
-    t73 = L1 - fore_arm
-    t74 = t73 * t73
-    straight_mid = L2 * s_relative + a3 * c_relative
-    t75 = 0.0 <= straight_mid
-    large_mid = fore_arm + np.abs(straight_mid)
-    t76 = L2 * c_relative - a3 * s_relative
-    small_mid = t76 * t76 / large_mid
-    M_mid = t43 * _runtime.select(t75, large_mid, small_mid)
-    t77 = gap + M_mid
-    t78 = 2.0 * point_11 * t70 + 2.0 * point_21 * t68
-    farther_right = _runtime.select(t52 * t71 < t72, t71 - t74, t77 - t78)
+    h_right_0 = point_21 - t70
+    elbow_11 = L1 * ctheta2A
+    point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A
+    t71 = t_phi * ctheta23A - t17 * (t_psi * stheta23A)
+    del ctheta23A, stheta23A
+    t72 = d * t71
     del t71
-    N_mid = t43 * _runtime.select(t75, small_mid, large_mid)
-    del large_mid, small_mid, t75
-    t79 = gap - N_mid
-    nearer_right = t78 - t79
+    r_right_0 = point_11 - t72
+    t73 = h_right_0 * h_right_0 + r_right_0 * r_right_0
+    gap = t72 * t72 + t70 * t70
+    t74 = gap * gap
+    t75 = L1 - fore_arm
+    t76 = t75 * t75
+    straight_mid = L2 * s_relative + a3 * c_relative
+    t77 = 0.0 <= straight_mid
+    large_mid = fore_arm + np.abs(straight_mid)
+    t78 = L2 * c_relative - a3 * s_relative
+    small_mid = t78 * t78 / large_mid
+    M_mid = t45 * _runtime.select(t77, large_mid, small_mid)
+    t79 = gap + M_mid
+    t80 = 2.0 * point_11 * t72 + 2.0 * point_21 * t70
+    farther_right = _runtime.select(t54 * t73 < t74, t73 - t76, t79 - t80)
+    del t73
+    N_mid = t45 * _runtime.select(t77, small_mid, large_mid)
+    del large_mid, small_mid, t77
+    t81 = gap - N_mid
+    nearer_right = t80 - t81
     margin_right = np.minimum(farther_right, nearer_right)
-    t80 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
-    t81 = _runtime.VANISHING * t51
-    spent_right = t80 <= t81
-    del t80
-    t82 = _runtime.select(nearer_right <= farther_right, 1.0, -1.0)
-    t83 = (ctheta2A * h_right_0 - stheta2A * r_right_0) * t82
+    t82 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    t83 = _runtime.VANISHING * t53
+    spent_right = t82 <= t83
+    del t82
+    t84 = _runtime.select(nearer_right <= farther_right, 1.0, -1.0)
+    t85 = (ctheta2A * h_right_0 - stheta2A * r_right_0) * t84
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t84 = 2.0 * drawn
-    slope_right = t83 * t84
-    t85 = 1.4142135623730951 * np.sqrt(slack)
-    t86 = 1.0 / L1
-    t87 = 1.0 - t86 * drawn
-    t88 = t85 * np.sqrt(fore + L1 * (t87 * t87)) / 2000000.0
-    del t87
-    t89 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t90 = 1.0 / slack
+    t86 = 2.0 * drawn
+    slope_right = t85 * t86
+    t87 = 1.4142135623730951 * np.sqrt(slack)
+    t88 = 1.0 / L1
+    t89 = 1.0 - t88 * drawn
+    t90 = t87 * np.sqrt(fore + L1 * (t89 * t89)) / 2000000.0
+    del t89
+    t91 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t92 = 1.0 / slack
     del slack
-    t91 = (t88 + t89) * t90
-    del t88, t89
-    heavy_0_right = _runtime.select(spent_right, t91, 1.0)
+    t93 = (t90 + t91) * t92
+    del t90, t91
+    heavy_0_right = _runtime.select(spent_right, t93, 1.0)
     gain_0_right = _runtime.select(spent_right, np.abs(slope_right) / heavy_0_right, 0.0)
-    t92 = t43 * t83
-    del t83
-    t93 = np.abs(t92)
-    t94 = t90 * (L1 + np.sqrt(L1) * t85 / 2000000.0)
-    heavy_1_right = _runtime.select(spent_right, t94, 1.0)
-    gain_1_right = _runtime.select(spent_right, t93 / heavy_1_right, 0.0)
-    t95 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
-    t96 = -(_runtime.FEASIBILITY * (t51 + t95)) <= margin_right
-    del t95
-    h_left_0 = point_21 + t68
-    del point_21, t68
-    r_left_0 = point_11 + t70
-    del point_11, t70
-    t97 = h_left_0 * h_left_0 + r_left_0 * r_left_0
-    farther_left = _runtime.select(t52 * t97 < t72, t97 - t74, t77 + t78)
-    del t72, t77, t97
-    t98 = t78 + t79
-    del t78, t79
-    margin_left = np.minimum(farther_left, -t98)
-    t99 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
-    spent_left = t99 <= t81
-    del t99
-    t100 = _runtime.select(-t98 <= farther_left, 1.0, -1.0)
-    t101 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t100
-    slope_left = t84 * t101
-    heavy_0_left = _runtime.select(spent_left, t91, 1.0)
-    gain_0_left = _runtime.select(spent_left, np.abs(slope_left) / heavy_0_left, 0.0)
-    t102 = t43 * t101
+    t94 = t45 * t85
+    del t85
+    t95 = np.abs(t94)
+    t96 = t92 * (L1 + np.sqrt(L1) * t87 / 2000000.0)
+    heavy_1_right = _runtime.select(spent_right, t96, 1.0)
+    gain_1_right = _runtime.select(spent_right, t95 / heavy_1_right, 0.0)
+    t97 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
+    t98 = -(_runtime.FEASIBILITY * (t53 + t97)) <= margin_right
+    del t97
+    h_left_0 = point_21 + t70
+    del point_21, t70
+    r_left_0 = point_11 + t72
+    del point_11, t72
+    t99 = h_left_0 * h_left_0 + r_left_0 * r_left_0
+    farther_left = _runtime.select(t54 * t99 < t74, t99 - t76, t79 + t80)
+    del t74, t79, t99
+    t100 = t80 + t81
+    del t80, t81
+    margin_left = np.minimum(farther_left, -t100)
+    t101 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    spent_left = t101 <= t83
     del t101
-    t103 = np.abs(t102)
-    heavy_1_left = _runtime.select(spent_left, t94, 1.0)
-    gain_1_left = _runtime.select(spent_left, t103 / heavy_1_left, 0.0)
-    t104 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
-    t105 = -(_runtime.FEASIBILITY * (t51 + t104)) <= margin_left
-    del t104
-    t106 = -(_runtime.FEASIBILITY * t51)
-    t107 = spent_left | spent_right
-    t108 = gain_1_left * gain_1_left
+    t102 = _runtime.select(-t100 <= farther_left, 1.0, -1.0)
+    t103 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t102
+    slope_left = t86 * t103
+    heavy_0_left = _runtime.select(spent_left, t93, 1.0)
+    gain_0_left = _runtime.select(spent_left, np.abs(slope_left) / heavy_0_left, 0.0)
+    t104 = t45 * t103
+    del t103
+    t105 = np.abs(t104)
+    heavy_1_left = _runtime.select(spent_left, t96, 1.0)
+    gain_1_left = _runtime.select(spent_left, t105 / heavy_1_left, 0.0)
+    t106 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
+    t107 = -(_runtime.FEASIBILITY * (t53 + t106)) <= margin_left
+    del t106
+    t108 = -(_runtime.FEASIBILITY * t53)
+    t109 = spent_left | spent_right
+    t110 = gain_1_left * gain_1_left
     del gain_1_left
-    t109 = t52 * (play * play)
+    t111 = t54 * (play * play)
     del play
-    t110 = t108 / (t108 + t109 + gain_0_left * gain_0_left)
-    del gain_0_left, t108
-    t111 = _runtime.select(margin_left < 0.0, t110, 0.0)
-    del t110
-    share_left = _runtime.select(spent_left, t111, 0.0)
-    del t111
-    t112 = margin_left * (1.0 - share_left)
-    t113 = heavy_0_left * t112
-    t114 = drawn * drawn
-    t115 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
-    t116 = t86 * (t100 * t114 * t115)
-    del t100, t115
-    t117 = np.maximum(0.0, 4.0 * t112 * t116 + slope_left * slope_left)
-    root_on_1_both = _runtime.select(t107, np.sqrt(t117), 0.0)
-    del t117
-    t118 = slope_left - root_on_1_both
-    t119 = t51 * heavy_0_left
-    t120 = t119 * 5.960464477539063e-08
-    t121 = 1.0 / (t118 - t120)
-    t122 = (t113 * t121 <= 4.547473508864641e-13) & (0.0 < t112 * t121)
-    t123 = 2.0 * t112
-    t124 = 0.0 < -t112
-    t125 = slope_left + root_on_1_both
-    del root_on_1_both
-    t126 = t119 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t116)
-    del t119
-    t127 = 1.0 / t126
-    del t126
-    t128 = heavy_0_left * t125 * t127 <= 9.094947017729282e-13
-    t129 = t125 * t127
-    t130 = _runtime.select(t128 & (0.0 < t129), t129, 0.0)
-    del t128, t129
-    far_back_1_both = _runtime.select(t107, t130, 0.0)
-    del t130
-    t131 = _runtime.select(slope_left <= 0.0, _runtime.select(t122, t121 * t123, 0.0), _runtime.select(t124, far_back_1_both, 0.0))
-    del t121, t122
-    t132 = gain_1_right * gain_1_right
-    del gain_1_right
-    t133 = t132 / (t109 + t132 + gain_0_right * gain_0_right)
-    del gain_0_right, t132
-    t134 = _runtime.select(margin_right < 0.0, t133, 0.0)
-    del t133
-    share_right = _runtime.select(spent_right, t134, 0.0)
-    del t134
-    t135 = margin_right * (1.0 - share_right)
-    t136 = heavy_0_right * t135
-    t137 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
-    t138 = t86 * (t82 * t114 * t137)
-    del t137, t82
-    t139 = 4.0 * t135 * t138 + slope_right * slope_right
-    root_on_0_both = _runtime.select(t107, np.sqrt(np.maximum(0.0, t139)), 0.0)
-    del t139
-    t140 = slope_right - root_on_0_both
-    t141 = t51 * heavy_0_right
-    t142 = t141 * 5.960464477539063e-08
-    t143 = 1.0 / (t140 - t142)
-    t144 = (t136 * t143 <= 4.547473508864641e-13) & (0.0 < t135 * t143)
-    t145 = 2.0 * t135
-    t146 = 0.0 < -t135
-    t147 = slope_right + root_on_0_both
-    del root_on_0_both
-    t148 = t141 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t138)
-    del t141
-    t149 = 1.0 / t148
-    del t148
-    t150 = heavy_0_right * t147 * t149 <= 9.094947017729282e-13
-    t151 = t147 * t149
-    t152 = _runtime.select(t150 & (0.0 < t151), t151, 0.0)
-    del t150, t151
-    far_back_0_both = _runtime.select(t107, t152, 0.0)
-    del t152
-    t153 = _runtime.select(slope_right <= 0.0, _runtime.select(t144, t143 * t145, 0.0), _runtime.select(t146, far_back_0_both, 0.0))
-    del t143, t144
-    near_back_both = _runtime.select(t107, np.maximum(np.maximum(0.0, t131), t153), 0.0)
-    del t131, t153
-    t154 = near_back_both * (slope_right + t138 * near_back_both)
-    t155 = _runtime.select(0.0 < t154 - t135, far_back_0_both, 0.0)
-    del far_back_0_both, t154
-    t156 = near_back_both * (slope_left + t116 * near_back_both)
-    t157 = _runtime.select(0.0 < t156 - t112, far_back_1_both, 0.0)
-    del far_back_1_both, t156
-    t158 = np.maximum(np.maximum(near_back_both, t155), t157)
-    del near_back_both, t155, t157
-    turn_back_both = _runtime.select(t107, t158, 0.0)
-    del t158
-    t159 = turn_back_both * (slope_left + t116 * turn_back_both)
-    t160 = turn_back_both * (slope_right + t138 * turn_back_both)
-    left_back_both = _runtime.select(t107, np.minimum(t112 - t159, t135 - t160), 0.0)
-    del t159, t160
-    t161 = 1.0 / (t120 + t125)
-    del t120, t125
-    t162 = (-(t113 * t161) <= 4.547473508864641e-13) & (0.0 < -(t112 * t161))
+    t112 = t110 / (t110 + t111 + gain_0_left * gain_0_left)
+    del gain_0_left, t110
+    t113 = _runtime.select(margin_left < 0.0, t112, 0.0)
+    del t112
+    share_left = _runtime.select(spent_left, t113, 0.0)
     del t113
-    t163 = -(t127 * (heavy_0_left * t118)) <= 9.094947017729282e-13
-    del heavy_0_left
-    t164 = -(t118 * t127)
-    del t118, t127
-    t165 = _runtime.select(t163 & (0.0 < t164), t164, 0.0)
-    del t163, t164
-    far_on_1_both = _runtime.select(t107, t165, 0.0)
-    del t165
-    t166 = _runtime.select(0.0 <= slope_left, _runtime.select(t162, -(t123 * t161), 0.0), _runtime.select(t124, far_on_1_both, 0.0))
-    del t123, t124, t161, t162
-    t167 = 1.0 / (t142 + t147)
-    del t142, t147
-    t168 = (-(t136 * t167) <= 4.547473508864641e-13) & (0.0 < -(t135 * t167))
+    t114 = margin_left * (1.0 - share_left)
+    t115 = heavy_0_left * t114
+    t116 = drawn * drawn
+    t117 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
+    t118 = t88 * (t102 * t116 * t117)
+    del t102, t117
+    t119 = np.maximum(0.0, 4.0 * t114 * t118 + slope_left * slope_left)
+    root_on_1_both = _runtime.select(t109, np.sqrt(t119), 0.0)
+    del t119
+    t120 = slope_left - root_on_1_both
+    t121 = t53 * heavy_0_left
+    t122 = t121 * 5.960464477539063e-08
+    t123 = 1.0 / (t120 - t122)
+    t124 = (t115 * t123 <= 4.547473508864641e-13) & (0.0 < t114 * t123)
+    t125 = 2.0 * t114
+    t126 = 0.0 < -t114
+    t127 = slope_left + root_on_1_both
+    del root_on_1_both
+    t128 = t121 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t118)
+    del t121
+    t129 = 1.0 / t128
+    del t128
+    t130 = heavy_0_left * t127 * t129 <= 9.094947017729282e-13
+    t131 = t127 * t129
+    t132 = _runtime.select(t130 & (0.0 < t131), t131, 0.0)
+    del t130, t131
+    far_back_1_both = _runtime.select(t109, t132, 0.0)
+    del t132
+    t133 = _runtime.select(slope_left <= 0.0, _runtime.select(t124, t123 * t125, 0.0), _runtime.select(t126, far_back_1_both, 0.0))
+    del t123, t124
+    t134 = gain_1_right * gain_1_right
+    del gain_1_right
+    t135 = t134 / (t111 + t134 + gain_0_right * gain_0_right)
+    del gain_0_right, t134
+    t136 = _runtime.select(margin_right < 0.0, t135, 0.0)
+    del t135
+    share_right = _runtime.select(spent_right, t136, 0.0)
     del t136
-    t169 = -(t149 * (heavy_0_right * t140)) <= 9.094947017729282e-13
+    t137 = margin_right * (1.0 - share_right)
+    t138 = heavy_0_right * t137
+    t139 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
+    t140 = t88 * (t84 * t116 * t139)
+    del t139, t84
+    t141 = 4.0 * t137 * t140 + slope_right * slope_right
+    root_on_0_both = _runtime.select(t109, np.sqrt(np.maximum(0.0, t141)), 0.0)
+    del t141
+    t142 = slope_right - root_on_0_both
+    t143 = t53 * heavy_0_right
+    t144 = t143 * 5.960464477539063e-08
+    t145 = 1.0 / (t142 - t144)
+    t146 = (t138 * t145 <= 4.547473508864641e-13) & (0.0 < t137 * t145)
+    t147 = 2.0 * t137
+    t148 = 0.0 < -t137
+    t149 = slope_right + root_on_0_both
+    del root_on_0_both
+    t150 = t143 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t140)
+    del t143
+    t151 = 1.0 / t150
+    del t150
+    t152 = heavy_0_right * t149 * t151 <= 9.094947017729282e-13
+    t153 = t149 * t151
+    t154 = _runtime.select(t152 & (0.0 < t153), t153, 0.0)
+    del t152, t153
+    far_back_0_both = _runtime.select(t109, t154, 0.0)
+    del t154
+    t155 = _runtime.select(slope_right <= 0.0, _runtime.select(t146, t145 * t147, 0.0), _runtime.select(t148, far_back_0_both, 0.0))
+    del t145, t146
+    near_back_both = _runtime.select(t109, np.maximum(np.maximum(0.0, t133), t155), 0.0)
+    del t133, t155
+    t156 = near_back_both * (slope_right + t140 * near_back_both)
+    t157 = _runtime.select(0.0 < t156 - t137, far_back_0_both, 0.0)
+    del far_back_0_both, t156
+    t158 = near_back_both * (slope_left + t118 * near_back_both)
+    t159 = _runtime.select(0.0 < t158 - t114, far_back_1_both, 0.0)
+    del far_back_1_both, t158
+    t160 = np.maximum(np.maximum(near_back_both, t157), t159)
+    del near_back_both, t157, t159
+    turn_back_both = _runtime.select(t109, t160, 0.0)
+    del t160
+    t161 = turn_back_both * (slope_left + t118 * turn_back_both)
+    t162 = turn_back_both * (slope_right + t140 * turn_back_both)
+    left_back_both = _runtime.select(t109, np.minimum(t114 - t161, t137 - t162), 0.0)
+    del t161, t162
+    t163 = 1.0 / (t122 + t127)
+    del t122, t127
+    t164 = (-(t115 * t163) <= 4.547473508864641e-13) & (0.0 < -(t114 * t163))
+    del t115
+    t165 = -(t129 * (heavy_0_left * t120)) <= 9.094947017729282e-13
+    del heavy_0_left
+    t166 = -(t120 * t129)
+    del t120, t129
+    t167 = _runtime.select(t165 & (0.0 < t166), t166, 0.0)
+    del t165, t166
+    far_on_1_both = _runtime.select(t109, t167, 0.0)
+    del t167
+    t168 = _runtime.select(0.0 <= slope_left, _runtime.select(t164, -(t125 * t163), 0.0), _runtime.select(t126, far_on_1_both, 0.0))
+    del t125, t126, t163, t164
+    t169 = 1.0 / (t144 + t149)
+    del t144, t149
+    t170 = (-(t138 * t169) <= 4.547473508864641e-13) & (0.0 < -(t137 * t169))
+    del t138
+    t171 = -(t151 * (heavy_0_right * t142)) <= 9.094947017729282e-13
     del heavy_0_right
-    t170 = -(t140 * t149)
-    del t140, t149
-    t171 = _runtime.select(t169 & (0.0 < t170), t170, 0.0)
-    del t169, t170
-    far_on_0_both = _runtime.select(t107, t171, 0.0)
-    del t171
-    t172 = _runtime.select(0.0 <= slope_right, _runtime.select(t168, -(t145 * t167), 0.0), _runtime.select(t146, far_on_0_both, 0.0))
-    del t145, t146, t167, t168
-    near_on_both = _runtime.select(t107, np.maximum(np.maximum(0.0, t166), t172), 0.0)
-    del t166, t172
-    t173 = near_on_both * (slope_right - t138 * near_on_both)
-    t174 = _runtime.select(0.0 < -(t135 + t173), far_on_0_both, 0.0)
-    del far_on_0_both, t173
-    t175 = near_on_both * (slope_left - t116 * near_on_both)
-    t176 = _runtime.select(0.0 < -(t112 + t175), far_on_1_both, 0.0)
-    del far_on_1_both, t175
-    t177 = np.maximum(np.maximum(near_on_both, t174), t176)
-    del near_on_both, t174, t176
-    turn_on_both = _runtime.select(t107, t177, 0.0)
-    del t177
-    t178 = turn_on_both * (slope_left - t116 * turn_on_both)
-    del slope_left, t116
-    t179 = turn_on_both * (slope_right - t138 * turn_on_both)
-    del slope_right, t138
-    left_on_both = _runtime.select(t107, np.minimum(t112 + t178, t135 + t179), 0.0)
-    del t112, t135, t178, t179
-    t180 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
+    t172 = -(t142 * t151)
+    del t142, t151
+    t173 = _runtime.select(t171 & (0.0 < t172), t172, 0.0)
+    del t171, t172
+    far_on_0_both = _runtime.select(t109, t173, 0.0)
+    del t173
+    t174 = _runtime.select(0.0 <= slope_right, _runtime.select(t170, -(t147 * t169), 0.0), _runtime.select(t148, far_on_0_both, 0.0))
+    del t147, t148, t169, t170
+    near_on_both = _runtime.select(t109, np.maximum(np.maximum(0.0, t168), t174), 0.0)
+    del t168, t174
+    t175 = near_on_both * (slope_right - t140 * near_on_both)
+    t176 = _runtime.select(0.0 < -(t137 + t175), far_on_0_both, 0.0)
+    del far_on_0_both, t175
+    t177 = near_on_both * (slope_left - t118 * near_on_both)
+    t178 = _runtime.select(0.0 < -(t114 + t177), far_on_1_both, 0.0)
+    del far_on_1_both, t177
+    t179 = np.maximum(np.maximum(near_on_both, t176), t178)
+    del near_on_both, t176, t178
+    turn_on_both = _runtime.select(t109, t179, 0.0)
+    del t179
+    t180 = turn_on_both * (slope_left - t118 * turn_on_both)
+    del slope_left, t118
+    t181 = turn_on_both * (slope_right - t140 * turn_on_both)
+    del slope_right, t140
+    left_on_both = _runtime.select(t109, np.minimum(t114 + t180, t137 + t181), 0.0)
+    del t114, t137, t180, t181
+    t182 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
     del left_back_both, left_on_both, turn_back_both, turn_on_both
-    turn_both = _runtime.select(t107, t180, 0.0)
-    del t180
-    t181 = margin_left * share_left * _runtime.sign(-t102)
-    del margin_left, share_left, t102
-    t182 = t103 + t51 * heavy_1_left * 5.960464477539063e-08
-    del heavy_1_left, t103
-    aside_left = _runtime.select(spent_left, -(t181 / t182), 0.0)
-    del spent_left, t181, t182
-    t183 = margin_right * share_right * _runtime.sign(-t92)
-    del margin_right, share_right, t92
-    t184 = t93 + t51 * heavy_1_right * 5.960464477539063e-08
-    del heavy_1_right, t93
-    aside_right = _runtime.select(spent_right, -(t183 / t184), 0.0)
-    del spent_right, t183, t184
-    t185 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
+    turn_both = _runtime.select(t109, t182, 0.0)
+    del t182
+    t183 = margin_left * share_left * _runtime.sign(-t104)
+    del margin_left, share_left, t104
+    t184 = t105 + t53 * heavy_1_left * 5.960464477539063e-08
+    del heavy_1_left, t105
+    aside_left = _runtime.select(spent_left, -(t183 / t184), 0.0)
+    del spent_left, t183, t184
+    t185 = margin_right * share_right * _runtime.sign(-t94)
+    del margin_right, share_right, t94
+    t186 = t95 + t53 * heavy_1_right * 5.960464477539063e-08
+    del heavy_1_right, t95
+    aside_right = _runtime.select(spent_right, -(t185 / t186), 0.0)
+    del spent_right, t185, t186
+    t187 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
     del aside_left, aside_right
-    lean = _runtime.select(t107, turn_both + t185 - t86 * (drawn * turn_both), 0.0)
-    del t185
-    t186 = lean * lean
-    t187 = 1.0 + t186
-    t188 = 1.0 / np.sqrt(t187)
-    t189 = 1.0 / (t187 * (1.0 + t188))
+    lean = _runtime.select(t109, turn_both + t187 - t88 * (drawn * turn_both), 0.0)
     del t187
-    t190 = elbow_11 * t186 * t189 + t188 * (elbow_21 * lean)
-    t191 = turn_both * turn_both
-    t192 = elbow_11 - r_right_0
-    t193 = 1.0 + t191
-    t194 = 1.0 / np.sqrt(t193)
-    t195 = 1.0 / (t193 * (1.0 + t194))
-    del t193
-    t196 = elbow_21 - h_right_0
-    t197 = t190 - t191 * t192 * t195 - t194 * (turn_both * t196)
-    swing_21 = t188 * (elbow_11 * lean) - t189 * (elbow_21 * t186)
-    del t186, t188, t189
-    more_right_21 = swing_21 + t195 * (t191 * t196) - t194 * (turn_both * t192)
-    del t192, t196
-    t198 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
-    change_right = _runtime.select(t107, t197 * (t197 - 2.0 * r_right_0) + t198, 0.0)
-    del t198
-    t199 = nearer_right - change_right
-    del nearer_right
-    t200 = farther_right + change_right
-    del change_right, farther_right
-    t201 = t50 & t96 & t105 & (t106 <= t199) & (t106 <= t200)
-    del t105, t96
-    t202 = elbow_11 - r_left_0
-    del elbow_11
-    t203 = elbow_21 - h_left_0
-    t204 = t190 - t195 * (t191 * t202) - t194 * (turn_both * t203)
-    del t190
-    more_left_21 = swing_21 + t195 * (t191 * t203) - t194 * (turn_both * t202)
-    del swing_21, t191, t194, t195, t202, t203
-    t205 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
-    change_left = _runtime.select(t107, t204 * (t204 - 2.0 * r_left_0) + t205, 0.0)
-    del t205
-    t206 = -(t98 + change_left)
-    del t98
-    t207 = farther_left + change_left
-    del change_left, farther_left
-    unreachable = np.logical_not(t201 & (t106 <= t206) & (t106 <= t207))
-    del t201
-    t208 = _runtime.poison(invalid | unreachable)
-    t209 = t31 + t208
-    h_right = _runtime.select(t107, h_right_0 + more_right_21, h_right_0)
-    del h_right_0, more_right_21
-    r_right = _runtime.select(t107, r_right_0 - t197, r_right_0)
-    del r_right_0, t197
-    t210 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(h_right) + np.abs(r_right) <= t210
-    t211 = np.arctan2(stheta2A, ctheta2A)
-    del ctheta2A
-    t212 = L1 * fore_arm
-    short_right = t212 <= _runtime.VANISHING * t52
-    t213 = 2.0 * fore_arm
-    t214 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t212))
-    M_right = np.maximum(t200, t214)
+    t188 = lean * lean
+    t189 = 1.0 + t188
+    t190 = 1.0 / np.sqrt(t189)
+    t191 = 1.0 / (t189 * (1.0 + t190))
+    del t189
+    t192 = elbow_11 * t188 * t191 + t190 * (elbow_21 * lean)
+    t193 = turn_both * turn_both
+    t194 = elbow_11 - r_right_0
+    t195 = 1.0 + t193
+    t196 = 1.0 / np.sqrt(t195)
+    t197 = 1.0 / (t195 * (1.0 + t196))
+    del t195
+    t198 = elbow_21 - h_right_0
+    t199 = t192 - t193 * t194 * t197 - t196 * (turn_both * t198)
+    swing_21 = t190 * (elbow_11 * lean) - t191 * (elbow_21 * t188)
+    del t188, t190, t191
+    more_right_21 = swing_21 + t197 * (t193 * t198) - t196 * (turn_both * t194)
+    del t194, t198
+    t200 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
+    change_right = _runtime.select(t109, t199 * (t199 - 2.0 * r_right_0) + t200, 0.0)
     del t200
-    N_right = np.maximum(t199, t214)
-    del t199
-    t215 = 1.0 / (M_right + N_right)
-    ahead_1_right = _runtime.select(short_right, size, t73 + t213 * M_right * t215)
-    t216 = t76 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
-    del lean, turn_both
-    t217 = _runtime.select(t107, t216, t76)
-    del t216
-    sigma_right = _runtime.sign(-t217)
-    t218 = 2.0 * sigma_right
-    t219 = np.sqrt(M_right * N_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t215 * (t218 * t219))
-    del t215
-    t220 = fore_arm * s_bend_right
-    del s_bend_right
-    t221 = np.arctan2(h_right * ahead_1_right - r_right * t220, r_right * ahead_1_right + h_right * t220)
-    del ahead_1_right, h_right, r_right, t220
-    t222 = _runtime.wrap_cut(_runtime.select(folded_right, t211, t221))
-    del t221
-    t223 = t222 + t208
-    del t222
-    bare_right = fore_arm <= _runtime.VANISHING * size
-    t224 = 1.0 / fore_arm
-    t225 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t224), _runtime.select(bare_right, 1.0, a3 * t224))
-    del bare_right, t224
-    t226 = sigma_right * np.arctan2(2.0 * t219, M_right - N_right)
-    del t219
-    t227 = t225 + _runtime.select(short_right, 0.0, t226)
-    del t226
-    t228 = _runtime.wrap(t227) + t208
-    del t227
-    h_left = _runtime.select(t107, h_left_0 + more_left_21, h_left_0)
-    del h_left_0, more_left_21
-    r_left = _runtime.select(t107, r_left_0 - t204, r_left_0)
-    del r_left_0, t204
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t210
-    M_left = np.maximum(t207, 0.0)
+    t201 = nearer_right - change_right
+    del nearer_right
+    t202 = farther_right + change_right
+    del change_right, farther_right
+    t203 = t52 & t98 & t107 & (t108 <= t201) & (t108 <= t202)
+    del t107, t98
+    t204 = elbow_11 - r_left_0
+    del elbow_11
+    t205 = elbow_21 - h_left_0
+    t206 = t192 - t197 * (t193 * t204) - t196 * (turn_both * t205)
+    del t192
+    more_left_21 = swing_21 + t197 * (t193 * t205) - t196 * (turn_both * t204)
+    del swing_21, t193, t196, t197, t204, t205
+    t207 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
+    change_left = _runtime.select(t109, t206 * (t206 - 2.0 * r_left_0) + t207, 0.0)
     del t207
-    N_left = np.maximum(t206, 0.0)
-    del t206
-    t229 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t73 + t213 * M_left * t229)
-    t230 = h_left * ahead_1_left
-    t231 = np.sqrt(M_left * N_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t229 * (t218 * t231))
-    del t218, t229
-    t232 = fore_arm * s_bend_left
+    t208 = -(t100 + change_left)
+    del t100
+    t209 = farther_left + change_left
+    del change_left, farther_left
+    unreachable = np.logical_not(t203 & (t108 <= t208) & (t108 <= t209))
+    del t203
+    t210 = _runtime.poison(invalid | unreachable)
+    t211 = t33 + t210
+    h_right = _runtime.select(t109, h_right_0 + more_right_21, h_right_0)
+    del h_right_0, more_right_21
+    r_right = _runtime.select(t109, r_right_0 - t199, r_right_0)
+    del r_right_0, t199
+    t212 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(h_right) + np.abs(r_right) <= t212
+    t213 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A
+    t214 = L1 * fore_arm
+    short_right = t214 <= _runtime.VANISHING * t54
+    t215 = 2.0 * fore_arm
+    t216 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t214))
+    M_right = np.maximum(t202, t216)
+    del t202
+    N_right = np.maximum(t201, t216)
+    del t201
+    t217 = 1.0 / (M_right + N_right)
+    ahead_1_right = _runtime.select(short_right, size, t75 + t215 * M_right * t217)
+    t218 = t78 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    del lean, turn_both
+    t219 = _runtime.select(t109, t218, t78)
+    del t218
+    sigma_right = _runtime.sign(-t219)
+    t220 = 2.0 * sigma_right
+    t221 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t217 * (t220 * t221))
+    del t217
+    t222 = fore_arm * s_bend_right
+    del s_bend_right
+    t223 = np.arctan2(h_right * ahead_1_right - r_right * t222, r_right * ahead_1_right + h_right * t222)
+    del ahead_1_right, h_right, r_right, t222
+    t224 = _runtime.wrap_cut(_runtime.select(folded_right, t213, t223))
+    del t223
+    t225 = t224 + t210
+    del t224
+    bare_right = fore_arm <= _runtime.VANISHING * size
+    t226 = 1.0 / fore_arm
+    t227 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t226), _runtime.select(bare_right, 1.0, a3 * t226))
+    del bare_right, t226
+    t228 = sigma_right * np.arctan2(2.0 * t221, M_right - N_right)
+    del t221
+    t229 = t227 + _runtime.select(short_right, 0.0, t228)
+    del t228
+    t230 = _runtime.wrap(t229) + t210
+    del t229
+    h_left = _runtime.select(t109, h_left_0 + more_left_21, h_left_0)
+    del h_left_0, more_left_21
+    r_left = _runtime.select(t109, r_left_0 - t206, r_left_0)
+    del r_left_0, t206
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t212
+    M_left = np.maximum(t209, 0.0)
+    del t209
+    N_left = np.maximum(t208, 0.0)
+    del t208
+    t231 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t75 + t215 * M_left * t231)
+    t232 = h_left * ahead_1_left
+    t233 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t231 * (t220 * t233))
+    del t220, t231
+    t234 = fore_arm * s_bend_left
     del s_bend_left
-    t233 = r_left * t232
-    t234 = r_left * ahead_1_left
+    t235 = r_left * t234
+    t236 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t235 = h_left * t232
-    del h_left, t232
-    t236 = _runtime.select(folded_left, t211, np.arctan2(t230 - t233, t234 + t235))
-    t237 = sigma_right * np.arctan2(2.0 * t231, M_left - N_left)
-    del t231
-    t238 = _runtime.select(short_right, 0.0, t237)
-    del t237
-    t239 = _runtime.wrap(principal_pitch)
+    t237 = h_left * t234
+    del h_left, t234
+    t238 = _runtime.select(folded_left, t213, np.arctan2(t232 - t235, t236 + t237))
+    t239 = sigma_right * np.arctan2(2.0 * t233, M_left - N_left)
+    del t233
+    t240 = _runtime.select(short_right, 0.0, t239)
+    del t239
+    t241 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t240 = t239 + t208
-    t241 = _runtime.select(folded_left, t211, np.arctan2(t230 + t233, t234 - t235))
-    del t211, t230, t233, t234, t235
-    up_front_elbow_down_alike = t55 - t57
-    del t55, t57
-    out_front_elbow_down_alike = t58 + t59
-    del t58, t59
-    t242 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t243 = up_front_elbow_down_alike * up_front_elbow_down_alike
-    t244 = 1.0 / np.sqrt(t242 + t243)
-    del t242, t243
-    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t244)
+    t242 = t241 + t210
+    t243 = _runtime.select(folded_left, t213, np.arctan2(t232 + t235, t236 - t237))
+    del t213, t232, t235, t236, t237
+    up_front_elbow_down_alike = t57 - t59
+    del t57, t59
+    out_front_elbow_down_alike = t60 + t61
+    del t60, t61
+    t244 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t245 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t246 = 1.0 / np.sqrt(t244 + t245)
+    del t244, t245
+    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t246)
     del up_front_elbow_down_alike
     elbow_21_front_elbow_down_alike = L1 * stheta2A_front_elbow_down_alike
-    t245 = out_front_elbow_down_alike * t244
-    del out_front_elbow_down_alike, t244
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t245)
-    c_relative_front_elbow_down_alike = t63 - t64
-    del t63, t64
-    t246 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t65 + t66
+    t247 = out_front_elbow_down_alike * t246
+    del out_front_elbow_down_alike, t246
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t247)
+    c_relative_front_elbow_down_alike = t65 - t66
     del t65, t66
-    t247 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t246 - t247
-    del t246, t247
-    t248 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t249 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t250 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t249 + t250
-    del t249, t250
-    point_21_front_elbow_down_alike = t248 + a3 * stheta23A_front_elbow_down_alike
-    del t248
-    t251 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t252 = t251 + t_phi * stheta23A_front_elbow_down_alike
-    del t251
-    t253 = d * t252
-    del t252
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t253
-    t254 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t248 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t67 + t68
+    del t67, t68
+    t249 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t248 - t249
+    del t248, t249
+    t250 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t251 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t252 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t251 + t252
+    del t251, t252
+    point_21_front_elbow_down_alike = t250 + a3 * stheta23A_front_elbow_down_alike
+    del t250
+    t253 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t254 = t253 + t_phi * stheta23A_front_elbow_down_alike
+    del t253
+    t255 = d * t254
+    del t254
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t255
+    t256 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    t255 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t255 + a3 * ctheta23A_front_elbow_down_alike
-    del t255
-    t256 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
-    del stheta23A_front_elbow_down_alike
-    t257 = t_phi * ctheta23A_front_elbow_down_alike - t256
-    del ctheta23A_front_elbow_down_alike, t256
-    t258 = d * t257
+    t257 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t257 + a3 * ctheta23A_front_elbow_down_alike
     del t257
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t258
-    t259 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t260 = t254 + t259
-    del t254, t259
-    gap_front_elbow_down_alike = t258 * t258 + t253 * t253
-    t261 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t258 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
+    del stheta23A_front_elbow_down_alike
+    t259 = t_phi * ctheta23A_front_elbow_down_alike - t258
+    del ctheta23A_front_elbow_down_alike, t258
+    t260 = d * t259
+    del t259
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t260
+    t261 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t262 = t256 + t261
+    del t256, t261
+    gap_front_elbow_down_alike = t260 * t260 + t255 * t255
+    t263 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t262 = 0.0 <= straight_mid_front_elbow_down_alike
+    t264 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
-    t263 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t263 * t263 / large_mid_front_elbow_down_alike
-    t264 = _runtime.select(t262, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t43 * t264
-    del t264
-    t265 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
-    t266 = 2.0 * point_11_front_elbow_down_alike * t258 + 2.0 * point_21_front_elbow_down_alike * t253
-    farther_right_front_elbow_down_alike = _runtime.select(t52 * t260 < t261, t260 - t74, t265 - t266)
-    del t260
-    t267 = _runtime.select(t262, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t262
-    N_mid_front_elbow_down_alike = t43 * t267
-    del t267
-    t268 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t266 - t268
-    margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t269 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
-    t270 = np.maximum(-t269, margin_right_front_elbow_down_alike)
+    t265 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t265 * t265 / large_mid_front_elbow_down_alike
+    t266 = _runtime.select(t264, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t45 * t266
+    del t266
+    t267 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
+    t268 = 2.0 * point_11_front_elbow_down_alike * t260 + 2.0 * point_21_front_elbow_down_alike * t255
+    farther_right_front_elbow_down_alike = _runtime.select(t54 * t262 < t263, t262 - t76, t267 - t268)
+    del t262
+    t269 = _runtime.select(t264, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t264
+    N_mid_front_elbow_down_alike = t45 * t269
     del t269
-    spent_right_front_elbow_down_alike = t270 <= t81
-    del t270
-    t271 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t272 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t273 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
-    t274 = _runtime.select(t273, 1.0, -1.0)
-    del t273
-    t275 = (t271 - t272) * t274
-    del t271, t272
-    t276 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t276 + a_3W * c_relative_front_elbow_down_alike
-    del t276
-    t277 = 2.0 * drawn_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t275 * t277
-    t278 = 1.0 - t86 * drawn_front_elbow_down_alike
-    t279 = t85 * np.sqrt(fore + L1 * (t278 * t278)) / 2000000.0
-    del fore, t278, t85
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t280 = t90 * (t279 + np.abs(tilt_front_elbow_down_alike))
-    del t279, t90, tilt_front_elbow_down_alike
-    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t280, 1.0)
-    t281 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
-    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t281, 0.0)
-    del t281
-    t282 = t43 * t275
+    t270 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t268 - t270
+    margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t271 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t272 = np.maximum(-t271, margin_right_front_elbow_down_alike)
+    del t271
+    spent_right_front_elbow_down_alike = t272 <= t83
+    del t272
+    t273 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t274 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t275 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
+    t276 = _runtime.select(t275, 1.0, -1.0)
     del t275
-    t283 = np.abs(t282)
-    heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t94, 1.0)
-    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t283 / heavy_1_right_front_elbow_down_alike, 0.0)
-    t284 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
-    t285 = _runtime.select(spent_right_front_elbow_down_alike, t284, 0.0)
-    del t284
-    t286 = -(_runtime.FEASIBILITY * (t51 + t285)) <= margin_right_front_elbow_down_alike
-    del t285
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t253
-    del point_21_front_elbow_down_alike, t253
-    t287 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t258
-    del point_11_front_elbow_down_alike, t258
-    t288 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t289 = t287 + t288
-    del t287, t288
-    farther_left_front_elbow_down_alike = _runtime.select(t52 * t289 < t261, t289 - t74, t265 + t266)
-    del t261, t265, t289
-    t290 = t266 + t268
-    del t266, t268
-    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t290)
-    t291 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
-    t292 = np.maximum(-t291, margin_left_front_elbow_down_alike)
-    del t291
-    spent_left_front_elbow_down_alike = t292 <= t81
-    del t292
-    t293 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t294 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t295 = _runtime.select(-t290 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
-    t296 = (t293 - t294) * t295
-    del t293, t294
-    slope_left_front_elbow_down_alike = t277 * t296
-    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t280, 1.0)
-    t297 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
-    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t297, 0.0)
-    del t297
-    t298 = t43 * t296
-    del t296
-    t299 = np.abs(t298)
-    heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t94, 1.0)
-    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t299 / heavy_1_left_front_elbow_down_alike, 0.0)
-    t300 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
-    t301 = _runtime.select(spent_left_front_elbow_down_alike, t300, 0.0)
-    del t300
-    t302 = -(_runtime.FEASIBILITY * (t51 + t301)) <= margin_left_front_elbow_down_alike
-    del t301
-    t303 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
-    t304 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
-    del gain_1_left_front_elbow_down_alike
-    t305 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
-    del gain_0_left_front_elbow_down_alike
-    t306 = _runtime.select(margin_left_front_elbow_down_alike < 0.0, t304 / (t109 + t304 + t305), 0.0)
-    del t304, t305
-    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t306, 0.0)
-    del t306
-    t307 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
-    t308 = heavy_0_left_front_elbow_down_alike * t307
-    t309 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
-    t310 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t311 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t312 = t86 * (t295 * t309 * (L1 - t310 - t311))
-    del t295, t310, t311
-    t313 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t314 = np.sqrt(np.maximum(0.0, 4.0 * t307 * t312 + t313))
-    del t313
-    root_on_1_both_front_elbow_down_alike = _runtime.select(t303, t314, 0.0)
-    del t314
-    t315 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
-    t316 = t51 * heavy_0_left_front_elbow_down_alike
-    t317 = t316 * 5.960464477539063e-08
-    t318 = 1.0 / (t315 - t317)
-    t319 = (t308 * t318 <= 4.547473508864641e-13) & (0.0 < t307 * t318)
-    t320 = 2.0 * t307
-    t321 = 0.0 < -t307
-    t322 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
-    del root_on_1_both_front_elbow_down_alike
-    t323 = t316 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t312)
-    del t316
-    t324 = 1.0 / t323
-    del t323
-    t325 = heavy_0_left_front_elbow_down_alike * t322 * t324
-    t326 = t322 * t324
-    t327 = (t325 <= 9.094947017729282e-13) & (0.0 < t326)
-    del t325
-    far_back_1_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t327, t326, 0.0), 0.0)
-    del t326, t327
-    t328 = _runtime.select(t321, far_back_1_both_front_elbow_down_alike, 0.0)
-    t329 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t319, t318 * t320, 0.0), t328)
-    del t318, t319, t328
-    t330 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
-    del gain_1_right_front_elbow_down_alike
-    t331 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
-    del gain_0_right_front_elbow_down_alike
-    t332 = _runtime.select(margin_right_front_elbow_down_alike < 0.0, t330 / (t109 + t330 + t331), 0.0)
-    del t330, t331
-    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t332, 0.0)
-    del t332
-    t333 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
-    t334 = heavy_0_right_front_elbow_down_alike * t333
-    t335 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t336 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t337 = t86 * (t274 * t309 * (L1 - t335 - t336))
-    del t274, t335, t336
-    t338 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t339 = np.sqrt(np.maximum(0.0, 4.0 * t333 * t337 + t338))
-    del t338
-    root_on_0_both_front_elbow_down_alike = _runtime.select(t303, t339, 0.0)
-    del t339
-    t340 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
-    t341 = t51 * heavy_0_right_front_elbow_down_alike
-    t342 = t341 * 5.960464477539063e-08
-    t343 = 1.0 / (t340 - t342)
-    t344 = (t334 * t343 <= 4.547473508864641e-13) & (0.0 < t333 * t343)
-    t345 = 2.0 * t333
-    t346 = 0.0 < -t333
-    t347 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
-    del root_on_0_both_front_elbow_down_alike
-    t348 = t341 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t337)
-    del t341
-    t349 = 1.0 / t348
-    del t348
-    t350 = heavy_0_right_front_elbow_down_alike * t347 * t349
-    t351 = t347 * t349
-    t352 = (t350 <= 9.094947017729282e-13) & (0.0 < t351)
-    del t350
-    far_back_0_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t352, t351, 0.0), 0.0)
-    del t351, t352
-    t353 = _runtime.select(t346, far_back_0_both_front_elbow_down_alike, 0.0)
-    t354 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t344, t343 * t345, 0.0), t353)
-    del t343, t344, t353
-    near_back_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(np.maximum(0.0, t329), t354), 0.0)
-    del t329, t354
-    t355 = slope_right_front_elbow_down_alike + t337 * near_back_both_front_elbow_down_alike
-    t356 = near_back_both_front_elbow_down_alike * t355 - t333
-    del t355
-    t357 = _runtime.select(0.0 < t356, far_back_0_both_front_elbow_down_alike, 0.0)
-    del far_back_0_both_front_elbow_down_alike, t356
-    t358 = np.maximum(near_back_both_front_elbow_down_alike, t357)
-    del t357
-    t359 = slope_left_front_elbow_down_alike + t312 * near_back_both_front_elbow_down_alike
-    t360 = near_back_both_front_elbow_down_alike * t359 - t307
-    del near_back_both_front_elbow_down_alike, t359
-    t361 = _runtime.select(0.0 < t360, far_back_1_both_front_elbow_down_alike, 0.0)
-    del far_back_1_both_front_elbow_down_alike, t360
-    turn_back_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(t358, t361), 0.0)
-    del t358, t361
-    t362 = slope_left_front_elbow_down_alike + t312 * turn_back_both_front_elbow_down_alike
-    t363 = t307 - turn_back_both_front_elbow_down_alike * t362
-    del t362
-    t364 = slope_right_front_elbow_down_alike + t337 * turn_back_both_front_elbow_down_alike
-    t365 = t333 - turn_back_both_front_elbow_down_alike * t364
-    del t364
-    left_back_both_front_elbow_down_alike = _runtime.select(t303, np.minimum(t363, t365), 0.0)
-    del t363, t365
-    t366 = 1.0 / (t317 + t322)
-    del t317, t322
-    t367 = (-(t308 * t366) <= 4.547473508864641e-13) & (0.0 < -(t307 * t366))
-    del t308
-    t368 = t324 * (heavy_0_left_front_elbow_down_alike * t315)
-    del heavy_0_left_front_elbow_down_alike
-    t369 = -(t315 * t324)
-    del t315, t324
-    t370 = (-t368 <= 9.094947017729282e-13) & (0.0 < t369)
-    del t368
-    far_on_1_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t370, t369, 0.0), 0.0)
-    del t369, t370
-    t371 = _runtime.select(t321, far_on_1_both_front_elbow_down_alike, 0.0)
-    del t321
-    t372 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t367, -(t320 * t366), 0.0), t371)
-    del t320, t366, t367, t371
-    t373 = 1.0 / (t342 + t347)
-    del t342, t347
-    t374 = (-(t334 * t373) <= 4.547473508864641e-13) & (0.0 < -(t333 * t373))
-    del t334
-    t375 = t349 * (heavy_0_right_front_elbow_down_alike * t340)
-    del heavy_0_right_front_elbow_down_alike
-    t376 = -(t340 * t349)
-    del t340, t349
-    t377 = (-t375 <= 9.094947017729282e-13) & (0.0 < t376)
-    del t375
-    far_on_0_both_front_elbow_down_alike = _runtime.select(t303, _runtime.select(t377, t376, 0.0), 0.0)
-    del t376, t377
-    t378 = _runtime.select(t346, far_on_0_both_front_elbow_down_alike, 0.0)
-    del t346
-    t379 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t374, -(t345 * t373), 0.0), t378)
-    del t345, t373, t374, t378
-    near_on_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(np.maximum(0.0, t372), t379), 0.0)
-    del t372, t379
-    t380 = slope_right_front_elbow_down_alike - t337 * near_on_both_front_elbow_down_alike
-    t381 = t333 + near_on_both_front_elbow_down_alike * t380
-    del t380
-    t382 = _runtime.select(0.0 < -t381, far_on_0_both_front_elbow_down_alike, 0.0)
-    del far_on_0_both_front_elbow_down_alike, t381
-    t383 = np.maximum(near_on_both_front_elbow_down_alike, t382)
-    del t382
-    t384 = slope_left_front_elbow_down_alike - t312 * near_on_both_front_elbow_down_alike
-    t385 = t307 + near_on_both_front_elbow_down_alike * t384
-    del near_on_both_front_elbow_down_alike, t384
-    t386 = _runtime.select(0.0 < -t385, far_on_1_both_front_elbow_down_alike, 0.0)
-    del far_on_1_both_front_elbow_down_alike, t385
-    turn_on_both_front_elbow_down_alike = _runtime.select(t303, np.maximum(t383, t386), 0.0)
-    del t383, t386
-    t387 = slope_left_front_elbow_down_alike - t312 * turn_on_both_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike, t312
-    t388 = t307 + turn_on_both_front_elbow_down_alike * t387
-    del t307, t387
-    t389 = slope_right_front_elbow_down_alike - t337 * turn_on_both_front_elbow_down_alike
-    del slope_right_front_elbow_down_alike, t337
-    t390 = t333 + turn_on_both_front_elbow_down_alike * t389
-    del t333, t389
-    left_on_both_front_elbow_down_alike = _runtime.select(t303, np.minimum(t388, t390), 0.0)
-    del t388, t390
-    t391 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
-    del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
-    t392 = _runtime.select(t391, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
-    del t391, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
-    turn_both_front_elbow_down_alike = _runtime.select(t303, t392, 0.0)
-    del t392
-    t393 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
-    del margin_left_front_elbow_down_alike, share_left_front_elbow_down_alike
-    t394 = t51 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_left_front_elbow_down_alike
-    t395 = -(t393 * _runtime.sign(-t298) / (t299 + t394))
-    del t298, t299, t393, t394
-    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t395, 0.0)
-    del spent_left_front_elbow_down_alike, t395
-    t396 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
-    del margin_right_front_elbow_down_alike, share_right_front_elbow_down_alike
-    t397 = t51 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_right_front_elbow_down_alike
-    t398 = -(t396 * _runtime.sign(-t282) / (t283 + t397))
-    del t282, t283, t396, t397
-    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t398, 0.0)
-    del spent_right_front_elbow_down_alike, t398
-    t399 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
-    t400 = _runtime.select(t399, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
-    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t399
-    t401 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t402 = turn_both_front_elbow_down_alike + t400 - t86 * t401
-    del t400, t401
-    lean_front_elbow_down_alike = _runtime.select(t303, t402, 0.0)
-    del t402
-    t403 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
-    t404 = 1.0 + t403
-    t405 = 1.0 / np.sqrt(t404)
-    t406 = 1.0 / (t404 * (1.0 + t405))
-    del t404
-    t407 = elbow_11_front_elbow_down_alike * t403 * t406
-    t408 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
-    t409 = t407 + t405 * t408
-    del t407, t408
-    t410 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t411 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
-    t412 = 1.0 + t410
-    t413 = 1.0 / np.sqrt(t412)
-    t414 = 1.0 / (t412 * (1.0 + t413))
-    del t412
-    t415 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
-    t416 = t413 * (turn_both_front_elbow_down_alike * t415)
-    t417 = t409 - t410 * t411 * t414 - t416
-    del t416
-    t418 = t417 - 2.0 * r_right_0_front_elbow_down_alike
-    t419 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
-    t420 = t406 * (elbow_21_front_elbow_down_alike * t403)
-    del t403, t406
-    swing_21_front_elbow_down_alike = t405 * t419 - t420
-    del t405, t419, t420
-    t421 = swing_21_front_elbow_down_alike + t414 * (t410 * t415)
-    del t415
-    t422 = t413 * (turn_both_front_elbow_down_alike * t411)
-    del t411
-    more_right_21_front_elbow_down_alike = t421 - t422
-    del t421, t422
-    t423 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
-    t424 = t417 * t418 + more_right_21_front_elbow_down_alike * t423
-    del t418, t423
-    change_right_front_elbow_down_alike = _runtime.select(t303, t424, 0.0)
-    del t424
-    t425 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
-    del nearer_right_front_elbow_down_alike
-    t426 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
-    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
-    t427 = t50 & t286 & t302 & (t106 <= t425) & (t106 <= t426)
-    del t286, t302
-    t428 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
-    del elbow_11_front_elbow_down_alike
-    t429 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
-    t430 = t413 * (turn_both_front_elbow_down_alike * t429)
-    t431 = t409 - t414 * (t410 * t428) - t430
-    del t409, t430
-    t432 = t431 * (t431 - 2.0 * r_left_0_front_elbow_down_alike)
-    t433 = swing_21_front_elbow_down_alike + t414 * (t410 * t429)
-    del swing_21_front_elbow_down_alike, t410, t414, t429
-    t434 = t413 * (turn_both_front_elbow_down_alike * t428)
-    del t413, t428
-    more_left_21_front_elbow_down_alike = t433 - t434
-    del t433, t434
-    t435 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
-    t436 = t432 + more_left_21_front_elbow_down_alike * t435
-    del t432, t435
-    change_left_front_elbow_down_alike = _runtime.select(t303, t436, 0.0)
-    del t436
-    t437 = -(t290 + change_left_front_elbow_down_alike)
-    del t290
-    t438 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
-    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t427 & (t106 <= t437) & (t106 <= t438))
-    del t427
-    t439 = _runtime.poison(invalid | unreachable_2)
-    t440 = t31 + t439
-    del t31
-    t441 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
-    del more_right_21_front_elbow_down_alike
-    h_right_front_elbow_down_alike = _runtime.select(t303, t441, h_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, t441
-    r_right_front_elbow_down_alike = _runtime.select(t303, r_right_0_front_elbow_down_alike - t417, r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t417
-    t442 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
-    folded_right_front_elbow_down_alike = t442 <= t210
-    del t442
-    t443 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike
-    M_right_front_elbow_down_alike = np.maximum(t426, t214)
-    del t426
-    N_right_front_elbow_down_alike = np.maximum(t425, t214)
-    del t425
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t444 = 1.0 / whole_right_front_elbow_down_alike
-    del whole_right_front_elbow_down_alike
-    t445 = t73 + t213 * M_right_front_elbow_down_alike * t444
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t445)
-    del t445
-    t446 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t447 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
-    t448 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
-    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
-    t449 = t263 * (1.0 + t447) - straight_mid_front_elbow_down_alike * t448
-    del t447, t448
-    t450 = _runtime.select(t303, t449, t263)
-    del t449
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t450)
-    t451 = 2.0 * sigma_right_front_elbow_down_alike
-    t452 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t453 = np.sqrt(t452)
-    del t452
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t444 * (t451 * t453))
-    del t444
-    t454 = fore_arm * s_bend_right_front_elbow_down_alike
-    del s_bend_right_front_elbow_down_alike
-    t455 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    del ahead_1_right_front_elbow_down_alike
-    t456 = np.arctan2(t446 - r_right_front_elbow_down_alike * t454, t455 + h_right_front_elbow_down_alike * t454)
-    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t446, t454, t455
-    t457 = _runtime.select(folded_right_front_elbow_down_alike, t443, t456)
-    del t456
-    t458 = _runtime.wrap_cut(t457) + t439
-    del t457
-    t459 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    t460 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t453, t459)
-    del t453, t459
-    t461 = t225 + _runtime.select(short_right, 0.0, t460)
-    del t460
-    t462 = _runtime.wrap(t461) + t439
-    del t461
-    t463 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
-    del more_left_21_front_elbow_down_alike
-    h_left_front_elbow_down_alike = _runtime.select(t303, t463, h_left_0_front_elbow_down_alike)
-    del h_left_0_front_elbow_down_alike, t463
-    r_left_front_elbow_down_alike = _runtime.select(t303, r_left_0_front_elbow_down_alike - t431, r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t431
-    t464 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t464 <= t210
-    del t464
-    M_left_front_elbow_down_alike = np.maximum(t438, 0.0)
-    del t438
-    N_left_front_elbow_down_alike = np.maximum(t437, 0.0)
-    del t437
-    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t465 = 1.0 / whole_left_front_elbow_down_alike
-    del whole_left_front_elbow_down_alike
-    t466 = t73 + t213 * M_left_front_elbow_down_alike * t465
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t466)
-    del t466
-    t467 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t468 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t469 = np.sqrt(t468)
-    del t468
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t465 * (t451 * t469))
-    del t451, t465
-    t470 = fore_arm * s_bend_left_front_elbow_down_alike
-    del s_bend_left_front_elbow_down_alike
-    t471 = r_left_front_elbow_down_alike * t470
-    t472 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t473 = h_left_front_elbow_down_alike * t470
-    del h_left_front_elbow_down_alike, t470
-    t474 = _runtime.select(folded_left_front_elbow_down_alike, t443, np.arctan2(t467 - t471, t472 + t473))
-    t475 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    t476 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t469, t475)
-    del t469, t475
-    t477 = _runtime.select(short_right, 0.0, t476)
-    del t476
-    t478 = t239 + t439
-    t479 = _runtime.select(folded_left_front_elbow_down_alike, t443, np.arctan2(t467 + t471, t472 - t473))
-    del t443, t467, t471, t472, t473
-    t480 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t30))
-    del t3, t30
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t61)
-    del t61
-    t481 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t481 - stheta2A * s_relative_front_elbow_down_alike
-    del t481
-    t482 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
-    t483 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    del s_relative_front_elbow_down_alike
-    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t483
-    del c_relative_front_elbow_down_alike, t483
-    point_21_rear_elbow_up_alike = t482 + a3 * stheta23A_rear_elbow_up_alike
-    del t482
-    t484 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
-    t485 = d * (t484 + t_phi * stheta23A_rear_elbow_up_alike)
-    del t484
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t485
-    t486 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
-    t487 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t487 + a3 * ctheta23A_rear_elbow_up_alike
-    del t487
-    t488 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
-    del stheta23A_rear_elbow_up_alike
-    t489 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t488)
-    del ctheta23A_rear_elbow_up_alike, t488
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t489
-    t490 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t491 = t486 + t490
-    del t486, t490
-    gap_rear_elbow_up_alike = t489 * t489 + t485 * t485
-    t492 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t493 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t494 = 2.0 * point_11_rear_elbow_up_alike * t489 + 2.0 * point_21_rear_elbow_up_alike * t485
-    farther_right_rear_elbow_up_alike = _runtime.select(t52 * t491 < t492, t491 - t74, t493 - t494)
-    del t491
-    t495 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
-    del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t494 + t495
-    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t496 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t497 = np.maximum(-t496, margin_right_rear_elbow_up_alike)
-    del t496
-    spent_right_rear_elbow_up_alike = t497 <= t81
-    del t497
-    t498 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t499 = t498 - stheta2A * r_right_0_rear_elbow_up_alike
-    del t498
-    t500 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
-    t501 = _runtime.select(t500, 1.0, -1.0)
-    del t500
-    t502 = t499 * t501
-    del t499
-    slope_right_rear_elbow_up_alike = t277 * t502
-    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t280, 1.0)
-    t503 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
-    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t503, 0.0)
-    del t503
-    t504 = t43 * t502
-    del t502
-    t505 = np.abs(t504)
-    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t94, 1.0)
-    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t505 / heavy_1_right_rear_elbow_up_alike, 0.0)
-    t506 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
-    t507 = _runtime.select(spent_right_rear_elbow_up_alike, t506, 0.0)
-    del t506
-    t508 = -(_runtime.FEASIBILITY * (t51 + t507)) <= margin_right_rear_elbow_up_alike
-    del t507
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t485
-    del point_21_rear_elbow_up_alike, t485
-    t509 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t489
-    del point_11_rear_elbow_up_alike, t489
-    t510 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t511 = t509 + t510
-    del t509, t510
-    farther_left_rear_elbow_up_alike = _runtime.select(t52 * t511 < t492, t511 - t74, t493 + t494)
-    del t492, t493, t511
-    t512 = t494 - t495
-    del t494, t495
-    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t512)
-    t513 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t514 = np.maximum(-t513, margin_left_rear_elbow_up_alike)
-    del t513
-    spent_left_rear_elbow_up_alike = t514 <= t81
-    del t514
-    t515 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    t516 = t515 - stheta2A * r_left_0_rear_elbow_up_alike
-    del t515
-    t517 = _runtime.select(-t512 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
-    t518 = t516 * t517
-    del t516
-    slope_left_rear_elbow_up_alike = t277 * t518
+    t277 = (t273 - t274) * t276
+    del t273, t274
+    t278 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t278 + a_3W * c_relative_front_elbow_down_alike
+    del t278
+    t279 = 2.0 * drawn_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t277 * t279
+    t280 = 1.0 - t88 * drawn_front_elbow_down_alike
+    t281 = t87 * np.sqrt(fore + L1 * (t280 * t280)) / 2000000.0
+    del fore, t280, t87
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t282 = t92 * (t281 + np.abs(tilt_front_elbow_down_alike))
+    del t281, t92, tilt_front_elbow_down_alike
+    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t282, 1.0)
+    t283 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
+    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t283, 0.0)
+    del t283
+    t284 = t45 * t277
     del t277
-    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t280, 1.0)
-    del t280
-    t519 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
-    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t519, 0.0)
-    del t519
-    t520 = t43 * t518
+    t285 = np.abs(t284)
+    heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t96, 1.0)
+    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t285 / heavy_1_right_front_elbow_down_alike, 0.0)
+    t286 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
+    t287 = _runtime.select(spent_right_front_elbow_down_alike, t286, 0.0)
+    del t286
+    t288 = -(_runtime.FEASIBILITY * (t53 + t287)) <= margin_right_front_elbow_down_alike
+    del t287
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t255
+    del point_21_front_elbow_down_alike, t255
+    t289 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t260
+    del point_11_front_elbow_down_alike, t260
+    t290 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t291 = t289 + t290
+    del t289, t290
+    farther_left_front_elbow_down_alike = _runtime.select(t54 * t291 < t263, t291 - t76, t267 + t268)
+    del t263, t267, t291
+    t292 = t268 + t270
+    del t268, t270
+    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t292)
+    t293 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t294 = np.maximum(-t293, margin_left_front_elbow_down_alike)
+    del t293
+    spent_left_front_elbow_down_alike = t294 <= t83
+    del t294
+    t295 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t296 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t297 = _runtime.select(-t292 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
+    t298 = (t295 - t296) * t297
+    del t295, t296
+    slope_left_front_elbow_down_alike = t279 * t298
+    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t282, 1.0)
+    t299 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
+    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t299, 0.0)
+    del t299
+    t300 = t45 * t298
+    del t298
+    t301 = np.abs(t300)
+    heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t96, 1.0)
+    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t301 / heavy_1_left_front_elbow_down_alike, 0.0)
+    t302 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
+    t303 = _runtime.select(spent_left_front_elbow_down_alike, t302, 0.0)
+    del t302
+    t304 = -(_runtime.FEASIBILITY * (t53 + t303)) <= margin_left_front_elbow_down_alike
+    del t303
+    t305 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
+    t306 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
+    del gain_1_left_front_elbow_down_alike
+    t307 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
+    del gain_0_left_front_elbow_down_alike
+    t308 = _runtime.select(margin_left_front_elbow_down_alike < 0.0, t306 / (t111 + t306 + t307), 0.0)
+    del t306, t307
+    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t308, 0.0)
+    del t308
+    t309 = margin_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t310 = heavy_0_left_front_elbow_down_alike * t309
+    t311 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
+    t312 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t313 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t314 = t88 * (t297 * t311 * (L1 - t312 - t313))
+    del t297, t312, t313
+    t315 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t316 = np.sqrt(np.maximum(0.0, 4.0 * t309 * t314 + t315))
+    del t315
+    root_on_1_both_front_elbow_down_alike = _runtime.select(t305, t316, 0.0)
+    del t316
+    t317 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
+    t318 = t53 * heavy_0_left_front_elbow_down_alike
+    t319 = t318 * 5.960464477539063e-08
+    t320 = 1.0 / (t317 - t319)
+    t321 = (t310 * t320 <= 4.547473508864641e-13) & (0.0 < t309 * t320)
+    t322 = 2.0 * t309
+    t323 = 0.0 < -t309
+    t324 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
+    del root_on_1_both_front_elbow_down_alike
+    t325 = t318 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t314)
+    del t318
+    t326 = 1.0 / t325
+    del t325
+    t327 = heavy_0_left_front_elbow_down_alike * t324 * t326
+    t328 = t324 * t326
+    t329 = (t327 <= 9.094947017729282e-13) & (0.0 < t328)
+    del t327
+    far_back_1_both_front_elbow_down_alike = _runtime.select(t305, _runtime.select(t329, t328, 0.0), 0.0)
+    del t328, t329
+    t330 = _runtime.select(t323, far_back_1_both_front_elbow_down_alike, 0.0)
+    t331 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t321, t320 * t322, 0.0), t330)
+    del t320, t321, t330
+    t332 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
+    del gain_1_right_front_elbow_down_alike
+    t333 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
+    del gain_0_right_front_elbow_down_alike
+    t334 = _runtime.select(margin_right_front_elbow_down_alike < 0.0, t332 / (t111 + t332 + t333), 0.0)
+    del t332, t333
+    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t334, 0.0)
+    del t334
+    t335 = margin_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t336 = heavy_0_right_front_elbow_down_alike * t335
+    t337 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t338 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t339 = t88 * (t276 * t311 * (L1 - t337 - t338))
+    del t276, t337, t338
+    t340 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t341 = np.sqrt(np.maximum(0.0, 4.0 * t335 * t339 + t340))
+    del t340
+    root_on_0_both_front_elbow_down_alike = _runtime.select(t305, t341, 0.0)
+    del t341
+    t342 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
+    t343 = t53 * heavy_0_right_front_elbow_down_alike
+    t344 = t343 * 5.960464477539063e-08
+    t345 = 1.0 / (t342 - t344)
+    t346 = (t336 * t345 <= 4.547473508864641e-13) & (0.0 < t335 * t345)
+    t347 = 2.0 * t335
+    t348 = 0.0 < -t335
+    t349 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
+    del root_on_0_both_front_elbow_down_alike
+    t350 = t343 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t339)
+    del t343
+    t351 = 1.0 / t350
+    del t350
+    t352 = heavy_0_right_front_elbow_down_alike * t349 * t351
+    t353 = t349 * t351
+    t354 = (t352 <= 9.094947017729282e-13) & (0.0 < t353)
+    del t352
+    far_back_0_both_front_elbow_down_alike = _runtime.select(t305, _runtime.select(t354, t353, 0.0), 0.0)
+    del t353, t354
+    t355 = _runtime.select(t348, far_back_0_both_front_elbow_down_alike, 0.0)
+    t356 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t346, t345 * t347, 0.0), t355)
+    del t345, t346, t355
+    near_back_both_front_elbow_down_alike = _runtime.select(t305, np.maximum(np.maximum(0.0, t331), t356), 0.0)
+    del t331, t356
+    t357 = slope_right_front_elbow_down_alike + t339 * near_back_both_front_elbow_down_alike
+    t358 = near_back_both_front_elbow_down_alike * t357 - t335
+    del t357
+    t359 = _runtime.select(0.0 < t358, far_back_0_both_front_elbow_down_alike, 0.0)
+    del far_back_0_both_front_elbow_down_alike, t358
+    t360 = np.maximum(near_back_both_front_elbow_down_alike, t359)
+    del t359
+    t361 = slope_left_front_elbow_down_alike + t314 * near_back_both_front_elbow_down_alike
+    t362 = near_back_both_front_elbow_down_alike * t361 - t309
+    del near_back_both_front_elbow_down_alike, t361
+    t363 = _runtime.select(0.0 < t362, far_back_1_both_front_elbow_down_alike, 0.0)
+    del far_back_1_both_front_elbow_down_alike, t362
+    turn_back_both_front_elbow_down_alike = _runtime.select(t305, np.maximum(t360, t363), 0.0)
+    del t360, t363
+    t364 = slope_left_front_elbow_down_alike + t314 * turn_back_both_front_elbow_down_alike
+    t365 = t309 - turn_back_both_front_elbow_down_alike * t364
+    del t364
+    t366 = slope_right_front_elbow_down_alike + t339 * turn_back_both_front_elbow_down_alike
+    t367 = t335 - turn_back_both_front_elbow_down_alike * t366
+    del t366
+    left_back_both_front_elbow_down_alike = _runtime.select(t305, np.minimum(t365, t367), 0.0)
+    del t365, t367
+    t368 = 1.0 / (t319 + t324)
+    del t319, t324
+    t369 = (-(t310 * t368) <= 4.547473508864641e-13) & (0.0 < -(t309 * t368))
+    del t310
+    t370 = t326 * (heavy_0_left_front_elbow_down_alike * t317)
+    del heavy_0_left_front_elbow_down_alike
+    t371 = -(t317 * t326)
+    del t317, t326
+    t372 = (-t370 <= 9.094947017729282e-13) & (0.0 < t371)
+    del t370
+    far_on_1_both_front_elbow_down_alike = _runtime.select(t305, _runtime.select(t372, t371, 0.0), 0.0)
+    del t371, t372
+    t373 = _runtime.select(t323, far_on_1_both_front_elbow_down_alike, 0.0)
+    del t323
+    t374 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t369, -(t322 * t368), 0.0), t373)
+    del t322, t368, t369, t373
+    t375 = 1.0 / (t344 + t349)
+    del t344, t349
+    t376 = (-(t336 * t375) <= 4.547473508864641e-13) & (0.0 < -(t335 * t375))
+    del t336
+    t377 = t351 * (heavy_0_right_front_elbow_down_alike * t342)
+    del heavy_0_right_front_elbow_down_alike
+    t378 = -(t342 * t351)
+    del t342, t351
+    t379 = (-t377 <= 9.094947017729282e-13) & (0.0 < t378)
+    del t377
+    far_on_0_both_front_elbow_down_alike = _runtime.select(t305, _runtime.select(t379, t378, 0.0), 0.0)
+    del t378, t379
+    t380 = _runtime.select(t348, far_on_0_both_front_elbow_down_alike, 0.0)
+    del t348
+    t381 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t376, -(t347 * t375), 0.0), t380)
+    del t347, t375, t376, t380
+    near_on_both_front_elbow_down_alike = _runtime.select(t305, np.maximum(np.maximum(0.0, t374), t381), 0.0)
+    del t374, t381
+    t382 = slope_right_front_elbow_down_alike - t339 * near_on_both_front_elbow_down_alike
+    t383 = t335 + near_on_both_front_elbow_down_alike * t382
+    del t382
+    t384 = _runtime.select(0.0 < -t383, far_on_0_both_front_elbow_down_alike, 0.0)
+    del far_on_0_both_front_elbow_down_alike, t383
+    t385 = np.maximum(near_on_both_front_elbow_down_alike, t384)
+    del t384
+    t386 = slope_left_front_elbow_down_alike - t314 * near_on_both_front_elbow_down_alike
+    t387 = t309 + near_on_both_front_elbow_down_alike * t386
+    del near_on_both_front_elbow_down_alike, t386
+    t388 = _runtime.select(0.0 < -t387, far_on_1_both_front_elbow_down_alike, 0.0)
+    del far_on_1_both_front_elbow_down_alike, t387
+    turn_on_both_front_elbow_down_alike = _runtime.select(t305, np.maximum(t385, t388), 0.0)
+    del t385, t388
+    t389 = slope_left_front_elbow_down_alike - t314 * turn_on_both_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike, t314
+    t390 = t309 + turn_on_both_front_elbow_down_alike * t389
+    del t309, t389
+    t391 = slope_right_front_elbow_down_alike - t339 * turn_on_both_front_elbow_down_alike
+    del slope_right_front_elbow_down_alike, t339
+    t392 = t335 + turn_on_both_front_elbow_down_alike * t391
+    del t335, t391
+    left_on_both_front_elbow_down_alike = _runtime.select(t305, np.minimum(t390, t392), 0.0)
+    del t390, t392
+    t393 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
+    del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
+    t394 = _runtime.select(t393, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
+    del t393, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
+    turn_both_front_elbow_down_alike = _runtime.select(t305, t394, 0.0)
+    del t394
+    t395 = margin_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    del margin_left_front_elbow_down_alike, share_left_front_elbow_down_alike
+    t396 = t53 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_left_front_elbow_down_alike
+    t397 = -(t395 * _runtime.sign(-t300) / (t301 + t396))
+    del t300, t301, t395, t396
+    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t397, 0.0)
+    del spent_left_front_elbow_down_alike, t397
+    t398 = margin_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    del margin_right_front_elbow_down_alike, share_right_front_elbow_down_alike
+    t399 = t53 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_front_elbow_down_alike
+    t400 = -(t398 * _runtime.sign(-t284) / (t285 + t399))
+    del t284, t285, t398, t399
+    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t400, 0.0)
+    del spent_right_front_elbow_down_alike, t400
+    t401 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
+    t402 = _runtime.select(t401, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
+    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t401
+    t403 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t404 = turn_both_front_elbow_down_alike + t402 - t88 * t403
+    del t402, t403
+    lean_front_elbow_down_alike = _runtime.select(t305, t404, 0.0)
+    del t404
+    t405 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
+    t406 = 1.0 + t405
+    t407 = 1.0 / np.sqrt(t406)
+    t408 = 1.0 / (t406 * (1.0 + t407))
+    del t406
+    t409 = elbow_11_front_elbow_down_alike * t405 * t408
+    t410 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
+    t411 = t409 + t407 * t410
+    del t409, t410
+    t412 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t413 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
+    t414 = 1.0 + t412
+    t415 = 1.0 / np.sqrt(t414)
+    t416 = 1.0 / (t414 * (1.0 + t415))
+    del t414
+    t417 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
+    t418 = t415 * (turn_both_front_elbow_down_alike * t417)
+    t419 = t411 - t412 * t413 * t416 - t418
+    del t418
+    t420 = t419 - 2.0 * r_right_0_front_elbow_down_alike
+    t421 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
+    t422 = t408 * (elbow_21_front_elbow_down_alike * t405)
+    del t405, t408
+    swing_21_front_elbow_down_alike = t407 * t421 - t422
+    del t407, t421, t422
+    t423 = swing_21_front_elbow_down_alike + t416 * (t412 * t417)
+    del t417
+    t424 = t415 * (turn_both_front_elbow_down_alike * t413)
+    del t413
+    more_right_21_front_elbow_down_alike = t423 - t424
+    del t423, t424
+    t425 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
+    t426 = t419 * t420 + more_right_21_front_elbow_down_alike * t425
+    del t420, t425
+    change_right_front_elbow_down_alike = _runtime.select(t305, t426, 0.0)
+    del t426
+    t427 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
+    del nearer_right_front_elbow_down_alike
+    t428 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
+    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
+    t429 = t52 & t288 & t304 & (t108 <= t427) & (t108 <= t428)
+    del t288, t304
+    t430 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
+    del elbow_11_front_elbow_down_alike
+    t431 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
+    t432 = t415 * (turn_both_front_elbow_down_alike * t431)
+    t433 = t411 - t416 * (t412 * t430) - t432
+    del t411, t432
+    t434 = t433 * (t433 - 2.0 * r_left_0_front_elbow_down_alike)
+    t435 = swing_21_front_elbow_down_alike + t416 * (t412 * t431)
+    del swing_21_front_elbow_down_alike, t412, t416, t431
+    t436 = t415 * (turn_both_front_elbow_down_alike * t430)
+    del t415, t430
+    more_left_21_front_elbow_down_alike = t435 - t436
+    del t435, t436
+    t437 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
+    t438 = t434 + more_left_21_front_elbow_down_alike * t437
+    del t434, t437
+    change_left_front_elbow_down_alike = _runtime.select(t305, t438, 0.0)
+    del t438
+    t439 = -(t292 + change_left_front_elbow_down_alike)
+    del t292
+    t440 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
+    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t429 & (t108 <= t439) & (t108 <= t440))
+    del t429
+    t441 = _runtime.poison(invalid | unreachable_2)
+    t442 = t33 + t441
+    del t33
+    t443 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
+    del more_right_21_front_elbow_down_alike
+    h_right_front_elbow_down_alike = _runtime.select(t305, t443, h_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, t443
+    r_right_front_elbow_down_alike = _runtime.select(t305, r_right_0_front_elbow_down_alike - t419, r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t419
+    t444 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
+    folded_right_front_elbow_down_alike = t444 <= t212
+    del t444
+    t445 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(t428, t216)
+    del t428
+    N_right_front_elbow_down_alike = np.maximum(t427, t216)
+    del t427
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t446 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    t447 = t75 + t215 * M_right_front_elbow_down_alike * t446
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t447)
+    del t447
+    t448 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t449 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t450 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
+    t451 = t265 * (1.0 + t449) - straight_mid_front_elbow_down_alike * t450
+    del t449, t450
+    t452 = _runtime.select(t305, t451, t265)
+    del t451
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t452)
+    t453 = 2.0 * sigma_right_front_elbow_down_alike
+    t454 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t455 = np.sqrt(t454)
+    del t454
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t446 * (t453 * t455))
+    del t446
+    t456 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
+    t457 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    t458 = np.arctan2(t448 - r_right_front_elbow_down_alike * t456, t457 + h_right_front_elbow_down_alike * t456)
+    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t448, t456, t457
+    t459 = _runtime.select(folded_right_front_elbow_down_alike, t445, t458)
+    del t458
+    t460 = _runtime.wrap_cut(t459) + t441
+    del t459
+    t461 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t462 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t455, t461)
+    del t455, t461
+    t463 = t227 + _runtime.select(short_right, 0.0, t462)
+    del t462
+    t464 = _runtime.wrap(t463) + t441
+    del t463
+    t465 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
+    del more_left_21_front_elbow_down_alike
+    h_left_front_elbow_down_alike = _runtime.select(t305, t465, h_left_0_front_elbow_down_alike)
+    del h_left_0_front_elbow_down_alike, t465
+    r_left_front_elbow_down_alike = _runtime.select(t305, r_left_0_front_elbow_down_alike - t433, r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t433
+    t466 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t466 <= t212
+    del t466
+    M_left_front_elbow_down_alike = np.maximum(t440, 0.0)
+    del t440
+    N_left_front_elbow_down_alike = np.maximum(t439, 0.0)
+    del t439
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t467 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
+    t468 = t75 + t215 * M_left_front_elbow_down_alike * t467
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t468)
+    del t468
+    t469 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t470 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t471 = np.sqrt(t470)
+    del t470
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t467 * (t453 * t471))
+    del t453, t467
+    t472 = fore_arm * s_bend_left_front_elbow_down_alike
+    del s_bend_left_front_elbow_down_alike
+    t473 = r_left_front_elbow_down_alike * t472
+    t474 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
+    t475 = h_left_front_elbow_down_alike * t472
+    del h_left_front_elbow_down_alike, t472
+    t476 = _runtime.select(folded_left_front_elbow_down_alike, t445, np.arctan2(t469 - t473, t474 + t475))
+    t477 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t478 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t471, t477)
+    del t471, t477
+    t479 = _runtime.select(short_right, 0.0, t478)
+    del t478
+    t480 = t241 + t441
+    t481 = _runtime.select(folded_left_front_elbow_down_alike, t445, np.arctan2(t469 + t473, t474 - t475))
+    del t445, t469, t473, t474, t475
+    t482 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t32))
+    del t3, t32
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t63)
+    del t63
+    t483 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t483 - stheta2A * s_relative_front_elbow_down_alike
+    del t483
+    t484 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
+    t485 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    del s_relative_front_elbow_down_alike
+    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t485
+    del c_relative_front_elbow_down_alike, t485
+    point_21_rear_elbow_up_alike = t484 + a3 * stheta23A_rear_elbow_up_alike
+    del t484
+    t486 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t487 = d * (t486 + t_phi * stheta23A_rear_elbow_up_alike)
+    del t486
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t487
+    t488 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
+    t489 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t489 + a3 * ctheta23A_rear_elbow_up_alike
+    del t489
+    t490 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
+    del stheta23A_rear_elbow_up_alike
+    t491 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t490)
+    del ctheta23A_rear_elbow_up_alike, t490
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t491
+    t492 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t493 = t488 + t492
+    del t488, t492
+    gap_rear_elbow_up_alike = t491 * t491 + t487 * t487
+    t494 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t495 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t496 = 2.0 * point_11_rear_elbow_up_alike * t491 + 2.0 * point_21_rear_elbow_up_alike * t487
+    farther_right_rear_elbow_up_alike = _runtime.select(t54 * t493 < t494, t493 - t76, t495 - t496)
+    del t493
+    t497 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    nearer_right_rear_elbow_up_alike = t496 + t497
+    margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t498 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t499 = np.maximum(-t498, margin_right_rear_elbow_up_alike)
+    del t498
+    spent_right_rear_elbow_up_alike = t499 <= t83
+    del t499
+    t500 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t501 = t500 - stheta2A * r_right_0_rear_elbow_up_alike
+    del t500
+    t502 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
+    t503 = _runtime.select(t502, 1.0, -1.0)
+    del t502
+    t504 = t501 * t503
+    del t501
+    slope_right_rear_elbow_up_alike = t279 * t504
+    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t282, 1.0)
+    t505 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
+    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t505, 0.0)
+    del t505
+    t506 = t45 * t504
+    del t504
+    t507 = np.abs(t506)
+    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t96, 1.0)
+    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t507 / heavy_1_right_rear_elbow_up_alike, 0.0)
+    t508 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
+    t509 = _runtime.select(spent_right_rear_elbow_up_alike, t508, 0.0)
+    del t508
+    t510 = -(_runtime.FEASIBILITY * (t53 + t509)) <= margin_right_rear_elbow_up_alike
+    del t509
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t487
+    del point_21_rear_elbow_up_alike, t487
+    t511 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t491
+    del point_11_rear_elbow_up_alike, t491
+    t512 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t513 = t511 + t512
+    del t511, t512
+    farther_left_rear_elbow_up_alike = _runtime.select(t54 * t513 < t494, t513 - t76, t495 + t496)
+    del t494, t495, t513
+    t514 = t496 - t497
+    del t496, t497
+    margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t514)
+    t515 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t516 = np.maximum(-t515, margin_left_rear_elbow_up_alike)
+    del t515
+    spent_left_rear_elbow_up_alike = t516 <= t83
+    del t516
+    t517 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    t518 = t517 - stheta2A * r_left_0_rear_elbow_up_alike
+    del t517
+    t519 = _runtime.select(-t514 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
+    t520 = t518 * t519
     del t518
-    t521 = np.abs(t520)
-    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t94, 1.0)
-    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t521 / heavy_1_left_rear_elbow_up_alike, 0.0)
-    t522 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
-    t523 = _runtime.select(spent_left_rear_elbow_up_alike, t522, 0.0)
-    del t522
-    t524 = -(_runtime.FEASIBILITY * (t51 + t523)) <= margin_left_rear_elbow_up_alike
-    del t523
-    t525 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
-    t526 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t279 * t520
+    del t279
+    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t282, 1.0)
+    del t282
+    t521 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
+    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t521, 0.0)
+    del t521
+    t522 = t45 * t520
+    del t520
+    t523 = np.abs(t522)
+    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t96, 1.0)
+    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t523 / heavy_1_left_rear_elbow_up_alike, 0.0)
+    t524 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
+    t525 = _runtime.select(spent_left_rear_elbow_up_alike, t524, 0.0)
+    del t524
+    t526 = -(_runtime.FEASIBILITY * (t53 + t525)) <= margin_left_rear_elbow_up_alike
+    del t525
+    t527 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
+    t528 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
     del gain_1_left_rear_elbow_up_alike
-    t527 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
+    t529 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
     del gain_0_left_rear_elbow_up_alike
-    t528 = _runtime.select(margin_left_rear_elbow_up_alike < 0.0, t526 / (t109 + t526 + t527), 0.0)
-    del t526, t527
-    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t528, 0.0)
-    del t528
-    t529 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
-    t530 = heavy_0_left_rear_elbow_up_alike * t529
-    t531 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t532 = L1 - t531 - stheta2A * h_left_0_rear_elbow_up_alike
-    del t531
-    t533 = t86 * (t309 * t517 * t532)
-    del t517, t532
-    t534 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t535 = np.sqrt(np.maximum(0.0, 4.0 * t529 * t533 + t534))
-    del t534
-    root_on_1_both_rear_elbow_up_alike = _runtime.select(t525, t535, 0.0)
-    del t535
-    t536 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
-    t537 = t51 * heavy_0_left_rear_elbow_up_alike
-    t538 = t537 * 5.960464477539063e-08
-    t539 = 1.0 / (t536 - t538)
-    t540 = (t530 * t539 <= 4.547473508864641e-13) & (0.0 < t529 * t539)
-    t541 = 2.0 * t529
-    t542 = 0.0 < -t529
-    t543 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
-    del root_on_1_both_rear_elbow_up_alike
-    t544 = t537 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t533)
-    del t537
-    t545 = 1.0 / t544
-    del t544
-    t546 = heavy_0_left_rear_elbow_up_alike * t543 * t545
-    t547 = t543 * t545
-    t548 = (t546 <= 9.094947017729282e-13) & (0.0 < t547)
-    del t546
-    far_back_1_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t548, t547, 0.0), 0.0)
-    del t547, t548
-    t549 = _runtime.select(t542, far_back_1_both_rear_elbow_up_alike, 0.0)
-    t550 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t540, t539 * t541, 0.0), t549)
-    del t539, t540, t549
-    t551 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
-    del gain_1_right_rear_elbow_up_alike
-    t552 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
-    del gain_0_right_rear_elbow_up_alike
-    t553 = _runtime.select(margin_right_rear_elbow_up_alike < 0.0, t551 / (t109 + t551 + t552), 0.0)
-    del t551, t552
-    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t553, 0.0)
-    del t553
-    t554 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
-    t555 = heavy_0_right_rear_elbow_up_alike * t554
-    t556 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t557 = L1 - t556 - stheta2A * h_right_0_rear_elbow_up_alike
-    del t556
-    t558 = t86 * (t309 * t501 * t557)
-    del t309, t501, t557
-    t559 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t560 = np.sqrt(np.maximum(0.0, 4.0 * t554 * t558 + t559))
-    del t559
-    root_on_0_both_rear_elbow_up_alike = _runtime.select(t525, t560, 0.0)
-    del t560
-    t561 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
-    t562 = t51 * heavy_0_right_rear_elbow_up_alike
-    t563 = t562 * 5.960464477539063e-08
-    t564 = 1.0 / (t561 - t563)
-    t565 = (t555 * t564 <= 4.547473508864641e-13) & (0.0 < t554 * t564)
-    t566 = 2.0 * t554
-    t567 = 0.0 < -t554
-    t568 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
-    del root_on_0_both_rear_elbow_up_alike
-    t569 = t562 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t558)
-    del t562
-    t570 = 1.0 / t569
-    del t569
-    t571 = heavy_0_right_rear_elbow_up_alike * t568 * t570
-    t572 = t568 * t570
-    t573 = (t571 <= 9.094947017729282e-13) & (0.0 < t572)
-    del t571
-    far_back_0_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t573, t572, 0.0), 0.0)
-    del t572, t573
-    t574 = _runtime.select(t567, far_back_0_both_rear_elbow_up_alike, 0.0)
-    t575 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t565, t564 * t566, 0.0), t574)
-    del t564, t565, t574
-    near_back_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(np.maximum(0.0, t550), t575), 0.0)
-    del t550, t575
-    t576 = slope_right_rear_elbow_up_alike + t558 * near_back_both_rear_elbow_up_alike
-    t577 = near_back_both_rear_elbow_up_alike * t576 - t554
-    del t576
-    t578 = _runtime.select(0.0 < t577, far_back_0_both_rear_elbow_up_alike, 0.0)
-    del far_back_0_both_rear_elbow_up_alike, t577
-    t579 = np.maximum(near_back_both_rear_elbow_up_alike, t578)
-    del t578
-    t580 = slope_left_rear_elbow_up_alike + t533 * near_back_both_rear_elbow_up_alike
-    t581 = near_back_both_rear_elbow_up_alike * t580 - t529
-    del near_back_both_rear_elbow_up_alike, t580
-    t582 = _runtime.select(0.0 < t581, far_back_1_both_rear_elbow_up_alike, 0.0)
-    del far_back_1_both_rear_elbow_up_alike, t581
-    turn_back_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(t579, t582), 0.0)
-    del t579, t582
-    t583 = slope_left_rear_elbow_up_alike + t533 * turn_back_both_rear_elbow_up_alike
-    t584 = t529 - turn_back_both_rear_elbow_up_alike * t583
-    del t583
-    t585 = slope_right_rear_elbow_up_alike + t558 * turn_back_both_rear_elbow_up_alike
-    t586 = t554 - turn_back_both_rear_elbow_up_alike * t585
-    del t585
-    left_back_both_rear_elbow_up_alike = _runtime.select(t525, np.minimum(t584, t586), 0.0)
-    del t584, t586
-    t587 = 1.0 / (t538 + t543)
-    del t538, t543
-    t588 = (-(t530 * t587) <= 4.547473508864641e-13) & (0.0 < -(t529 * t587))
+    t530 = _runtime.select(margin_left_rear_elbow_up_alike < 0.0, t528 / (t111 + t528 + t529), 0.0)
+    del t528, t529
+    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t530, 0.0)
     del t530
-    t589 = t545 * (heavy_0_left_rear_elbow_up_alike * t536)
-    del heavy_0_left_rear_elbow_up_alike
-    t590 = -(t536 * t545)
-    del t536, t545
-    t591 = (-t589 <= 9.094947017729282e-13) & (0.0 < t590)
-    del t589
-    far_on_1_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t591, t590, 0.0), 0.0)
-    del t590, t591
-    t592 = _runtime.select(t542, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del t542
-    t593 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t588, -(t541 * t587), 0.0), t592)
-    del t541, t587, t588, t592
-    t594 = 1.0 / (t563 + t568)
-    del t563, t568
-    t595 = (-(t555 * t594) <= 4.547473508864641e-13) & (0.0 < -(t554 * t594))
+    t531 = margin_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t532 = heavy_0_left_rear_elbow_up_alike * t531
+    t533 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t534 = L1 - t533 - stheta2A * h_left_0_rear_elbow_up_alike
+    del t533
+    t535 = t88 * (t311 * t519 * t534)
+    del t519, t534
+    t536 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t537 = np.sqrt(np.maximum(0.0, 4.0 * t531 * t535 + t536))
+    del t536
+    root_on_1_both_rear_elbow_up_alike = _runtime.select(t527, t537, 0.0)
+    del t537
+    t538 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
+    t539 = t53 * heavy_0_left_rear_elbow_up_alike
+    t540 = t539 * 5.960464477539063e-08
+    t541 = 1.0 / (t538 - t540)
+    t542 = (t532 * t541 <= 4.547473508864641e-13) & (0.0 < t531 * t541)
+    t543 = 2.0 * t531
+    t544 = 0.0 < -t531
+    t545 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
+    del root_on_1_both_rear_elbow_up_alike
+    t546 = t539 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t535)
+    del t539
+    t547 = 1.0 / t546
+    del t546
+    t548 = heavy_0_left_rear_elbow_up_alike * t545 * t547
+    t549 = t545 * t547
+    t550 = (t548 <= 9.094947017729282e-13) & (0.0 < t549)
+    del t548
+    far_back_1_both_rear_elbow_up_alike = _runtime.select(t527, _runtime.select(t550, t549, 0.0), 0.0)
+    del t549, t550
+    t551 = _runtime.select(t544, far_back_1_both_rear_elbow_up_alike, 0.0)
+    t552 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t542, t541 * t543, 0.0), t551)
+    del t541, t542, t551
+    t553 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
+    del gain_1_right_rear_elbow_up_alike
+    t554 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
+    del gain_0_right_rear_elbow_up_alike
+    t555 = _runtime.select(margin_right_rear_elbow_up_alike < 0.0, t553 / (t111 + t553 + t554), 0.0)
+    del t553, t554
+    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t555, 0.0)
     del t555
-    t596 = t570 * (heavy_0_right_rear_elbow_up_alike * t561)
+    t556 = margin_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t557 = heavy_0_right_rear_elbow_up_alike * t556
+    t558 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t559 = L1 - t558 - stheta2A * h_right_0_rear_elbow_up_alike
+    del t558
+    t560 = t88 * (t311 * t503 * t559)
+    del t311, t503, t559
+    t561 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t562 = np.sqrt(np.maximum(0.0, 4.0 * t556 * t560 + t561))
+    del t561
+    root_on_0_both_rear_elbow_up_alike = _runtime.select(t527, t562, 0.0)
+    del t562
+    t563 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
+    t564 = t53 * heavy_0_right_rear_elbow_up_alike
+    t565 = t564 * 5.960464477539063e-08
+    t566 = 1.0 / (t563 - t565)
+    t567 = (t557 * t566 <= 4.547473508864641e-13) & (0.0 < t556 * t566)
+    t568 = 2.0 * t556
+    t569 = 0.0 < -t556
+    t570 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
+    del root_on_0_both_rear_elbow_up_alike
+    t571 = t564 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t560)
+    del t564
+    t572 = 1.0 / t571
+    del t571
+    t573 = heavy_0_right_rear_elbow_up_alike * t570 * t572
+    t574 = t570 * t572
+    t575 = (t573 <= 9.094947017729282e-13) & (0.0 < t574)
+    del t573
+    far_back_0_both_rear_elbow_up_alike = _runtime.select(t527, _runtime.select(t575, t574, 0.0), 0.0)
+    del t574, t575
+    t576 = _runtime.select(t569, far_back_0_both_rear_elbow_up_alike, 0.0)
+    t577 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t567, t566 * t568, 0.0), t576)
+    del t566, t567, t576
+    near_back_both_rear_elbow_up_alike = _runtime.select(t527, np.maximum(np.maximum(0.0, t552), t577), 0.0)
+    del t552, t577
+    t578 = slope_right_rear_elbow_up_alike + t560 * near_back_both_rear_elbow_up_alike
+    t579 = near_back_both_rear_elbow_up_alike * t578 - t556
+    del t578
+    t580 = _runtime.select(0.0 < t579, far_back_0_both_rear_elbow_up_alike, 0.0)
+    del far_back_0_both_rear_elbow_up_alike, t579
+    t581 = np.maximum(near_back_both_rear_elbow_up_alike, t580)
+    del t580
+    t582 = slope_left_rear_elbow_up_alike + t535 * near_back_both_rear_elbow_up_alike
+    t583 = near_back_both_rear_elbow_up_alike * t582 - t531
+    del near_back_both_rear_elbow_up_alike, t582
+    t584 = _runtime.select(0.0 < t583, far_back_1_both_rear_elbow_up_alike, 0.0)
+    del far_back_1_both_rear_elbow_up_alike, t583
+    turn_back_both_rear_elbow_up_alike = _runtime.select(t527, np.maximum(t581, t584), 0.0)
+    del t581, t584
+    t585 = slope_left_rear_elbow_up_alike + t535 * turn_back_both_rear_elbow_up_alike
+    t586 = t531 - turn_back_both_rear_elbow_up_alike * t585
+    del t585
+    t587 = slope_right_rear_elbow_up_alike + t560 * turn_back_both_rear_elbow_up_alike
+    t588 = t556 - turn_back_both_rear_elbow_up_alike * t587
+    del t587
+    left_back_both_rear_elbow_up_alike = _runtime.select(t527, np.minimum(t586, t588), 0.0)
+    del t586, t588
+    t589 = 1.0 / (t540 + t545)
+    del t540, t545
+    t590 = (-(t532 * t589) <= 4.547473508864641e-13) & (0.0 < -(t531 * t589))
+    del t532
+    t591 = t547 * (heavy_0_left_rear_elbow_up_alike * t538)
+    del heavy_0_left_rear_elbow_up_alike
+    t592 = -(t538 * t547)
+    del t538, t547
+    t593 = (-t591 <= 9.094947017729282e-13) & (0.0 < t592)
+    del t591
+    far_on_1_both_rear_elbow_up_alike = _runtime.select(t527, _runtime.select(t593, t592, 0.0), 0.0)
+    del t592, t593
+    t594 = _runtime.select(t544, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del t544
+    t595 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t590, -(t543 * t589), 0.0), t594)
+    del t543, t589, t590, t594
+    t596 = 1.0 / (t565 + t570)
+    del t565, t570
+    t597 = (-(t557 * t596) <= 4.547473508864641e-13) & (0.0 < -(t556 * t596))
+    del t557
+    t598 = t572 * (heavy_0_right_rear_elbow_up_alike * t563)
     del heavy_0_right_rear_elbow_up_alike
-    t597 = -(t561 * t570)
-    del t561, t570
-    t598 = (-t596 <= 9.094947017729282e-13) & (0.0 < t597)
-    del t596
-    far_on_0_both_rear_elbow_up_alike = _runtime.select(t525, _runtime.select(t598, t597, 0.0), 0.0)
-    del t597, t598
-    t599 = _runtime.select(t567, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del t567
-    t600 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t595, -(t566 * t594), 0.0), t599)
-    del t566, t594, t595, t599
-    near_on_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(np.maximum(0.0, t593), t600), 0.0)
-    del t593, t600
-    t601 = slope_right_rear_elbow_up_alike - t558 * near_on_both_rear_elbow_up_alike
-    t602 = t554 + near_on_both_rear_elbow_up_alike * t601
-    del t601
-    t603 = _runtime.select(0.0 < -t602, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del far_on_0_both_rear_elbow_up_alike, t602
-    t604 = np.maximum(near_on_both_rear_elbow_up_alike, t603)
+    t599 = -(t563 * t572)
+    del t563, t572
+    t600 = (-t598 <= 9.094947017729282e-13) & (0.0 < t599)
+    del t598
+    far_on_0_both_rear_elbow_up_alike = _runtime.select(t527, _runtime.select(t600, t599, 0.0), 0.0)
+    del t599, t600
+    t601 = _runtime.select(t569, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del t569
+    t602 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t597, -(t568 * t596), 0.0), t601)
+    del t568, t596, t597, t601
+    near_on_both_rear_elbow_up_alike = _runtime.select(t527, np.maximum(np.maximum(0.0, t595), t602), 0.0)
+    del t595, t602
+    t603 = slope_right_rear_elbow_up_alike - t560 * near_on_both_rear_elbow_up_alike
+    t604 = t556 + near_on_both_rear_elbow_up_alike * t603
     del t603
-    t605 = slope_left_rear_elbow_up_alike - t533 * near_on_both_rear_elbow_up_alike
-    t606 = t529 + near_on_both_rear_elbow_up_alike * t605
-    del near_on_both_rear_elbow_up_alike, t605
-    t607 = _runtime.select(0.0 < -t606, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del far_on_1_both_rear_elbow_up_alike, t606
-    turn_on_both_rear_elbow_up_alike = _runtime.select(t525, np.maximum(t604, t607), 0.0)
-    del t604, t607
-    t608 = slope_left_rear_elbow_up_alike - t533 * turn_on_both_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike, t533
-    t609 = t529 + turn_on_both_rear_elbow_up_alike * t608
-    del t529, t608
-    t610 = slope_right_rear_elbow_up_alike - t558 * turn_on_both_rear_elbow_up_alike
-    del slope_right_rear_elbow_up_alike, t558
-    t611 = t554 + turn_on_both_rear_elbow_up_alike * t610
-    del t554, t610
-    left_on_both_rear_elbow_up_alike = _runtime.select(t525, np.minimum(t609, t611), 0.0)
-    del t609, t611
-    t612 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
+    t605 = _runtime.select(0.0 < -t604, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del far_on_0_both_rear_elbow_up_alike, t604
+    t606 = np.maximum(near_on_both_rear_elbow_up_alike, t605)
+    del t605
+    t607 = slope_left_rear_elbow_up_alike - t535 * near_on_both_rear_elbow_up_alike
+    t608 = t531 + near_on_both_rear_elbow_up_alike * t607
+    del near_on_both_rear_elbow_up_alike, t607
+    t609 = _runtime.select(0.0 < -t608, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del far_on_1_both_rear_elbow_up_alike, t608
+    turn_on_both_rear_elbow_up_alike = _runtime.select(t527, np.maximum(t606, t609), 0.0)
+    del t606, t609
+    t610 = slope_left_rear_elbow_up_alike - t535 * turn_on_both_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike, t535
+    t611 = t531 + turn_on_both_rear_elbow_up_alike * t610
+    del t531, t610
+    t612 = slope_right_rear_elbow_up_alike - t560 * turn_on_both_rear_elbow_up_alike
+    del slope_right_rear_elbow_up_alike, t560
+    t613 = t556 + turn_on_both_rear_elbow_up_alike * t612
+    del t556, t612
+    left_on_both_rear_elbow_up_alike = _runtime.select(t527, np.minimum(t611, t613), 0.0)
+    del t611, t613
+    t614 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
     del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
-    t613 = _runtime.select(t612, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
-    del t612, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
-    turn_both_rear_elbow_up_alike = _runtime.select(t525, t613, 0.0)
-    del t613
-    t614 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    t615 = _runtime.select(t614, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
+    del t614, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
+    turn_both_rear_elbow_up_alike = _runtime.select(t527, t615, 0.0)
+    del t615
+    t616 = margin_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
     del margin_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
-    t615 = t51 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
+    t617 = t53 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_up_alike
-    t616 = -(t614 * _runtime.sign(-t520) / (t521 + t615))
-    del t520, t521, t614, t615
-    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t616, 0.0)
-    del spent_left_rear_elbow_up_alike, t616
-    t617 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    t618 = -(t616 * _runtime.sign(-t522) / (t523 + t617))
+    del t522, t523, t616, t617
+    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t618, 0.0)
+    del spent_left_rear_elbow_up_alike, t618
+    t619 = margin_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
     del margin_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
-    t618 = t51 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
+    t620 = t53 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_right_rear_elbow_up_alike
-    t619 = -(t617 * _runtime.sign(-t504) / (t505 + t618))
-    del t504, t505, t617, t618
-    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t619, 0.0)
-    del spent_right_rear_elbow_up_alike, t619
-    t620 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
-    t621 = _runtime.select(t620, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
-    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t620
-    t622 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
+    t621 = -(t619 * _runtime.sign(-t506) / (t507 + t620))
+    del t506, t507, t619, t620
+    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t621, 0.0)
+    del spent_right_rear_elbow_up_alike, t621
+    t622 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
+    t623 = _runtime.select(t622, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
+    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t622
+    t624 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
     del drawn_front_elbow_down_alike
-    t623 = turn_both_rear_elbow_up_alike + t621 - t86 * t622
-    del t621, t622
-    lean_rear_elbow_up_alike = _runtime.select(t525, t623, 0.0)
-    del t623
-    t624 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t625 = 1.0 + t624
-    t626 = 1.0 / np.sqrt(t625)
-    t627 = 1.0 / (t625 * (1.0 + t626))
+    t625 = turn_both_rear_elbow_up_alike + t623 - t88 * t624
+    del t623, t624
+    lean_rear_elbow_up_alike = _runtime.select(t527, t625, 0.0)
     del t625
-    t628 = elbow_11_rear_elbow_up_alike * t624 * t627 + t626 * (elbow_21 * lean_rear_elbow_up_alike)
-    t629 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
-    t630 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
-    t631 = 1.0 + t629
-    t632 = 1.0 / np.sqrt(t631)
-    t633 = 1.0 / (t631 * (1.0 + t632))
-    del t631
-    t634 = elbow_21 - h_right_0_rear_elbow_up_alike
-    t635 = t632 * (turn_both_rear_elbow_up_alike * t634)
-    t636 = t628 - t629 * t630 * t633 - t635
-    del t635
-    t637 = t636 * (t636 - 2.0 * r_right_0_rear_elbow_up_alike)
-    t638 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    swing_21_rear_elbow_up_alike = t626 * t638 - t627 * (elbow_21 * t624)
-    del t624, t626, t627, t638
-    t639 = swing_21_rear_elbow_up_alike + t633 * (t629 * t634)
-    del t634
-    t640 = t632 * (turn_both_rear_elbow_up_alike * t630)
-    del t630
-    more_right_21_rear_elbow_up_alike = t639 - t640
-    del t639, t640
-    t641 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
-    t642 = t637 + more_right_21_rear_elbow_up_alike * t641
-    del t637, t641
-    change_right_rear_elbow_up_alike = _runtime.select(t525, t642, 0.0)
-    del t642
-    t643 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
-    del nearer_right_rear_elbow_up_alike
-    t644 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
-    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
-    t645 = t50 & t508 & t524 & (t106 <= t643) & (t106 <= t644)
-    del t508, t524
-    t646 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
-    del elbow_11_rear_elbow_up_alike
-    t647 = elbow_21 - h_left_0_rear_elbow_up_alike
-    del elbow_21
-    t648 = t632 * (turn_both_rear_elbow_up_alike * t647)
-    t649 = t628 - t633 * (t629 * t646) - t648
-    del t628, t648
-    t650 = t649 * (t649 - 2.0 * r_left_0_rear_elbow_up_alike)
-    t651 = swing_21_rear_elbow_up_alike + t633 * (t629 * t647)
-    del swing_21_rear_elbow_up_alike, t629, t633, t647
-    t652 = t632 * (turn_both_rear_elbow_up_alike * t646)
-    del t632, t646
-    more_left_21_rear_elbow_up_alike = t651 - t652
-    del t651, t652
-    t653 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
-    t654 = t650 + more_left_21_rear_elbow_up_alike * t653
-    del t650, t653
-    change_left_rear_elbow_up_alike = _runtime.select(t525, t654, 0.0)
-    del t654
-    t655 = -(t512 + change_left_rear_elbow_up_alike)
-    del t512
-    t656 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
-    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t645 & (t106 <= t655) & (t106 <= t656))
-    del t645
-    t657 = _runtime.poison(invalid | unreachable_3)
-    t658 = t480 + t657
-    t659 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
-    del more_right_21_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = _runtime.select(t525, t659, h_right_0_rear_elbow_up_alike)
-    del h_right_0_rear_elbow_up_alike, t659
-    r_right_rear_elbow_up_alike = _runtime.select(t525, r_right_0_rear_elbow_up_alike - t636, r_right_0_rear_elbow_up_alike)
-    del r_right_0_rear_elbow_up_alike, t636
-    t660 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
-    folded_right_rear_elbow_up_alike = t660 <= t210
-    del t660
-    t661 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, stheta2A
-    M_right_rear_elbow_up_alike = np.maximum(t644, t214)
+    t626 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t627 = 1.0 + t626
+    t628 = 1.0 / np.sqrt(t627)
+    t629 = 1.0 / (t627 * (1.0 + t628))
+    del t627
+    t630 = elbow_11_rear_elbow_up_alike * t626 * t629 + t628 * (elbow_21 * lean_rear_elbow_up_alike)
+    t631 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
+    t632 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
+    t633 = 1.0 + t631
+    t634 = 1.0 / np.sqrt(t633)
+    t635 = 1.0 / (t633 * (1.0 + t634))
+    del t633
+    t636 = elbow_21 - h_right_0_rear_elbow_up_alike
+    t637 = t634 * (turn_both_rear_elbow_up_alike * t636)
+    t638 = t630 - t631 * t632 * t635 - t637
+    del t637
+    t639 = t638 * (t638 - 2.0 * r_right_0_rear_elbow_up_alike)
+    t640 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    swing_21_rear_elbow_up_alike = t628 * t640 - t629 * (elbow_21 * t626)
+    del t626, t628, t629, t640
+    t641 = swing_21_rear_elbow_up_alike + t635 * (t631 * t636)
+    del t636
+    t642 = t634 * (turn_both_rear_elbow_up_alike * t632)
+    del t632
+    more_right_21_rear_elbow_up_alike = t641 - t642
+    del t641, t642
+    t643 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
+    t644 = t639 + more_right_21_rear_elbow_up_alike * t643
+    del t639, t643
+    change_right_rear_elbow_up_alike = _runtime.select(t527, t644, 0.0)
     del t644
-    N_right_rear_elbow_up_alike = np.maximum(t643, t214)
-    del t643
-    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t662 = 1.0 / whole_right_rear_elbow_up_alike
-    del whole_right_rear_elbow_up_alike
-    t663 = t73 + t213 * M_right_rear_elbow_up_alike * t662
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t663)
-    del t663
-    t664 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t665 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t666 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
-    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
-    t667 = t263 * (1.0 + t665) - straight_mid_front_elbow_down_alike * t666
-    del straight_mid_front_elbow_down_alike, t665, t666
-    t668 = _runtime.select(t525, t667, t263)
-    del t263, t667
-    sigma_right_rear_elbow_up_alike = _runtime.sign(-t668)
-    t669 = 2.0 * sigma_right_rear_elbow_up_alike
-    t670 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t671 = np.sqrt(t670)
-    del t670
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t662 * (t669 * t671))
-    del t662
-    t672 = fore_arm * s_bend_right_rear_elbow_up_alike
-    del s_bend_right_rear_elbow_up_alike
-    t673 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    del ahead_1_right_rear_elbow_up_alike
-    t674 = np.arctan2(t664 - r_right_rear_elbow_up_alike * t672, t673 + h_right_rear_elbow_up_alike * t672)
-    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t664, t672, t673
-    t675 = _runtime.select(folded_right_rear_elbow_up_alike, t661, t674)
-    del t674
-    t676 = _runtime.wrap_cut(t675) + t657
-    del t675
-    t677 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    t678 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t671, t677)
-    del t671, t677
-    t679 = t225 + _runtime.select(short_right, 0.0, t678)
-    del t678
-    t680 = _runtime.wrap(t679) + t657
-    del t679
-    t681 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
-    del more_left_21_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = _runtime.select(t525, t681, h_left_0_rear_elbow_up_alike)
-    del h_left_0_rear_elbow_up_alike, t681
-    r_left_rear_elbow_up_alike = _runtime.select(t525, r_left_0_rear_elbow_up_alike - t649, r_left_0_rear_elbow_up_alike)
-    del r_left_0_rear_elbow_up_alike, t649
-    t682 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t682 <= t210
-    del t682
-    M_left_rear_elbow_up_alike = np.maximum(t656, 0.0)
+    t645 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
+    del nearer_right_rear_elbow_up_alike
+    t646 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
+    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
+    t647 = t52 & t510 & t526 & (t108 <= t645) & (t108 <= t646)
+    del t510, t526
+    t648 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
+    del elbow_11_rear_elbow_up_alike
+    t649 = elbow_21 - h_left_0_rear_elbow_up_alike
+    del elbow_21
+    t650 = t634 * (turn_both_rear_elbow_up_alike * t649)
+    t651 = t630 - t635 * (t631 * t648) - t650
+    del t630, t650
+    t652 = t651 * (t651 - 2.0 * r_left_0_rear_elbow_up_alike)
+    t653 = swing_21_rear_elbow_up_alike + t635 * (t631 * t649)
+    del swing_21_rear_elbow_up_alike, t631, t635, t649
+    t654 = t634 * (turn_both_rear_elbow_up_alike * t648)
+    del t634, t648
+    more_left_21_rear_elbow_up_alike = t653 - t654
+    del t653, t654
+    t655 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
+    t656 = t652 + more_left_21_rear_elbow_up_alike * t655
+    del t652, t655
+    change_left_rear_elbow_up_alike = _runtime.select(t527, t656, 0.0)
     del t656
-    N_left_rear_elbow_up_alike = np.maximum(t655, 0.0)
-    del t655
-    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t683 = 1.0 / whole_left_rear_elbow_up_alike
-    del whole_left_rear_elbow_up_alike
-    t684 = t73 + t213 * M_left_rear_elbow_up_alike * t683
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t684)
+    t657 = -(t514 + change_left_rear_elbow_up_alike)
+    del t514
+    t658 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
+    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t647 & (t108 <= t657) & (t108 <= t658))
+    del t647
+    t659 = _runtime.poison(invalid | unreachable_3)
+    t660 = t482 + t659
+    t661 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
+    del more_right_21_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = _runtime.select(t527, t661, h_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, t661
+    r_right_rear_elbow_up_alike = _runtime.select(t527, r_right_0_rear_elbow_up_alike - t638, r_right_0_rear_elbow_up_alike)
+    del r_right_0_rear_elbow_up_alike, t638
+    t662 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
+    folded_right_rear_elbow_up_alike = t662 <= t212
+    del t662
+    t663 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(t646, t216)
+    del t646
+    N_right_rear_elbow_up_alike = np.maximum(t645, t216)
+    del t645
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t664 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
+    t665 = t75 + t215 * M_right_rear_elbow_up_alike * t664
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t665)
+    del t665
+    t666 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t667 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t668 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
+    t669 = t265 * (1.0 + t667) - straight_mid_front_elbow_down_alike * t668
+    del straight_mid_front_elbow_down_alike, t667, t668
+    t670 = _runtime.select(t527, t669, t265)
+    del t265, t669
+    sigma_right_rear_elbow_up_alike = _runtime.sign(-t670)
+    t671 = 2.0 * sigma_right_rear_elbow_up_alike
+    t672 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t673 = np.sqrt(t672)
+    del t672
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t664 * (t671 * t673))
+    del t664
+    t674 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
+    t675 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    del ahead_1_right_rear_elbow_up_alike
+    t676 = np.arctan2(t666 - r_right_rear_elbow_up_alike * t674, t675 + h_right_rear_elbow_up_alike * t674)
+    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t666, t674, t675
+    t677 = _runtime.select(folded_right_rear_elbow_up_alike, t663, t676)
+    del t676
+    t678 = _runtime.wrap_cut(t677) + t659
+    del t677
+    t679 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t680 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t673, t679)
+    del t673, t679
+    t681 = t227 + _runtime.select(short_right, 0.0, t680)
+    del t680
+    t682 = _runtime.wrap(t681) + t659
+    del t681
+    t683 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
+    del more_left_21_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = _runtime.select(t527, t683, h_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, t683
+    r_left_rear_elbow_up_alike = _runtime.select(t527, r_left_0_rear_elbow_up_alike - t651, r_left_0_rear_elbow_up_alike)
+    del r_left_0_rear_elbow_up_alike, t651
+    t684 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t684 <= t212
     del t684
-    t685 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t686 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t687 = np.sqrt(t686)
+    M_left_rear_elbow_up_alike = np.maximum(t658, 0.0)
+    del t658
+    N_left_rear_elbow_up_alike = np.maximum(t657, 0.0)
+    del t657
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t685 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    t686 = t75 + t215 * M_left_rear_elbow_up_alike * t685
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t686)
     del t686
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t683 * (t669 * t687))
-    del t669, t683
-    t688 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t687 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t688 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t689 = np.sqrt(t688)
+    del t688
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t685 * (t671 * t689))
+    del t671, t685
+    t690 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t689 = r_left_rear_elbow_up_alike * t688
-    t690 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t691 = r_left_rear_elbow_up_alike * t690
+    t692 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t691 = h_left_rear_elbow_up_alike * t688
-    del h_left_rear_elbow_up_alike, t688
-    t692 = _runtime.select(folded_left_rear_elbow_up_alike, t661, np.arctan2(t685 - t689, t690 + t691))
-    t693 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    t694 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t687, t693)
-    del t687, t693
-    t695 = _runtime.select(short_right, 0.0, t694)
-    del t694
-    t696 = t239 + t657
-    t697 = _runtime.select(folded_left_rear_elbow_up_alike, t661, np.arctan2(t685 + t689, t690 - t691))
-    del t661, t685, t689, t690, t691
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t245)
-    del t245
+    t693 = h_left_rear_elbow_up_alike * t690
+    del h_left_rear_elbow_up_alike, t690
+    t694 = _runtime.select(folded_left_rear_elbow_up_alike, t663, np.arctan2(t687 - t691, t692 + t693))
+    t695 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t696 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t689, t695)
+    del t689, t695
+    t697 = _runtime.select(short_right, 0.0, t696)
+    del t696
+    t698 = t241 + t659
+    t699 = _runtime.select(folded_left_rear_elbow_up_alike, t663, np.arctan2(t687 + t691, t692 - t693))
+    del t663, t687, t691, t692, t693
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t247)
+    del t247
     ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike - s_relative * stheta2A_front_elbow_down_alike
-    t698 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t700 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike + s_relative * ctheta2A_rear_elbow_down_alike
     del c_relative, s_relative
-    point_21_rear_elbow_down_alike = t698 + a3 * stheta23A_rear_elbow_down_alike
-    del t698
-    t699 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
-    t700 = t699 + t_phi * stheta23A_rear_elbow_down_alike
-    del t699
-    t701 = d * t700
+    point_21_rear_elbow_down_alike = t700 + a3 * stheta23A_rear_elbow_down_alike
     del t700
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t701
-    t702 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t701 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t702 = t701 + t_phi * stheta23A_rear_elbow_down_alike
+    del t701
+    t703 = d * t702
+    del t702
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t703
+    t704 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
     elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
-    t703 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t703 + a3 * ctheta23A_rear_elbow_down_alike
-    del t703
-    t704 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
-    del stheta23A_rear_elbow_down_alike, t17, t_psi
-    t705 = t_phi * ctheta23A_rear_elbow_down_alike - t704
-    del ctheta23A_rear_elbow_down_alike, t704, t_phi
-    t706 = d * t705
+    t705 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t705 + a3 * ctheta23A_rear_elbow_down_alike
     del t705
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t706
-    t707 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t708 = t702 + t707
-    del t702, t707
-    gap_rear_elbow_down_alike = t706 * t706 + t701 * t701
-    t709 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t710 = M_mid + gap_rear_elbow_down_alike
-    t711 = 2.0 * point_11_rear_elbow_down_alike * t706 + 2.0 * point_21_rear_elbow_down_alike * t701
-    farther_right_rear_elbow_down_alike = _runtime.select(t52 * t708 < t709, t708 - t74, t710 - t711)
-    del t708
-    t712 = N_mid - gap_rear_elbow_down_alike
+    t706 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
+    del stheta23A_rear_elbow_down_alike, t17, t_psi
+    t707 = t_phi * ctheta23A_rear_elbow_down_alike - t706
+    del ctheta23A_rear_elbow_down_alike, t706, t_phi
+    t708 = d * t707
+    del t707
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t708
+    t709 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t710 = t704 + t709
+    del t704, t709
+    gap_rear_elbow_down_alike = t708 * t708 + t703 * t703
+    t711 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t712 = M_mid + gap_rear_elbow_down_alike
+    t713 = 2.0 * point_11_rear_elbow_down_alike * t708 + 2.0 * point_21_rear_elbow_down_alike * t703
+    farther_right_rear_elbow_down_alike = _runtime.select(t54 * t710 < t711, t710 - t76, t712 - t713)
+    del t710
+    t714 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t711 + t712
+    nearer_right_rear_elbow_down_alike = t713 + t714
     margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t713 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t714 = np.maximum(-t713, margin_right_rear_elbow_down_alike)
-    del t713
-    spent_right_rear_elbow_down_alike = t714 <= t81
-    del t714
-    t715 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t716 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t717 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
-    t718 = _runtime.select(t717, 1.0, -1.0)
-    del t717
-    t719 = (t715 - t716) * t718
-    del t715, t716
-    slope_right_rear_elbow_down_alike = t84 * t719
-    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t91, 1.0)
-    t720 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
-    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t720, 0.0)
-    del t720
-    t721 = t43 * t719
+    t715 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t716 = np.maximum(-t715, margin_right_rear_elbow_down_alike)
+    del t715
+    spent_right_rear_elbow_down_alike = t716 <= t83
+    del t716
+    t717 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t718 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t719 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
+    t720 = _runtime.select(t719, 1.0, -1.0)
     del t719
-    t722 = np.abs(t721)
-    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t94, 1.0)
-    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t722 / heavy_1_right_rear_elbow_down_alike, 0.0)
-    t723 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
-    t724 = _runtime.select(spent_right_rear_elbow_down_alike, t723, 0.0)
-    del t723
-    t725 = -(_runtime.FEASIBILITY * (t51 + t724)) <= margin_right_rear_elbow_down_alike
-    del t724
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t701
-    del point_21_rear_elbow_down_alike, t701
-    t726 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t706
-    del point_11_rear_elbow_down_alike, t706
-    t727 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t728 = t726 + t727
-    del t726, t727
-    farther_left_rear_elbow_down_alike = _runtime.select(t52 * t728 < t709, t728 - t74, t710 + t711)
-    del t709, t710, t728
-    t729 = t711 - t712
-    del t711, t712
-    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t729)
-    t730 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t731 = np.maximum(-t730, margin_left_rear_elbow_down_alike)
-    del t730
-    spent_left_rear_elbow_down_alike = t731 <= t81
-    del t731, t81
-    t732 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t733 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t734 = _runtime.select(-t729 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
-    t735 = (t732 - t733) * t734
-    del t732, t733
-    slope_left_rear_elbow_down_alike = t84 * t735
-    del t84
-    heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t91, 1.0)
-    del t91
-    t736 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
-    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t736, 0.0)
-    del t736
-    t737 = t43 * t735
-    del t735
-    t738 = np.abs(t737)
-    heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t94, 1.0)
-    del t94
-    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t738 / heavy_1_left_rear_elbow_down_alike, 0.0)
-    t739 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
-    t740 = _runtime.select(spent_left_rear_elbow_down_alike, t739, 0.0)
-    del t739
-    t741 = -(_runtime.FEASIBILITY * (t51 + t740)) <= margin_left_rear_elbow_down_alike
-    del t740
-    t742 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
-    t743 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
+    t721 = (t717 - t718) * t720
+    del t717, t718
+    slope_right_rear_elbow_down_alike = t86 * t721
+    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t93, 1.0)
+    t722 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
+    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t722, 0.0)
+    del t722
+    t723 = t45 * t721
+    del t721
+    t724 = np.abs(t723)
+    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t96, 1.0)
+    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t724 / heavy_1_right_rear_elbow_down_alike, 0.0)
+    t725 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
+    t726 = _runtime.select(spent_right_rear_elbow_down_alike, t725, 0.0)
+    del t725
+    t727 = -(_runtime.FEASIBILITY * (t53 + t726)) <= margin_right_rear_elbow_down_alike
+    del t726
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t703
+    del point_21_rear_elbow_down_alike, t703
+    t728 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t708
+    del point_11_rear_elbow_down_alike, t708
+    t729 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t730 = t728 + t729
+    del t728, t729
+    farther_left_rear_elbow_down_alike = _runtime.select(t54 * t730 < t711, t730 - t76, t712 + t713)
+    del t711, t712, t730
+    t731 = t713 - t714
+    del t713, t714
+    margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t731)
+    t732 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t733 = np.maximum(-t732, margin_left_rear_elbow_down_alike)
+    del t732
+    spent_left_rear_elbow_down_alike = t733 <= t83
+    del t733, t83
+    t734 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t735 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t736 = _runtime.select(-t731 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
+    t737 = (t734 - t735) * t736
+    del t734, t735
+    slope_left_rear_elbow_down_alike = t86 * t737
+    del t86
+    heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t93, 1.0)
+    del t93
+    t738 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
+    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t738, 0.0)
+    del t738
+    t739 = t45 * t737
+    del t737
+    t740 = np.abs(t739)
+    heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t96, 1.0)
+    del t96
+    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t740 / heavy_1_left_rear_elbow_down_alike, 0.0)
+    t741 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
+    t742 = _runtime.select(spent_left_rear_elbow_down_alike, t741, 0.0)
+    del t741
+    t743 = -(_runtime.FEASIBILITY * (t53 + t742)) <= margin_left_rear_elbow_down_alike
+    del t742
+    t744 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
+    t745 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
     del gain_1_left_rear_elbow_down_alike
-    t744 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
+    t746 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
     del gain_0_left_rear_elbow_down_alike
-    t745 = _runtime.select(margin_left_rear_elbow_down_alike < 0.0, t743 / (t109 + t743 + t744), 0.0)
-    del t743, t744
-    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t745, 0.0)
-    del t745
-    t746 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
-    t747 = heavy_0_left_rear_elbow_down_alike * t746
-    t748 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t749 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t750 = t86 * (t114 * t734 * (L1 - t748 - t749))
-    del t734, t748, t749
-    t751 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t752 = np.sqrt(np.maximum(0.0, 4.0 * t746 * t750 + t751))
-    del t751
-    root_on_1_both_rear_elbow_down_alike = _runtime.select(t742, t752, 0.0)
-    del t752
-    t753 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
-    t754 = t51 * heavy_0_left_rear_elbow_down_alike
-    t755 = t754 * 5.960464477539063e-08
-    t756 = 1.0 / (t753 - t755)
-    t757 = (t747 * t756 <= 4.547473508864641e-13) & (0.0 < t746 * t756)
-    t758 = 2.0 * t746
-    t759 = 0.0 < -t746
-    t760 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
-    del root_on_1_both_rear_elbow_down_alike
-    t761 = t754 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t750)
-    del t754
-    t762 = 1.0 / t761
-    del t761
-    t763 = heavy_0_left_rear_elbow_down_alike * t760 * t762
-    t764 = t760 * t762
-    t765 = (t763 <= 9.094947017729282e-13) & (0.0 < t764)
-    del t763
-    far_back_1_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t765, t764, 0.0), 0.0)
-    del t764, t765
-    t766 = _runtime.select(t759, far_back_1_both_rear_elbow_down_alike, 0.0)
-    t767 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t757, t756 * t758, 0.0), t766)
-    del t756, t757, t766
-    t768 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
-    del gain_1_right_rear_elbow_down_alike
-    t769 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
-    del gain_0_right_rear_elbow_down_alike
-    t770 = _runtime.select(margin_right_rear_elbow_down_alike < 0.0, t768 / (t109 + t768 + t769), 0.0)
-    del t109, t768, t769
-    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t770, 0.0)
-    del t770
-    t771 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
-    t772 = heavy_0_right_rear_elbow_down_alike * t771
-    t773 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t774 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t775 = t86 * (t114 * t718 * (L1 - t773 - t774))
-    del t114, t718, t773, t774
-    t776 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t777 = np.sqrt(np.maximum(0.0, 4.0 * t771 * t775 + t776))
-    del t776
-    root_on_0_both_rear_elbow_down_alike = _runtime.select(t742, t777, 0.0)
-    del t777
-    t778 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
-    t779 = t51 * heavy_0_right_rear_elbow_down_alike
-    t780 = t779 * 5.960464477539063e-08
-    t781 = 1.0 / (t778 - t780)
-    t782 = (t772 * t781 <= 4.547473508864641e-13) & (0.0 < t771 * t781)
-    t783 = 2.0 * t771
-    t784 = 0.0 < -t771
-    t785 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
-    del root_on_0_both_rear_elbow_down_alike
-    t786 = t779 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t775)
-    del t779
-    t787 = 1.0 / t786
-    del t786
-    t788 = heavy_0_right_rear_elbow_down_alike * t785 * t787
-    t789 = t785 * t787
-    t790 = (t788 <= 9.094947017729282e-13) & (0.0 < t789)
-    del t788
-    far_back_0_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t790, t789, 0.0), 0.0)
-    del t789, t790
-    t791 = _runtime.select(t784, far_back_0_both_rear_elbow_down_alike, 0.0)
-    t792 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t782, t781 * t783, 0.0), t791)
-    del t781, t782, t791
-    near_back_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(np.maximum(0.0, t767), t792), 0.0)
-    del t767, t792
-    t793 = slope_right_rear_elbow_down_alike + t775 * near_back_both_rear_elbow_down_alike
-    t794 = near_back_both_rear_elbow_down_alike * t793 - t771
-    del t793
-    t795 = _runtime.select(0.0 < t794, far_back_0_both_rear_elbow_down_alike, 0.0)
-    del far_back_0_both_rear_elbow_down_alike, t794
-    t796 = np.maximum(near_back_both_rear_elbow_down_alike, t795)
-    del t795
-    t797 = slope_left_rear_elbow_down_alike + t750 * near_back_both_rear_elbow_down_alike
-    t798 = near_back_both_rear_elbow_down_alike * t797 - t746
-    del near_back_both_rear_elbow_down_alike, t797
-    t799 = _runtime.select(0.0 < t798, far_back_1_both_rear_elbow_down_alike, 0.0)
-    del far_back_1_both_rear_elbow_down_alike, t798
-    turn_back_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(t796, t799), 0.0)
-    del t796, t799
-    t800 = slope_left_rear_elbow_down_alike + t750 * turn_back_both_rear_elbow_down_alike
-    t801 = t746 - turn_back_both_rear_elbow_down_alike * t800
-    del t800
-    t802 = slope_right_rear_elbow_down_alike + t775 * turn_back_both_rear_elbow_down_alike
-    t803 = t771 - turn_back_both_rear_elbow_down_alike * t802
-    del t802
-    left_back_both_rear_elbow_down_alike = _runtime.select(t742, np.minimum(t801, t803), 0.0)
-    del t801, t803
-    t804 = 1.0 / (t755 + t760)
-    del t755, t760
-    t805 = (-(t747 * t804) <= 4.547473508864641e-13) & (0.0 < -(t746 * t804))
+    t747 = _runtime.select(margin_left_rear_elbow_down_alike < 0.0, t745 / (t111 + t745 + t746), 0.0)
+    del t745, t746
+    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t747, 0.0)
     del t747
-    t806 = t762 * (heavy_0_left_rear_elbow_down_alike * t753)
-    del heavy_0_left_rear_elbow_down_alike
-    t807 = -(t753 * t762)
-    del t753, t762
-    t808 = (-t806 <= 9.094947017729282e-13) & (0.0 < t807)
-    del t806
-    far_on_1_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t808, t807, 0.0), 0.0)
-    del t807, t808
-    t809 = _runtime.select(t759, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del t759
-    t810 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t805, -(t758 * t804), 0.0), t809)
-    del t758, t804, t805, t809
-    t811 = 1.0 / (t780 + t785)
-    del t780, t785
-    t812 = (-(t772 * t811) <= 4.547473508864641e-13) & (0.0 < -(t771 * t811))
+    t748 = margin_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t749 = heavy_0_left_rear_elbow_down_alike * t748
+    t750 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t751 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t752 = t88 * (t116 * t736 * (L1 - t750 - t751))
+    del t736, t750, t751
+    t753 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t754 = np.sqrt(np.maximum(0.0, 4.0 * t748 * t752 + t753))
+    del t753
+    root_on_1_both_rear_elbow_down_alike = _runtime.select(t744, t754, 0.0)
+    del t754
+    t755 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
+    t756 = t53 * heavy_0_left_rear_elbow_down_alike
+    t757 = t756 * 5.960464477539063e-08
+    t758 = 1.0 / (t755 - t757)
+    t759 = (t749 * t758 <= 4.547473508864641e-13) & (0.0 < t748 * t758)
+    t760 = 2.0 * t748
+    t761 = 0.0 < -t748
+    t762 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
+    del root_on_1_both_rear_elbow_down_alike
+    t763 = t756 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t752)
+    del t756
+    t764 = 1.0 / t763
+    del t763
+    t765 = heavy_0_left_rear_elbow_down_alike * t762 * t764
+    t766 = t762 * t764
+    t767 = (t765 <= 9.094947017729282e-13) & (0.0 < t766)
+    del t765
+    far_back_1_both_rear_elbow_down_alike = _runtime.select(t744, _runtime.select(t767, t766, 0.0), 0.0)
+    del t766, t767
+    t768 = _runtime.select(t761, far_back_1_both_rear_elbow_down_alike, 0.0)
+    t769 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t759, t758 * t760, 0.0), t768)
+    del t758, t759, t768
+    t770 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
+    del gain_1_right_rear_elbow_down_alike
+    t771 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
+    del gain_0_right_rear_elbow_down_alike
+    t772 = _runtime.select(margin_right_rear_elbow_down_alike < 0.0, t770 / (t111 + t770 + t771), 0.0)
+    del t111, t770, t771
+    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t772, 0.0)
     del t772
-    t813 = t787 * (heavy_0_right_rear_elbow_down_alike * t778)
+    t773 = margin_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t774 = heavy_0_right_rear_elbow_down_alike * t773
+    t775 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t776 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t777 = t88 * (t116 * t720 * (L1 - t775 - t776))
+    del t116, t720, t775, t776
+    t778 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t779 = np.sqrt(np.maximum(0.0, 4.0 * t773 * t777 + t778))
+    del t778
+    root_on_0_both_rear_elbow_down_alike = _runtime.select(t744, t779, 0.0)
+    del t779
+    t780 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
+    t781 = t53 * heavy_0_right_rear_elbow_down_alike
+    t782 = t781 * 5.960464477539063e-08
+    t783 = 1.0 / (t780 - t782)
+    t784 = (t774 * t783 <= 4.547473508864641e-13) & (0.0 < t773 * t783)
+    t785 = 2.0 * t773
+    t786 = 0.0 < -t773
+    t787 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
+    del root_on_0_both_rear_elbow_down_alike
+    t788 = t781 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t777)
+    del t781
+    t789 = 1.0 / t788
+    del t788
+    t790 = heavy_0_right_rear_elbow_down_alike * t787 * t789
+    t791 = t787 * t789
+    t792 = (t790 <= 9.094947017729282e-13) & (0.0 < t791)
+    del t790
+    far_back_0_both_rear_elbow_down_alike = _runtime.select(t744, _runtime.select(t792, t791, 0.0), 0.0)
+    del t791, t792
+    t793 = _runtime.select(t786, far_back_0_both_rear_elbow_down_alike, 0.0)
+    t794 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t784, t783 * t785, 0.0), t793)
+    del t783, t784, t793
+    near_back_both_rear_elbow_down_alike = _runtime.select(t744, np.maximum(np.maximum(0.0, t769), t794), 0.0)
+    del t769, t794
+    t795 = slope_right_rear_elbow_down_alike + t777 * near_back_both_rear_elbow_down_alike
+    t796 = near_back_both_rear_elbow_down_alike * t795 - t773
+    del t795
+    t797 = _runtime.select(0.0 < t796, far_back_0_both_rear_elbow_down_alike, 0.0)
+    del far_back_0_both_rear_elbow_down_alike, t796
+    t798 = np.maximum(near_back_both_rear_elbow_down_alike, t797)
+    del t797
+    t799 = slope_left_rear_elbow_down_alike + t752 * near_back_both_rear_elbow_down_alike
+    t800 = near_back_both_rear_elbow_down_alike * t799 - t748
+    del near_back_both_rear_elbow_down_alike, t799
+    t801 = _runtime.select(0.0 < t800, far_back_1_both_rear_elbow_down_alike, 0.0)
+    del far_back_1_both_rear_elbow_down_alike, t800
+    turn_back_both_rear_elbow_down_alike = _runtime.select(t744, np.maximum(t798, t801), 0.0)
+    del t798, t801
+    t802 = slope_left_rear_elbow_down_alike + t752 * turn_back_both_rear_elbow_down_alike
+    t803 = t748 - turn_back_both_rear_elbow_down_alike * t802
+    del t802
+    t804 = slope_right_rear_elbow_down_alike + t777 * turn_back_both_rear_elbow_down_alike
+    t805 = t773 - turn_back_both_rear_elbow_down_alike * t804
+    del t804
+    left_back_both_rear_elbow_down_alike = _runtime.select(t744, np.minimum(t803, t805), 0.0)
+    del t803, t805
+    t806 = 1.0 / (t757 + t762)
+    del t757, t762
+    t807 = (-(t749 * t806) <= 4.547473508864641e-13) & (0.0 < -(t748 * t806))
+    del t749
+    t808 = t764 * (heavy_0_left_rear_elbow_down_alike * t755)
+    del heavy_0_left_rear_elbow_down_alike
+    t809 = -(t755 * t764)
+    del t755, t764
+    t810 = (-t808 <= 9.094947017729282e-13) & (0.0 < t809)
+    del t808
+    far_on_1_both_rear_elbow_down_alike = _runtime.select(t744, _runtime.select(t810, t809, 0.0), 0.0)
+    del t809, t810
+    t811 = _runtime.select(t761, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del t761
+    t812 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t807, -(t760 * t806), 0.0), t811)
+    del t760, t806, t807, t811
+    t813 = 1.0 / (t782 + t787)
+    del t782, t787
+    t814 = (-(t774 * t813) <= 4.547473508864641e-13) & (0.0 < -(t773 * t813))
+    del t774
+    t815 = t789 * (heavy_0_right_rear_elbow_down_alike * t780)
     del heavy_0_right_rear_elbow_down_alike
-    t814 = -(t778 * t787)
-    del t778, t787
-    t815 = (-t813 <= 9.094947017729282e-13) & (0.0 < t814)
-    del t813
-    far_on_0_both_rear_elbow_down_alike = _runtime.select(t742, _runtime.select(t815, t814, 0.0), 0.0)
-    del t814, t815
-    t816 = _runtime.select(t784, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del t784
-    t817 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t812, -(t783 * t811), 0.0), t816)
-    del t783, t811, t812, t816
-    near_on_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(np.maximum(0.0, t810), t817), 0.0)
-    del t810, t817
-    t818 = slope_right_rear_elbow_down_alike - t775 * near_on_both_rear_elbow_down_alike
-    t819 = t771 + near_on_both_rear_elbow_down_alike * t818
-    del t818
-    t820 = _runtime.select(0.0 < -t819, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del far_on_0_both_rear_elbow_down_alike, t819
-    t821 = np.maximum(near_on_both_rear_elbow_down_alike, t820)
+    t816 = -(t780 * t789)
+    del t780, t789
+    t817 = (-t815 <= 9.094947017729282e-13) & (0.0 < t816)
+    del t815
+    far_on_0_both_rear_elbow_down_alike = _runtime.select(t744, _runtime.select(t817, t816, 0.0), 0.0)
+    del t816, t817
+    t818 = _runtime.select(t786, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del t786
+    t819 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t814, -(t785 * t813), 0.0), t818)
+    del t785, t813, t814, t818
+    near_on_both_rear_elbow_down_alike = _runtime.select(t744, np.maximum(np.maximum(0.0, t812), t819), 0.0)
+    del t812, t819
+    t820 = slope_right_rear_elbow_down_alike - t777 * near_on_both_rear_elbow_down_alike
+    t821 = t773 + near_on_both_rear_elbow_down_alike * t820
     del t820
-    t822 = slope_left_rear_elbow_down_alike - t750 * near_on_both_rear_elbow_down_alike
-    t823 = t746 + near_on_both_rear_elbow_down_alike * t822
-    del near_on_both_rear_elbow_down_alike, t822
-    t824 = _runtime.select(0.0 < -t823, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del far_on_1_both_rear_elbow_down_alike, t823
-    turn_on_both_rear_elbow_down_alike = _runtime.select(t742, np.maximum(t821, t824), 0.0)
-    del t821, t824
-    t825 = slope_left_rear_elbow_down_alike - t750 * turn_on_both_rear_elbow_down_alike
-    del slope_left_rear_elbow_down_alike, t750
-    t826 = t746 + turn_on_both_rear_elbow_down_alike * t825
-    del t746, t825
-    t827 = slope_right_rear_elbow_down_alike - t775 * turn_on_both_rear_elbow_down_alike
-    del slope_right_rear_elbow_down_alike, t775
-    t828 = t771 + turn_on_both_rear_elbow_down_alike * t827
-    del t771, t827
-    left_on_both_rear_elbow_down_alike = _runtime.select(t742, np.minimum(t826, t828), 0.0)
-    del t826, t828
-    t829 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
+    t822 = _runtime.select(0.0 < -t821, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del far_on_0_both_rear_elbow_down_alike, t821
+    t823 = np.maximum(near_on_both_rear_elbow_down_alike, t822)
+    del t822
+    t824 = slope_left_rear_elbow_down_alike - t752 * near_on_both_rear_elbow_down_alike
+    t825 = t748 + near_on_both_rear_elbow_down_alike * t824
+    del near_on_both_rear_elbow_down_alike, t824
+    t826 = _runtime.select(0.0 < -t825, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del far_on_1_both_rear_elbow_down_alike, t825
+    turn_on_both_rear_elbow_down_alike = _runtime.select(t744, np.maximum(t823, t826), 0.0)
+    del t823, t826
+    t827 = slope_left_rear_elbow_down_alike - t752 * turn_on_both_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike, t752
+    t828 = t748 + turn_on_both_rear_elbow_down_alike * t827
+    del t748, t827
+    t829 = slope_right_rear_elbow_down_alike - t777 * turn_on_both_rear_elbow_down_alike
+    del slope_right_rear_elbow_down_alike, t777
+    t830 = t773 + turn_on_both_rear_elbow_down_alike * t829
+    del t773, t829
+    left_on_both_rear_elbow_down_alike = _runtime.select(t744, np.minimum(t828, t830), 0.0)
+    del t828, t830
+    t831 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
     del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
-    t830 = _runtime.select(t829, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
-    del t829, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
-    turn_both_rear_elbow_down_alike = _runtime.select(t742, t830, 0.0)
-    del t830
-    t831 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    t832 = _runtime.select(t831, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
+    del t831, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
+    turn_both_rear_elbow_down_alike = _runtime.select(t744, t832, 0.0)
+    del t832
+    t833 = margin_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
     del margin_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
-    t832 = t51 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
+    t834 = t53 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_down_alike
-    t833 = -(t831 * _runtime.sign(-t737) / (t738 + t832))
-    del t737, t738, t831, t832
-    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t833, 0.0)
-    del spent_left_rear_elbow_down_alike, t833
-    t834 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    t835 = -(t833 * _runtime.sign(-t739) / (t740 + t834))
+    del t739, t740, t833, t834
+    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t835, 0.0)
+    del spent_left_rear_elbow_down_alike, t835
+    t836 = margin_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
     del margin_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
-    t835 = t51 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
-    del heavy_1_right_rear_elbow_down_alike, t51
-    t836 = -(t834 * _runtime.sign(-t721) / (t722 + t835))
-    del t721, t722, t834, t835
-    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t836, 0.0)
-    del spent_right_rear_elbow_down_alike, t836
-    t837 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
-    t838 = _runtime.select(t837, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
-    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t837
-    t839 = t86 * (drawn * turn_both_rear_elbow_down_alike)
-    del drawn, t86
-    t840 = turn_both_rear_elbow_down_alike + t838 - t839
-    del t838, t839
-    lean_rear_elbow_down_alike = _runtime.select(t742, t840, 0.0)
-    del t840
-    t841 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t842 = 1.0 + t841
-    t843 = 1.0 / np.sqrt(t842)
-    t844 = 1.0 / (t842 * (1.0 + t843))
+    t837 = t53 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_rear_elbow_down_alike, t53
+    t838 = -(t836 * _runtime.sign(-t723) / (t724 + t837))
+    del t723, t724, t836, t837
+    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t838, 0.0)
+    del spent_right_rear_elbow_down_alike, t838
+    t839 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
+    t840 = _runtime.select(t839, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
+    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t839
+    t841 = t88 * (drawn * turn_both_rear_elbow_down_alike)
+    del drawn, t88
+    t842 = turn_both_rear_elbow_down_alike + t840 - t841
+    del t840, t841
+    lean_rear_elbow_down_alike = _runtime.select(t744, t842, 0.0)
     del t842
-    t845 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
-    t846 = elbow_11_rear_elbow_down_alike * t841 * t844 + t843 * t845
-    del t845
-    t847 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
-    t848 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
-    t849 = 1.0 + t847
-    t850 = 1.0 / np.sqrt(t849)
-    t851 = 1.0 / (t849 * (1.0 + t850))
-    del t849
-    t852 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
-    t853 = t850 * (turn_both_rear_elbow_down_alike * t852)
-    t854 = t846 - t847 * t848 * t851 - t853
-    del t853
-    t855 = t854 * (t854 - 2.0 * r_right_0_rear_elbow_down_alike)
-    t856 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t857 = t844 * (elbow_21_front_elbow_down_alike * t841)
-    del t841, t844
-    swing_21_rear_elbow_down_alike = t843 * t856 - t857
-    del t843, t856, t857
-    t858 = swing_21_rear_elbow_down_alike + t851 * (t847 * t852)
-    del t852
-    t859 = t850 * (turn_both_rear_elbow_down_alike * t848)
-    del t848
-    more_right_21_rear_elbow_down_alike = t858 - t859
-    del t858, t859
-    t860 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
-    t861 = t855 + more_right_21_rear_elbow_down_alike * t860
-    del t855, t860
-    change_right_rear_elbow_down_alike = _runtime.select(t742, t861, 0.0)
-    del t861
-    t862 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
-    del nearer_right_rear_elbow_down_alike
-    t863 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
-    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
-    t864 = t50 & t725 & t741 & (t106 <= t862) & (t106 <= t863)
-    del t50, t725, t741
-    t865 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
-    del elbow_11_rear_elbow_down_alike
-    t866 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
-    del elbow_21_front_elbow_down_alike
-    t867 = t850 * (turn_both_rear_elbow_down_alike * t866)
-    t868 = t846 - t851 * (t847 * t865) - t867
-    del t846, t867
-    t869 = t868 * (t868 - 2.0 * r_left_0_rear_elbow_down_alike)
-    t870 = swing_21_rear_elbow_down_alike + t851 * (t847 * t866)
-    del swing_21_rear_elbow_down_alike, t847, t851, t866
-    t871 = t850 * (turn_both_rear_elbow_down_alike * t865)
-    del t850, t865
-    more_left_21_rear_elbow_down_alike = t870 - t871
-    del t870, t871
-    t872 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
-    t873 = t869 + more_left_21_rear_elbow_down_alike * t872
-    del t869, t872
-    change_left_rear_elbow_down_alike = _runtime.select(t742, t873, 0.0)
-    del t873
-    t874 = -(t729 + change_left_rear_elbow_down_alike)
-    del t729
-    t875 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
-    del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t864 & (t106 <= t874) & (t106 <= t875))
-    del t106, t864
-    t876 = _runtime.poison(invalid | unreachable_4)
-    t877 = t480 + t876
-    del t480
-    t878 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
-    del more_right_21_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = _runtime.select(t742, t878, h_right_0_rear_elbow_down_alike)
-    del h_right_0_rear_elbow_down_alike, t878
-    r_right_rear_elbow_down_alike = _runtime.select(t742, r_right_0_rear_elbow_down_alike - t854, r_right_0_rear_elbow_down_alike)
-    del r_right_0_rear_elbow_down_alike, t854
-    t879 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
-    folded_right_rear_elbow_down_alike = t879 <= t210
-    del t879
-    t880 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(t863, t214)
+    t843 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t844 = 1.0 + t843
+    t845 = 1.0 / np.sqrt(t844)
+    t846 = 1.0 / (t844 * (1.0 + t845))
+    del t844
+    t847 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
+    t848 = elbow_11_rear_elbow_down_alike * t843 * t846 + t845 * t847
+    del t847
+    t849 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
+    t850 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
+    t851 = 1.0 + t849
+    t852 = 1.0 / np.sqrt(t851)
+    t853 = 1.0 / (t851 * (1.0 + t852))
+    del t851
+    t854 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
+    t855 = t852 * (turn_both_rear_elbow_down_alike * t854)
+    t856 = t848 - t849 * t850 * t853 - t855
+    del t855
+    t857 = t856 * (t856 - 2.0 * r_right_0_rear_elbow_down_alike)
+    t858 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t859 = t846 * (elbow_21_front_elbow_down_alike * t843)
+    del t843, t846
+    swing_21_rear_elbow_down_alike = t845 * t858 - t859
+    del t845, t858, t859
+    t860 = swing_21_rear_elbow_down_alike + t853 * (t849 * t854)
+    del t854
+    t861 = t852 * (turn_both_rear_elbow_down_alike * t850)
+    del t850
+    more_right_21_rear_elbow_down_alike = t860 - t861
+    del t860, t861
+    t862 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
+    t863 = t857 + more_right_21_rear_elbow_down_alike * t862
+    del t857, t862
+    change_right_rear_elbow_down_alike = _runtime.select(t744, t863, 0.0)
     del t863
-    N_right_rear_elbow_down_alike = np.maximum(t862, t214)
-    del t214, t862
-    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t881 = 1.0 / whole_right_rear_elbow_down_alike
-    del whole_right_rear_elbow_down_alike
-    t882 = t73 + t213 * M_right_rear_elbow_down_alike * t881
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t882)
-    del t882
-    t883 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t884 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t885 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
-    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
-    t886 = _runtime.select(t742, t76 * (1.0 + t884) - straight_mid * t885, t76)
-    del straight_mid, t76, t884, t885
-    sigma_right_rear_elbow_down_alike = _runtime.sign(-t886)
-    t887 = 2.0 * sigma_right_rear_elbow_down_alike
-    t888 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t889 = np.sqrt(t888)
-    del t888
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t881 * (t887 * t889))
-    del t881
-    t890 = fore_arm * s_bend_right_rear_elbow_down_alike
-    del s_bend_right_rear_elbow_down_alike
-    t891 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    del ahead_1_right_rear_elbow_down_alike
-    t892 = np.arctan2(t883 - r_right_rear_elbow_down_alike * t890, t891 + h_right_rear_elbow_down_alike * t890)
-    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t883, t890, t891
-    t893 = _runtime.select(folded_right_rear_elbow_down_alike, t880, t892)
-    del t892
-    t894 = _runtime.wrap_cut(t893) + t876
-    del t893
-    t895 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
-    t896 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t889, t895)
-    del t889, t895
-    t897 = t225 + _runtime.select(short_right, 0.0, t896)
-    del t896
-    t898 = _runtime.wrap(t897) + t876
-    del t897
-    t899 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
-    del more_left_21_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = _runtime.select(t742, t899, h_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, t899
-    r_left_rear_elbow_down_alike = _runtime.select(t742, r_left_0_rear_elbow_down_alike - t868, r_left_0_rear_elbow_down_alike)
-    del r_left_0_rear_elbow_down_alike, t868
-    t900 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t900 <= t210
-    del t210, t900
-    M_left_rear_elbow_down_alike = np.maximum(t875, 0.0)
+    t864 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
+    del nearer_right_rear_elbow_down_alike
+    t865 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
+    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
+    t866 = t52 & t727 & t743 & (t108 <= t864) & (t108 <= t865)
+    del t52, t727, t743
+    t867 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
+    del elbow_11_rear_elbow_down_alike
+    t868 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
+    del elbow_21_front_elbow_down_alike
+    t869 = t852 * (turn_both_rear_elbow_down_alike * t868)
+    t870 = t848 - t853 * (t849 * t867) - t869
+    del t848, t869
+    t871 = t870 * (t870 - 2.0 * r_left_0_rear_elbow_down_alike)
+    t872 = swing_21_rear_elbow_down_alike + t853 * (t849 * t868)
+    del swing_21_rear_elbow_down_alike, t849, t853, t868
+    t873 = t852 * (turn_both_rear_elbow_down_alike * t867)
+    del t852, t867
+    more_left_21_rear_elbow_down_alike = t872 - t873
+    del t872, t873
+    t874 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
+    t875 = t871 + more_left_21_rear_elbow_down_alike * t874
+    del t871, t874
+    change_left_rear_elbow_down_alike = _runtime.select(t744, t875, 0.0)
     del t875
-    N_left_rear_elbow_down_alike = np.maximum(t874, 0.0)
-    del t874
+    t876 = -(t731 + change_left_rear_elbow_down_alike)
+    del t731
+    t877 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
+    del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t866 & (t108 <= t876) & (t108 <= t877))
+    del t108, t866
+    t878 = _runtime.poison(invalid | unreachable_4)
+    t879 = t482 + t878
+    del t482
+    t880 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
+    del more_right_21_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = _runtime.select(t744, t880, h_right_0_rear_elbow_down_alike)
+    del h_right_0_rear_elbow_down_alike, t880
+    r_right_rear_elbow_down_alike = _runtime.select(t744, r_right_0_rear_elbow_down_alike - t856, r_right_0_rear_elbow_down_alike)
+    del r_right_0_rear_elbow_down_alike, t856
+    t881 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
+    folded_right_rear_elbow_down_alike = t881 <= t212
+    del t881
+    t882 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
+    M_right_rear_elbow_down_alike = np.maximum(t865, t216)
+    del t865
+    N_right_rear_elbow_down_alike = np.maximum(t864, t216)
+    del t216, t864
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t883 = 1.0 / whole_right_rear_elbow_down_alike
+    del whole_right_rear_elbow_down_alike
+    t884 = t75 + t215 * M_right_rear_elbow_down_alike * t883
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t884)
+    del t884
+    t885 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t886 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t887 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
+    t888 = _runtime.select(t744, t78 * (1.0 + t886) - straight_mid * t887, t78)
+    del straight_mid, t78, t886, t887
+    sigma_right_rear_elbow_down_alike = _runtime.sign(-t888)
+    t889 = 2.0 * sigma_right_rear_elbow_down_alike
+    t890 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t891 = np.sqrt(t890)
+    del t890
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t883 * (t889 * t891))
+    del t883
+    t892 = fore_arm * s_bend_right_rear_elbow_down_alike
+    del s_bend_right_rear_elbow_down_alike
+    t893 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    del ahead_1_right_rear_elbow_down_alike
+    t894 = np.arctan2(t885 - r_right_rear_elbow_down_alike * t892, t893 + h_right_rear_elbow_down_alike * t892)
+    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t885, t892, t893
+    t895 = _runtime.select(folded_right_rear_elbow_down_alike, t882, t894)
+    del t894
+    t896 = _runtime.wrap_cut(t895) + t878
+    del t895
+    t897 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t898 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t891, t897)
+    del t891, t897
+    t899 = t227 + _runtime.select(short_right, 0.0, t898)
+    del t898
+    t900 = _runtime.wrap(t899) + t878
+    del t899
+    t901 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
+    del more_left_21_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = _runtime.select(t744, t901, h_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, t901
+    r_left_rear_elbow_down_alike = _runtime.select(t744, r_left_0_rear_elbow_down_alike - t870, r_left_0_rear_elbow_down_alike)
+    del r_left_0_rear_elbow_down_alike, t870
+    t902 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t902 <= t212
+    del t212, t902
+    M_left_rear_elbow_down_alike = np.maximum(t877, 0.0)
+    del t877
+    N_left_rear_elbow_down_alike = np.maximum(t876, 0.0)
+    del t876
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t901 = 1.0 / whole_left_rear_elbow_down_alike
+    t903 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t902 = t73 + t213 * M_left_rear_elbow_down_alike * t901
-    del t213, t73
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t902)
-    del size, t902
-    t903 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t904 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t905 = np.sqrt(t904)
-    del t904
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t901 * (t887 * t905))
-    del t887, t901
-    t906 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t904 = t75 + t215 * M_left_rear_elbow_down_alike * t903
+    del t215, t75
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t904)
+    del size, t904
+    t905 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t906 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t907 = np.sqrt(t906)
+    del t906
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t903 * (t889 * t907))
+    del t889, t903
+    t908 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t907 = r_left_rear_elbow_down_alike * t906
-    t908 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t909 = r_left_rear_elbow_down_alike * t908
+    t910 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t909 = h_left_rear_elbow_down_alike * t906
-    del h_left_rear_elbow_down_alike, t906
-    t910 = _runtime.select(folded_left_rear_elbow_down_alike, t880, np.arctan2(t903 - t907, t908 + t909))
-    t911 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
-    t912 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t905, t911)
-    del t905, t911
-    t913 = _runtime.select(short_right, 0.0, t912)
-    del t912
-    t914 = t239 + t876
-    del t239
-    t915 = _runtime.select(folded_left_rear_elbow_down_alike, t880, np.arctan2(t903 + t907, t908 - t909))
-    del t880, t903, t907, t908, t909
-    t916 = nowhere | folded | short
+    t911 = h_left_rear_elbow_down_alike * t908
+    del h_left_rear_elbow_down_alike, t908
+    t912 = _runtime.select(folded_left_rear_elbow_down_alike, t882, np.arctan2(t905 - t909, t910 + t911))
+    t913 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t914 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t907, t913)
+    del t907, t913
+    t915 = _runtime.select(short_right, 0.0, t914)
+    del t914
+    t916 = t241 + t878
+    del t241
+    t917 = _runtime.select(folded_left_rear_elbow_down_alike, t882, np.arctan2(t905 + t909, t910 - t911))
+    del t882, t905, t909, t910, t911
+    t918 = nowhere | folded | short
     del folded, nowhere, short
     over = np.maximum(d * 64.0, lengths)
-    t917 = over * over
+    t919 = over * over
     del over
-    square_mid = t74 + M_mid
-    t918 = M_mid * t917 * square_mid
+    square_mid = t76 + M_mid
+    t920 = M_mid * t919 * square_mid
     del M_mid
-    t919 = _runtime.DETERMINED * _runtime.DETERMINED
-    t920 = 4096.0 * (t52 * t52)
-    t921 = t52 * t919
-    del t52
-    t922 = square_mid <= t921
+    t921 = _runtime.DETERMINED * _runtime.DETERMINED
+    t922 = 4096.0 * (t54 * t54)
+    t923 = t54 * t921
+    del t54
+    t924 = square_mid <= t923
     del square_mid
-    t923 = wrist <= al * _runtime.DETERMINED
+    t925 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t924 = t916 | (t918 <= t919 * (t920 * gap)) | t922 | t923
-    t925 = t924 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t924
-    t926 = t212 * lengths
-    del lengths, t212
-    t927 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
+    t926 = t918 | (t920 <= t921 * (t922 * gap)) | t924 | t925
+    t927 = t926 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t926
+    t928 = t214 * lengths
+    del lengths, t214
+    t929 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
     del L_2W, a_3W
-    t928 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
+    t930 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
     del M_left, M_right
-    t929 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
+    t931 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
     del N_left, N_right, gap
-    t930 = t43 * t217 + sigma_right * np.sqrt(t928 * t929)
-    del sigma_right, t217, t928, t929
-    astray = _runtime.select(t107, t927 * np.abs(t930), 0.0)
-    del t930
-    t931 = _runtime.select(t107, t926, 1.0) <= _runtime.DETERMINED * astray
-    del astray, t107
-    t932 = _runtime.status(invalid, unreachable, t925 | t931)
-    del t925, t931, unreachable
-    square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
-    del t74
-    t933 = M_mid_front_elbow_down_alike * t917 * square_mid_front_elbow_down_alike
-    del M_mid_front_elbow_down_alike, t917
-    t934 = t933 <= t919 * (t920 * gap_front_elbow_down_alike)
-    t935 = square_mid_front_elbow_down_alike <= t921
-    del square_mid_front_elbow_down_alike, t921
-    t936 = t916 | t934 | t935 | t923 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t934
-    t937 = t936 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t936
-    t938 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
+    t932 = t45 * t219 + sigma_right * np.sqrt(t930 * t931)
+    del sigma_right, t219, t930, t931
+    astray = _runtime.select(t109, t929 * np.abs(t932), 0.0)
+    del t932
+    t933 = _runtime.select(t109, t928, 1.0) <= _runtime.DETERMINED * astray
+    del astray, t109
+    t934 = _runtime.status(invalid, unreachable, t927 | t933)
+    del t927, t933, unreachable
+    square_mid_front_elbow_down_alike = t76 + M_mid_front_elbow_down_alike
+    del t76
+    t935 = M_mid_front_elbow_down_alike * t919 * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike, t919
+    t936 = t935 <= t921 * (t922 * gap_front_elbow_down_alike)
+    t937 = square_mid_front_elbow_down_alike <= t923
+    del square_mid_front_elbow_down_alike, t923
+    t938 = t918 | t936 | t937 | t925 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t936
+    t939 = t938 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t938
+    t940 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
     del M_left_front_elbow_down_alike
-    t939 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t938)
-    del M_right_front_elbow_down_alike, t938
-    t940 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
+    t941 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t940)
+    del M_right_front_elbow_down_alike, t940
+    t942 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
     del N_left_front_elbow_down_alike, gap_front_elbow_down_alike
-    t941 = np.maximum(0.0, t940 + N_right_front_elbow_down_alike * 0.5)
-    del N_right_front_elbow_down_alike, t940
-    t942 = sigma_right_front_elbow_down_alike * np.sqrt(t939 * t941)
-    del sigma_right_front_elbow_down_alike, t939, t941
-    astray_front_elbow_down_alike = _runtime.select(t303, t927 * np.abs(t43 * t450 + t942), 0.0)
-    del t450, t942
-    t943 = _runtime.DETERMINED * astray_front_elbow_down_alike
+    t943 = np.maximum(0.0, t942 + N_right_front_elbow_down_alike * 0.5)
+    del N_right_front_elbow_down_alike, t942
+    t944 = sigma_right_front_elbow_down_alike * np.sqrt(t941 * t943)
+    del sigma_right_front_elbow_down_alike, t941, t943
+    astray_front_elbow_down_alike = _runtime.select(t305, t929 * np.abs(t45 * t452 + t944), 0.0)
+    del t452, t944
+    t945 = _runtime.DETERMINED * astray_front_elbow_down_alike
     del astray_front_elbow_down_alike
-    t944 = t937 | (_runtime.select(t303, t926, 1.0) <= t943)
-    del t303, t937, t943
-    t945 = _runtime.status(invalid, unreachable_2, t944)
-    del t944, unreachable_2
-    t946 = t933 <= t919 * (t920 * gap_rear_elbow_up_alike)
-    del t933
-    t947 = t916 | t946 | t935 | t923 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t935, t946
-    t948 = t947 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t947
-    t949 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
+    t946 = t939 | (_runtime.select(t305, t928, 1.0) <= t945)
+    del t305, t939, t945
+    t947 = _runtime.status(invalid, unreachable_2, t946)
+    del t946, unreachable_2
+    t948 = t935 <= t921 * (t922 * gap_rear_elbow_up_alike)
+    del t935
+    t949 = t918 | t948 | t937 | t925 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t937, t948
+    t950 = t949 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t949
+    t951 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
     del M_left_rear_elbow_up_alike
-    t950 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t949)
-    del M_right_rear_elbow_up_alike, t949
-    t951 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
+    t952 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t951)
+    del M_right_rear_elbow_up_alike, t951
+    t953 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
     del N_left_rear_elbow_up_alike, gap_rear_elbow_up_alike
-    t952 = np.maximum(0.0, t951 + N_right_rear_elbow_up_alike * 0.5)
-    del N_right_rear_elbow_up_alike, t951
-    t953 = sigma_right_rear_elbow_up_alike * np.sqrt(t950 * t952)
-    del sigma_right_rear_elbow_up_alike, t950, t952
-    astray_rear_elbow_up_alike = _runtime.select(t525, t927 * np.abs(t43 * t668 + t953), 0.0)
-    del t668, t953
-    t954 = _runtime.DETERMINED * astray_rear_elbow_up_alike
+    t954 = np.maximum(0.0, t953 + N_right_rear_elbow_up_alike * 0.5)
+    del N_right_rear_elbow_up_alike, t953
+    t955 = sigma_right_rear_elbow_up_alike * np.sqrt(t952 * t954)
+    del sigma_right_rear_elbow_up_alike, t952, t954
+    astray_rear_elbow_up_alike = _runtime.select(t527, t929 * np.abs(t45 * t670 + t955), 0.0)
+    del t670, t955
+    t956 = _runtime.DETERMINED * astray_rear_elbow_up_alike
     del astray_rear_elbow_up_alike
-    t955 = t948 | (_runtime.select(t525, t926, 1.0) <= t954)
-    del t525, t948, t954
-    t956 = _runtime.status(invalid, unreachable_3, t955)
-    del t955, unreachable_3
-    t957 = t918 <= t919 * (t920 * gap_rear_elbow_down_alike)
-    del t918, t919, t920
-    t958 = t916 | t957 | t922 | t923 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t916, t922, t923, t957
-    t959 = t958 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t958
-    t960 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
+    t957 = t950 | (_runtime.select(t527, t928, 1.0) <= t956)
+    del t527, t950, t956
+    t958 = _runtime.status(invalid, unreachable_3, t957)
+    del t957, unreachable_3
+    t959 = t920 <= t921 * (t922 * gap_rear_elbow_down_alike)
+    del t920, t921, t922
+    t960 = t918 | t959 | t924 | t925 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t918, t924, t925, t959
+    t961 = t960 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t960
+    t962 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
     del M_left_rear_elbow_down_alike
-    t961 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t960)
-    del M_right_rear_elbow_down_alike, t960
-    t962 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
+    t963 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t962)
+    del M_right_rear_elbow_down_alike, t962
+    t964 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
     del N_left_rear_elbow_down_alike, gap_rear_elbow_down_alike
-    t963 = np.maximum(0.0, t962 + N_right_rear_elbow_down_alike * 0.5)
-    del N_right_rear_elbow_down_alike, t962
-    t964 = sigma_right_rear_elbow_down_alike * np.sqrt(t961 * t963)
-    del sigma_right_rear_elbow_down_alike, t961, t963
-    astray_rear_elbow_down_alike = _runtime.select(t742, t927 * np.abs(t43 * t886 + t964), 0.0)
-    del t43, t886, t927, t964
-    t965 = _runtime.DETERMINED * astray_rear_elbow_down_alike
+    t965 = np.maximum(0.0, t964 + N_right_rear_elbow_down_alike * 0.5)
+    del N_right_rear_elbow_down_alike, t964
+    t966 = sigma_right_rear_elbow_down_alike * np.sqrt(t963 * t965)
+    del sigma_right_rear_elbow_down_alike, t963, t965
+    astray_rear_elbow_down_alike = _runtime.select(t744, t929 * np.abs(t45 * t888 + t966), 0.0)
+    del t45, t888, t929, t966
+    t967 = _runtime.DETERMINED * astray_rear_elbow_down_alike
     del astray_rear_elbow_down_alike
-    t966 = t959 | (_runtime.select(t742, t926, 1.0) <= t965)
-    del t742, t926, t959, t965
-    t967 = _runtime.status(invalid, unreachable_4, t966)
-    del invalid, t966, unreachable_4
+    t968 = t961 | (_runtime.select(t744, t928, 1.0) <= t967)
+    del t744, t928, t961, t967
+    t969 = _runtime.status(invalid, unreachable_4, t968)
+    del invalid, t968, unreachable_4
     return (
-        t209,
-        t223,
-        t228,
-        _runtime.wrap_cut(t236) + t208,
-        _runtime.wrap(t225 + t238) + t208,
-        t240,
-        t209,
-        t223,
-        t228,
-        _runtime.wrap_cut(t241) + t208,
-        _runtime.wrap(t225 - t238) + t208,
-        t240,
-        t440,
-        t458,
-        t462,
-        _runtime.wrap_cut(t474) + t439,
-        _runtime.wrap(t225 + t477) + t439,
-        t478,
-        t440,
-        t458,
-        t462,
-        _runtime.wrap_cut(t479) + t439,
-        _runtime.wrap(t225 - t477) + t439,
-        t478,
-        t658,
-        t676,
-        t680,
-        _runtime.wrap_cut(t692) + t657,
-        _runtime.wrap(t225 + t695) + t657,
-        t696,
-        t658,
-        t676,
-        t680,
-        _runtime.wrap_cut(t697) + t657,
-        _runtime.wrap(t225 - t695) + t657,
-        t696,
-        t877,
-        t894,
-        t898,
-        _runtime.wrap_cut(t910) + t876,
-        _runtime.wrap(t225 + t913) + t876,
-        t914,
-        t877,
-        t894,
-        t898,
-        _runtime.wrap_cut(t915) + t876,
-        _runtime.wrap(t225 - t913) + t876,
-        t914,
-        t932,
-        t932,
-        t945,
-        t945,
-        t956,
-        t956,
-        t967,
-        t967,
+        t211,
+        t225,
+        t230,
+        _runtime.wrap_cut(t238) + t210,
+        _runtime.wrap(t227 + t240) + t210,
+        t242,
+        t211,
+        t225,
+        t230,
+        _runtime.wrap_cut(t243) + t210,
+        _runtime.wrap(t227 - t240) + t210,
+        t242,
+        t442,
+        t460,
+        t464,
+        _runtime.wrap_cut(t476) + t441,
+        _runtime.wrap(t227 + t479) + t441,
+        t480,
+        t442,
+        t460,
+        t464,
+        _runtime.wrap_cut(t481) + t441,
+        _runtime.wrap(t227 - t479) + t441,
+        t480,
+        t660,
+        t678,
+        t682,
+        _runtime.wrap_cut(t694) + t659,
+        _runtime.wrap(t227 + t697) + t659,
+        t698,
+        t660,
+        t678,
+        t682,
+        _runtime.wrap_cut(t699) + t659,
+        _runtime.wrap(t227 - t697) + t659,
+        t698,
+        t879,
+        t896,
+        t900,
+        _runtime.wrap_cut(t912) + t878,
+        _runtime.wrap(t227 + t915) + t878,
+        t916,
+        t879,
+        t896,
+        t900,
+        _runtime.wrap_cut(t917) + t878,
+        _runtime.wrap(t227 - t915) + t878,
+        t916,
+        t934,
+        t934,
+        t947,
+        t947,
+        t958,
+        t958,
+        t969,
+        t969,
     )
 
 

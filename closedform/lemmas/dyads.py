@@ -17,7 +17,7 @@ from closedform.lemmas.leg_by_leg import SIGN, Choice, record_lemma
 from closedform.lemmas.legs import Naming
 from closedform.lemmas.linkage import GROUND, Body, Linkage, Solved
 from closedform.lemmas.loop import NEAR
-from closedform.lemmas.missed import SHARE, loosened
+from closedform.lemmas.missed import SHARE
 from closedform.lemmas.modes import NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
@@ -228,7 +228,7 @@ def _carry(m: Linkage, p: Program, step: Solved, points: dict[str, sp.Matrix]) -
 
 def _again(m: Linkage, found: Posture) -> Posture:
     """The posture with the looser tolerances of functions of the hand."""
-    v = Program(loosened(found.program.body), found.program.taken)
+    v = Program(list(found.program.body), found.program.taken)
     if m.follower:
         step, points = m.solved[-1], found.points
         points[step.pin] = named(v, f"p{step.pin}", points[step.pin])

@@ -30,7 +30,7 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
 from closedform.lemmas.loop_skeleton import draw
-from closedform.lemmas.missed import MOVED, SHARE, loosened
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import NO_MODE, Exported, export
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
@@ -145,7 +145,7 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
     )
     record_lemma(d, "fk", met.link)
-    v = Program(loosened(f.body), f.taken)
+    v = Program(list(f.body), f.taken)
     (first, _), *_ = m.in_lemma(m.numbered)
     name = f"span_{first}" if m.rails else f"A_{first}"
     rod = sp.Matrix([v.let(f"{name}{i}", e) for i, e in enumerate(found.first, 1)])

@@ -31,7 +31,7 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.lemmas.loop import NEAR
-from closedform.lemmas.missed import MOVED, SHARE, loosened
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import NO_MODE, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
@@ -264,7 +264,7 @@ def _forward(m: OnRod, choice: Choice, loop: Step) -> _Posture:
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * 2, equations, links=(found.link,))
     )
     record_lemma(d, "fk", found.link)
-    v = Program(loosened(f.body), f.taken)
+    v = Program(list(f.body), f.taken)
     span = sp.Matrix([v.let(f"A_1{i}", e) for i, e in enumerate(found.first, 1)])
     other = sp.Matrix([v.let(f"A_2{i}", e) for i, e in enumerate(near[0] + span - centre, 1)])
     return _Posture(v, modes, (near[0], near[1]), (span, other), side=found.side, size=found.size)

@@ -14,6 +14,7 @@ from closedform.lower.branch import Branch, UnboundedAngleError, expressions_of,
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.degrees import NUMBERS, Degrees, degrees
+from closedform.lower.edge import within_edge
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.operators import COUNTED, LEAVES
 from closedform.lower.ranges import Ranges
@@ -116,6 +117,7 @@ class Lowered:
 
 def lower(function: Function, derivation: Derivation) -> Lowered:
     """Lower one function of a derivation."""
+    function = within_edge(function, derivation)
     entries = Turns.of(function, derivation).entries()
     whole = _with_common(*_lower(function, derivation, entries, list(function.cases())))
     if whole.common is not None and function.branches:
@@ -127,6 +129,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
 
 def lower_branch(function: Function, derivation: Derivation, branch: int) -> Lowered:
     """Lower one branch of a function alone."""
+    function = within_edge(function, derivation)
     entries = Turns.of(function, derivation).entries()
     case = list(function.cases())[branch]
     alone = replace(function, branches=None)

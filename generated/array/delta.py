@@ -388,7 +388,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t34
     t47 = t37 * (d_x - t37) + t36 * (t35 - t36) + t39 * (d_z - t39)
     t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t33 * ops.feasibility
-    t49 = l * size * 0.9375
+    t49 = 0.9375 * (l * size)
     t50 = l * l
     t51 = mu * t47
     g_1 = whole * d_z
@@ -718,7 +718,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     in_line = nu <= t14
     t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
-    t29 = l * size * 0.9375
+    t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
@@ -891,7 +891,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     in_line = nu <= t16
     t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
@@ -1062,7 +1062,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     in_line = nu <= t16
     t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
@@ -1276,7 +1276,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     in_line = nu <= t16
     t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
@@ -1444,7 +1444,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     in_line = nu <= t16
     t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t17 * a_x)
@@ -1617,7 +1617,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     in_line = nu <= t14
     t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
-    t29 = l * size * 0.9375
+    t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
@@ -1812,7 +1812,7 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     in_line = nu <= t14
     t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
-    t29 = l * size * 0.9375
+    t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)

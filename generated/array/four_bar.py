@@ -204,7 +204,7 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -314,7 +314,7 @@ def _jacobian_parallel(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L1 - L2 * c
     wv_2 = L2 * s
     t6 = t5 * t5 + wv_2 * wv_2
@@ -398,7 +398,7 @@ def _jacobian_serial(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -483,7 +483,7 @@ def _jacobian(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -571,7 +571,7 @@ def _determinant(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s
@@ -658,7 +658,7 @@ def _singularities(ops, theta, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta)
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(ops.feasibility * (0.375 * size))
+    t4 = -(ops.feasibility * (0.46875 * size))
     t5 = L2 * c
     t6 = L1 - t5
     wv_2 = L2 * s

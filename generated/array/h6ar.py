@@ -5,13 +5,13 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 41 add, 47 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
 #     sincos, 4 sqrt
-#   pose: 60 add, 51 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+#   pose: 60 add, 51 compare and select, 8 divide, 102 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   skeleton: 105 add, 91 compare and select, 8 divide, 150 multiply, 6 sincos, 4 sqrt
+#   skeleton: 105 add, 91 compare and select, 8 divide, 151 multiply, 6 sincos, 4 sqrt
 #   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
-#   jacobian: 108 add, 67 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
-#   determinant: 39 compare and select, 39 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
-#   singularities: 43 compare and select, 39 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
+#   jacobian: 108 add, 67 compare and select, 40 divide, 168 multiply, 6 sincos, 4 sqrt
+#   determinant: 39 compare and select, 39 add, 9 divide, 71 multiply, 5 sincos, 4 sqrt
+#   singularities: 43 compare and select, 39 add, 8 divide, 60 multiply, 5 sincos, 4 sqrt
 #   ik: 1689 compare and select, 758 add, 33 atan2, 275 divide, 1025 multiply, 1 reduce to a turn,
 #     3 sincos, 86 sqrt
 #   wrist_length: 24 compare and select, 5 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
@@ -307,7 +307,7 @@ def _pose(
     t3 = t2 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     t4 = ops.finite(theta1, theta2R, theta3R, theta2L, theta3L, theta)
     t5 = gs + al
-    t6 = -(ops.feasibility * t5)
+    t6 = -(ops.feasibility * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half
@@ -534,7 +534,7 @@ def _skeleton(
     t3 = t2 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     t4 = ops.finite(theta1, theta2R, theta3R, theta2L, theta3L, theta)
     t5 = gs + al
-    t6 = -(ops.feasibility * t5)
+    t6 = -(ops.feasibility * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half
@@ -860,7 +860,7 @@ def _jacobian(
     t3 = t2 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
     t4 = ops.finite(theta1, theta2R, theta3R, theta2L, theta3L, theta)
     t5 = gs + al
-    t6 = -(ops.feasibility * t5)
+    t6 = -(ops.feasibility * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half
@@ -1098,7 +1098,7 @@ def _determinant(
     t3 = t2 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
     t4 = ops.finite(theta1, theta2R, theta3R, theta2L, theta3L, theta)
     t5 = gs + al
-    t6 = -(ops.feasibility * t5)
+    t6 = -(ops.feasibility * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half
@@ -1217,7 +1217,7 @@ def _singularities(
     t3 = t2 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
     t4 = ops.finite(theta1, theta2R, theta3R, theta2L, theta3L, theta)
     t5 = gs + al
-    t6 = -(ops.feasibility * t5)
+    t6 = -(ops.feasibility * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half

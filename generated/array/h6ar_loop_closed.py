@@ -5,13 +5,13 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 95 compare and select, 84 add, 2 atan2, 27 divide, 125 multiply, 1 reduce to a turn, 6
 #     sincos, 8 sqrt
-#   pose: 99 compare and select, 103 add, 27 divide, 164 multiply, 6 sincos, 8 sqrt
-#   skeleton: 133 compare and select, 136 add, 27 divide, 203 multiply, 6 sincos, 8 sqrt
+#   pose: 99 compare and select, 103 add, 27 divide, 166 multiply, 6 sincos, 8 sqrt
+#   skeleton: 133 compare and select, 136 add, 27 divide, 205 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 131 compare and select, 190 add, 59 divide, 323 multiply, 6 sincos, 8 sqrt
-#   determinant: 85 compare and select, 94 add, 28 divide, 157 multiply, 5 sincos, 8 sqrt
-#   singularities: 89 compare and select, 94 add, 27 divide, 147 multiply, 5 sincos, 8 sqrt
+#   jacobian: 131 compare and select, 190 add, 59 divide, 325 multiply, 6 sincos, 8 sqrt
+#   determinant: 85 compare and select, 94 add, 28 divide, 159 multiply, 5 sincos, 8 sqrt
+#   singularities: 89 compare and select, 94 add, 27 divide, 149 multiply, 5 sincos, 8 sqrt
 #   ik: 2540 compare and select, 1006 add, 28 atan2, 278 divide, 1478 multiply, 1 reduce to a
 #     turn, 3 sincos, 72 sqrt
 #   wrist_length: 25 compare and select, 6 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
@@ -386,7 +386,7 @@ def _pose(
     t5 = L2 * L2 + a3 * a3
     fore = ops.sqrt(t5)
     t6 = L1 + fore
-    t7 = -(ops.feasibility * (d * t6))
+    t7 = -(ops.feasibility * (1.25 * (d * t6)))
     t8 = c3R_half * c3L_half
     t9 = s3R_half * s3L_half
     t10 = t8 + t9
@@ -441,7 +441,7 @@ def _pose(
     M_left = ops.select(t37, large_left, small_left) * t41
     t49 = (t7 <= gap + N_left * 0.5 + N_right * 0.5) & (t7 <= M_right * 0.5 - (gap - M_left * 0.5))
     t50 = gs + al
-    t51 = -(ops.feasibility * t50)
+    t51 = -(ops.feasibility * (1.25 * t50))
     t52 = d * d
     t53 = t52 + gap
     base = ops.sqrt(t53)
@@ -628,7 +628,7 @@ def _skeleton(
     t5 = L2 * L2 + a3 * a3
     fore = ops.sqrt(t5)
     t6 = L1 + fore
-    t7 = -(ops.feasibility * (d * t6))
+    t7 = -(ops.feasibility * (1.25 * (d * t6)))
     t8 = c3R_half * c3L_half
     t9 = s3R_half * s3L_half
     t10 = t8 + t9
@@ -683,7 +683,7 @@ def _skeleton(
     M_left = ops.select(t37, large_left, small_left) * t41
     t49 = (t7 <= gap + N_left * 0.5 + N_right * 0.5) & (t7 <= M_right * 0.5 - (gap - M_left * 0.5))
     t50 = gs + al
-    t51 = -(ops.feasibility * t50)
+    t51 = -(ops.feasibility * (1.25 * t50))
     t52 = d * d
     t53 = t52 + gap
     base = ops.sqrt(t53)
@@ -1077,7 +1077,7 @@ def _jacobian(
     t5 = L2 * L2 + a3 * a3
     fore = ops.sqrt(t5)
     t6 = L1 + fore
-    t7 = -(ops.feasibility * (d * t6))
+    t7 = -(ops.feasibility * (1.25 * (d * t6)))
     t8 = c3R_half * c3L_half
     t9 = s3R_half * s3L_half
     t10 = t8 + t9
@@ -1132,7 +1132,7 @@ def _jacobian(
     M_left = ops.select(t37, large_left, small_left) * t41
     t49 = (t7 <= gap + N_left * 0.5 + N_right * 0.5) & (t7 <= M_right * 0.5 - (gap - M_left * 0.5))
     t50 = gs + al
-    t51 = -(ops.feasibility * t50)
+    t51 = -(ops.feasibility * (1.25 * t50))
     t52 = d * d
     t53 = t52 + gap
     base = ops.sqrt(t53)
@@ -1430,7 +1430,7 @@ def _determinant(
     t5 = L2 * L2 + a3 * a3
     fore = ops.sqrt(t5)
     t6 = L1 + fore
-    t7 = -(ops.feasibility * (d * t6))
+    t7 = -(ops.feasibility * (1.25 * (d * t6)))
     t8 = c3R_half * c3L_half
     t9 = s3R_half * s3L_half
     t10 = t8 + t9
@@ -1485,7 +1485,7 @@ def _determinant(
     M_left = ops.select(t37, large_left, small_left) * t41
     t49 = (t7 <= gap + N_left * 0.5 + N_right * 0.5) & (t7 <= M_right * 0.5 - (gap - M_left * 0.5))
     t50 = gs + al
-    t51 = -(ops.feasibility * t50)
+    t51 = -(ops.feasibility * (1.25 * t50))
     t52 = d * d
     t53 = t52 + gap
     base = ops.sqrt(t53)
@@ -1634,7 +1634,7 @@ def _singularities(
     t5 = L2 * L2 + a3 * a3
     fore = ops.sqrt(t5)
     t6 = L1 + fore
-    t7 = -(ops.feasibility * (d * t6))
+    t7 = -(ops.feasibility * (1.25 * (d * t6)))
     t8 = c3R_half * c3L_half
     t9 = s3R_half * s3L_half
     t10 = t8 + t9
@@ -1689,7 +1689,7 @@ def _singularities(
     M_left = ops.select(t37, large_left, small_left) * t41
     t49 = (t7 <= gap + N_left * 0.5 + N_right * 0.5) & (t7 <= M_right * 0.5 - (gap - M_left * 0.5))
     t50 = gs + al
-    t51 = -(ops.feasibility * t50)
+    t51 = -(ops.feasibility * (1.25 * t50))
     t52 = d * d
     t53 = t52 + gap
     base = ops.sqrt(t53)

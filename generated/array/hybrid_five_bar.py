@@ -4,15 +4,15 @@
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 17 add, 37 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 13 add, 42 compare and select, 4 atan2, 6 divide, 14 multiply, 2 sincos, 3
+#   passive_angles: 13 add, 42 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
 #     sqrt
-#   skeleton: 17 add, 44 compare and select, 6 divide, 22 multiply, 3 sincos, 3 sqrt
-#   jacobian_parallel: 13 add, 45 compare and select, 6 divide, 20 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 19 add, 36 compare and select, 6 divide, 24 multiply, 2 sincos, 3 sqrt
-#   jacobian: 19 add, 48 compare and select, 18 divide, 43 multiply, 3 sincos, 3 sqrt
-#   determinant: 19 add, 33 compare and select, 8 divide, 27 multiply, 2 sincos, 3 sqrt
-#   singularities: 19 add, 38 compare and select, 6 divide, 23 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 32 compare and select, 4 divide, 10 multiply, 2 sincos, 3 sqrt
+#   skeleton: 17 add, 44 compare and select, 5 divide, 23 multiply, 3 sincos, 3 sqrt
+#   jacobian_parallel: 13 add, 45 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
+#   jacobian_serial: 19 add, 36 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
+#   jacobian: 19 add, 48 compare and select, 17 divide, 44 multiply, 3 sincos, 3 sqrt
+#   determinant: 19 add, 33 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
+#   singularities: 19 add, 38 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 32 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
 #   ik: 104 compare and select, 43 add, 6 atan2, 2 divide, 54 multiply, 8 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 14 add, 41 compare and select, 4 divide, 29 multiply
@@ -239,7 +239,7 @@ def _passive_angles(ops, theta1, theta2, theta3, L0, L1, L2):
     t6 = t4 * t4 + t5 * t5
     apart = ops.sqrt(t6)
     t7 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t7)
     failed = ops.opposite(t2) | unreachable
     t8 = size * ops.vanishing
     coincide = apart <= t8
@@ -341,7 +341,7 @@ def _skeleton(ops, theta1, theta2, theta3, L0, L1, L2):
     t6 = t4 * t4 + t5 * t5
     apart = ops.sqrt(t6)
     t7 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t7)
     failed = ops.opposite(t2) | unreachable
     t8 = ops.select(failed, ops.nan, 0.0)
     t9 = ops.select(failed, ops.nan, L0)
@@ -466,7 +466,7 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, L0, L1, L2):
     t6 = t4 * t4 + t5 * t5
     apart = ops.sqrt(t6)
     t7 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t7)
     failed = ops.opposite(t2) | unreachable
     t8 = ops.select(failed, ops.nan, L2 * s1)
     t9 = ops.select(failed, ops.nan, 0.0)
@@ -580,7 +580,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, L0, L1, L2):
     t7 = t4 * t4 + t6 * t6
     apart = ops.sqrt(t7)
     t8 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t8)
     failed = ops.opposite(t2) | unreachable
     t9 = size * ops.vanishing
     coincide = apart <= t9
@@ -682,7 +682,7 @@ def _jacobian(ops, theta1, theta2, theta3, L0, L1, L2):
     t7 = t4 * t4 + t6 * t6
     apart = ops.sqrt(t7)
     t8 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t8)
     failed = ops.opposite(t2) | unreachable
     t9 = size * ops.vanishing
     coincide = apart <= t9
@@ -812,7 +812,7 @@ def _determinant(ops, theta1, theta2, theta3, L0, L1, L2):
     t7 = t4 * t4 + t6 * t6
     apart = ops.sqrt(t7)
     t8 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t8)
     failed = ops.opposite(t2) | unreachable
     t9 = size * ops.vanishing
     coincide = apart <= t9
@@ -906,7 +906,7 @@ def _singularities(ops, theta1, theta2, theta3, L0, L1, L2):
     t7 = t4 * t4 + t6 * t6
     apart = ops.sqrt(t7)
     t8 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t8)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t8)
     failed = ops.opposite(t2) | unreachable
     t9 = size * ops.vanishing
     coincide = apart <= t9
@@ -1005,7 +1005,7 @@ def _condition_number(ops, theta1, theta2, theta3, L0, L1, L2):
     t6 = t4 * t4 + t5 * t5
     apart = ops.sqrt(t6)
     t7 = t3 - apart
-    unreachable = ops.opposite(-(ops.feasibility * (size * 0.5)) <= t7)
+    unreachable = ops.opposite(-(ops.feasibility * (size * 0.625)) <= t7)
     failed = ops.opposite(t2) | unreachable
     t8 = size * ops.vanishing
     coincide = apart <= t8

@@ -320,7 +320,7 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t13
     t23 = t14 * (d_y - t14) + t16 * (t15 - t16)
     t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t12 * ops.feasibility
-    t25 = l * size * 0.234375
+    t25 = 0.234375 * (l * size)
     t26 = l * l
     t27 = mu * t23
     t28 = whole * t15
@@ -618,7 +618,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
@@ -765,7 +765,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
@@ -886,7 +886,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     s_w = ops.sign(a_x * d_y)
@@ -1067,7 +1067,7 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
@@ -1189,7 +1189,7 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
@@ -1315,7 +1315,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     s_w = ops.sign(d_y * a_x)
@@ -1493,7 +1493,7 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     in_line = nu <= t8
     t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     t21 = l * l
     t22 = whole * t10
     s_w = ops.sign(d_y * a_x)

@@ -293,7 +293,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -544,7 +544,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -690,7 +690,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -816,7 +816,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -989,7 +989,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -1111,7 +1111,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -1241,7 +1241,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
@@ -1414,7 +1414,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     in_line = nu <= t4
     t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
-    t14 = L * size * 0.234375
+    t14 = 0.234375 * (L * size)
     t15 = L * L
     g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)

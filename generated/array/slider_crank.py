@@ -173,7 +173,7 @@ def _skeleton(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -263,7 +263,7 @@ def _jacobian_parallel(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     aside_2 = e - r * s
     t3 = l - aside_2
     t4 = l + aside_2
@@ -325,7 +325,7 @@ def _jacobian_serial(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -389,7 +389,7 @@ def _jacobian(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -457,7 +457,7 @@ def _determinant(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2
@@ -524,7 +524,7 @@ def _singularities(ops, theta, r, l, e):
     s = ops.sin(theta)
     c = ops.cos(theta)
     t1 = ops.finite(r, l, e) & (0.0 <= r) & (0.0 <= l)
-    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.375)
+    t2 = ops.feasibility * ((r + l + ops.abs(e)) * 0.46875)
     t3 = r * s
     aside_2 = e - t3
     t4 = l - aside_2

@@ -369,7 +369,7 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t22 = t21 - t18
     t23 = t18 - t19
     t24 = ops.select(same, r_2, r)
-    t25 = r * 0.625 * (r * 2.2737367544323206e-13 + t24)
+    t25 = 0.625 * (r * (r * 2.2737367544323206e-13 + t24))
     t26 = -(ops.feasibility * t25)
     over = 1.0 / mu
     t27 = ops.select(same, c1_y, t13)
@@ -606,7 +606,7 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t19 = t18 - t15
     t20 = t15 + t16
     t21 = ops.select(same, r_2, r)
-    t22 = r * 0.625 * (r * 2.2737367544323206e-13 + t21)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
@@ -816,7 +816,7 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     t19 = t18 - t15
     t20 = t15 + t16
     t21 = ops.select(same, r_2, r)
-    t22 = r * 0.625 * (r * 2.2737367544323206e-13 + t21)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
@@ -1016,7 +1016,7 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t19 = t18 - t15
     t20 = t15 + t16
     t21 = ops.select(same, r_2, r)
-    t22 = r * 0.625 * (r * 2.2737367544323206e-13 + t21)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
@@ -1253,7 +1253,7 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t19 = t18 - t15
     t20 = t15 + t16
     t21 = ops.select(same, r_2, r)
-    t22 = r * 0.625 * (r * 2.2737367544323206e-13 + t21)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)
@@ -1455,7 +1455,7 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t19 = t18 - t15
     t20 = t15 + t16
     t21 = ops.select(same, r_2, r)
-    t22 = r * 0.625 * (r * 2.2737367544323206e-13 + t21)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
     over = 1.0 / mu
     t24 = ops.select(same, c1_y, t10)

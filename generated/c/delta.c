@@ -335,7 +335,7 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t46 = t39 * (d_x - t39) + t38 * (t37 - t38) + t41 * (d_z - t41);
     const real_t t47 = cf_rarely(single, in_line, -t46, CLOSEDFORM_C(0.0));
     const int t48 = cf_abs(t47) <= t35 * CLOSEDFORM_FEASIBILITY;
-    const real_t t49 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t49 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t37 * a_x);
     const real_t t50 = whole * (t37 + a_x * s_w);
@@ -579,7 +579,7 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t t5 = size * size;
     const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t5;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t7 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t7 = CLOSEDFORM_C(0.9375) * (l * size);
     real_t t8_lanes[4], t9_lanes[4], t10_lanes[4], t11_lanes[4], t12_lanes[4], t13_lanes[4], t14_lanes[4], t15_lanes[4], t16_lanes[4], c1_z_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4];
     const real_t t23_of[4] = { c_alpha1, c_alpha2, c_alpha3, c_alpha3 };
     real_t t23[4];
@@ -1129,7 +1129,7 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t t27 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t26 * t26) + mu * CLOSEDFORM_C(0.25));
     const real_t t28 = l * l - t27;
     const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t29 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t29, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t30 = w_x * h;
     const real_t t31 = t19 * t26 + d_x * CLOSEDFORM_C(0.5);
@@ -1349,7 +1349,7 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t t30 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t29 * t29) + mu * CLOSEDFORM_C(0.25));
     const real_t t31 = l * l - t30;
     const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
-    const real_t t32 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t32 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t32, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t33 = w_x * h;
     const real_t t34 = t22 * t29 + d_x * CLOSEDFORM_C(0.5);
@@ -1556,7 +1556,7 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
     const real_t t32 = l * l - t31;
     const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t34 = w_x * h;
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
@@ -1808,7 +1808,7 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
     const real_t t32 = l * l - t31;
     const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t34 = w_x * h;
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
@@ -2010,7 +2010,7 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
     const real_t t32 = l * l - t31;
     const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t34 = w_x * h;
     const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
@@ -2219,7 +2219,7 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
     const real_t t29 = l * l - t28;
     const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t31 = w_x * h;
     const real_t t32 = t19 * t27 + d_x * CLOSEDFORM_C(0.5);
@@ -2440,7 +2440,7 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
     const real_t t29 = l * l - t28;
     const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = l * size * CLOSEDFORM_C(0.9375);
+    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t w_z = cf_rarely(single, in_line, -t23, a_x * t22 + t14 * t20);
     const real_t t31 = h * w_z;

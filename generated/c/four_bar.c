@@ -172,7 +172,7 @@ CF_INLINE void four_bar_skeleton_kernel(const int single, const four_bar_params 
     const int t4 = cf_nought(theta) == 0;
     const real_t t5 = L3 + L4;
     const real_t size = L1 + L2 + t5;
-    const real_t t6 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t6 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const real_t t7 = L2 * c;
     const real_t t8 = L1 - t7;
     const real_t wv_2 = L2 * s;
@@ -360,7 +360,7 @@ CF_INLINE void four_bar_jacobian_parallel_kernel(const int single, const four_ba
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t22 = cf_nought(theta) == 0;
-    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const int unreachable = !((-t23 <= t5) & (-t23 <= t9) & (-t23 <= t7));
     const real_t t24 = cf_poison(single, (!(t21 & t22)) | unreachable);
     const real_t t25 = share_2 * cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13);
@@ -480,7 +480,7 @@ CF_INLINE void four_bar_jacobian_serial_kernel(const int single, const four_bar_
     const int t20 = t19 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t22 = cf_nought(theta) == 0;
-    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t23 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const int unreachable = !((-t23 <= t6) & (-t23 <= t10) & (-t23 <= t8));
     const real_t t24 = cf_poison(single, (!(t21 & t22)) | unreachable);
     const real_t t25 = -(wv_2 * (t2 + t15) + t1 * (wv_2 + t18)) + t24;
@@ -602,7 +602,7 @@ CF_INLINE void four_bar_jacobian_kernel(const int single, const four_bar_params 
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t23 = cf_nought(theta) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const int unreachable = !((-t24 <= t6) & (-t24 <= t10) & (-t24 <= t8));
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
     const real_t cosine_2_negative = cf_rarely(single, t5, CLOSEDFORM_C(1.0), t13 - t14);
@@ -722,7 +722,7 @@ CF_INLINE void four_bar_determinant_kernel(const int single, const four_bar_para
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t23 = cf_nought(theta) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const int unreachable = !((-t24 <= t6) & (-t24 <= t10) & (-t24 <= t8));
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
     const real_t cosine_2_negative = cf_rarely(single, t5, CLOSEDFORM_C(1.0), t13 - t14);
@@ -841,7 +841,7 @@ CF_INLINE void four_bar_singularities_kernel(const int single, const four_bar_pa
     const int t21 = t20 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
     const int t22 = t21 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= L4);
     const int t23 = cf_nought(theta) == 0;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.375) * size);
+    const real_t t24 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.46875) * size);
     const int unreachable = !((-t24 <= t6) & (-t24 <= t10) & (-t24 <= t8));
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
     const real_t t26 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);

@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
  *     sincos, 3 sqrt
- *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
+ *   pose: 72 add, 32 compare and select, 8 divide, 102 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
- *   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
+ *   skeleton: 157 add, 32 compare and select, 8 divide, 151 multiply, 6 sincos, 3 sqrt
  *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
- *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
- *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
- *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+ *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
+ *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
+ *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
  *   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
  *     sincos, 51 sqrt
  *   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
@@ -309,10 +309,10 @@ CF_INLINE void h6ar_pose_kernel(const int single, const h6ar_params *params,
     const int t40 = t39 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
     const int t41 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
     const real_t t42 = gs + al;
-    const real_t t43 = -(CLOSEDFORM_FEASIBILITY * t42);
+    const real_t t43 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t42);
     const real_t t44 = t42 - base;
     const real_t t45 = base - (gs - al);
-    const int failed = (!(t40 & (CLOSEDFORM_C(0.0) <= lp) & t41)) | (!((t43 <= t44) & (t43 <= t45)));
+    const int failed = (!(t40 & (CLOSEDFORM_C(0.0) <= lp) & t41)) | (!((-t43 <= t44) & (-t43 <= t45)));
     const real_t t46 = cf_poison(single, failed);
     const real_t hand_12 = t30 * c_psi;
     const real_t hand_22 = c_phi * c_psi;
@@ -569,7 +569,7 @@ CF_INLINE void h6ar_skeleton_kernel(const int single, const h6ar_params *params,
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
     const int t6 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
     const real_t t7 = gs + al;
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t7);
+    const real_t t8 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t7);
     const real_t t9 = d * d;
     const real_t t10 = c3L_half * c3R_half;
     const real_t t11 = s3L_half * s3R_half;
@@ -594,7 +594,7 @@ CF_INLINE void h6ar_skeleton_kernel(const int single, const h6ar_params *params,
     const real_t base = cf_sqrt(t9 + t29 * t29);
     const real_t t30 = t7 - base;
     const real_t t31 = base - (gs - al);
-    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= lp) & t6)) | (!((t8 <= t30) & (t8 <= t31)));
+    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= lp) & t6)) | (!((-t8 <= t30) & (-t8 <= t31)));
     const real_t t32 = cf_poison(single, failed);
     const real_t t33 = CLOSEDFORM_C(0.0) + t32;
     const real_t t34 = d1 + t32;
@@ -1079,8 +1079,8 @@ CF_INLINE void h6ar_jacobian_kernel(const int single, const h6ar_params *params,
     const int t50 = t49 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t51 = t50 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t52 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t53 = -(CLOSEDFORM_FEASIBILITY * t36);
-    const int failed = (!(t51 & t52)) | (!((t53 <= t37) & (t53 <= t35)));
+    const real_t t53 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t36);
+    const int failed = (!(t51 & t52)) | (!((-t53 <= t37) & (-t53 <= t35)));
     const real_t t54 = cf_poison(single, failed);
     const real_t t55 = c2R_half * c2R_half - s2R_half * s2R_half;
     const real_t t56 = s2R_half * c2R_half;
@@ -1400,8 +1400,8 @@ CF_INLINE void h6ar_determinant_kernel(const int single, const h6ar_params *para
     const int t46 = t45 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t48 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t49 = -(CLOSEDFORM_FEASIBILITY * t35);
-    const int failed = (!(t47 & t48)) | (!((t49 <= t36) & (t49 <= t34)));
+    const real_t t49 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t35);
+    const int failed = (!(t47 & t48)) | (!((-t49 <= t36) & (-t49 <= t34)));
     det[0] = -t42 + cf_poison(single, failed);
 }
 
@@ -1571,8 +1571,8 @@ CF_INLINE void h6ar_singularities_kernel(const int single, const h6ar_params *pa
     const int t40 = t39 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t41 = t40 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t42 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t43 = -(CLOSEDFORM_FEASIBILITY * t31);
-    const int failed = (!(t41 & t42)) | (!((t43 <= t32) & (t43 <= t30)));
+    const real_t t43 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t31);
+    const int failed = (!(t41 & t42)) | (!((-t43 <= t32) & (-t43 <= t30)));
     const real_t t44 = cf_poison(single, failed);
     const real_t s2A = side2A * t27;
     const real_t t45 = c2A * c23A + s2A * s23A;

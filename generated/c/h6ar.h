@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
  *     sincos, 3 sqrt
- *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
+ *   pose: 72 add, 32 compare and select, 8 divide, 102 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
- *   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
+ *   skeleton: 157 add, 32 compare and select, 8 divide, 151 multiply, 6 sincos, 3 sqrt
  *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
- *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
- *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
- *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+ *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
+ *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
+ *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
  *   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
  *     sincos, 51 sqrt
  *   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,

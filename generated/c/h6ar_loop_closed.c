@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
  *     sincos, 6 sqrt
- *   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
- *   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
+ *   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
+ *   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
- *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
- *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+ *   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
+ *   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
+ *   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
  *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
  *   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
@@ -432,13 +432,13 @@ CF_INLINE void h6ar_loop_closed_pose_kernel(const int single,
     const int t72 = t71 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
     const int t73 = t72 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
     const int t74 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t75 = -(CLOSEDFORM_FEASIBILITY * (d * t27));
+    const real_t t75 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * (d * t27));
     const real_t t76 = gs + al;
-    const real_t t77 = -(CLOSEDFORM_FEASIBILITY * t76);
+    const real_t t77 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t76);
     const real_t t78 = t76 - base;
-    const real_t t79 = base - (gs - al);
-    const int t80 = (t75 <= t46) & (t75 <= t44) & (t77 <= t78) & (t77 <= t79);
-    const int failed = (!(t73 & (CLOSEDFORM_C(0.0) <= lp) & t74)) | (!t80);
+    const int t79 = (-t75 <= t46) & (-t75 <= t44) & (-t77 <= t78);
+    const real_t t80 = base - (gs - al);
+    const int failed = (!(t73 & (CLOSEDFORM_C(0.0) <= lp) & t74)) | (!(t79 & (-t77 <= t80)));
     const real_t t81 = cf_poison(single, failed);
     const real_t t82 = t56 * hand_11 + s1 * hand_21 - t67 * t68 + t81;
     const real_t t83 = t61 * c_psi;
@@ -448,7 +448,7 @@ CF_INLINE void h6ar_loop_closed_pose_kernel(const int single,
     const real_t t85 = t62 + t60 * t64;
     const real_t hand_33 = c * c_psi;
     const real_t t86 = t56 * hand_13 + s1 * t85 + t67 * hand_33 + t81;
-    const real_t t87 = cf_max(t78, CLOSEDFORM_C(0.0)) * cf_max(t79, CLOSEDFORM_C(0.0));
+    const real_t t87 = cf_max(t78, CLOSEDFORM_C(0.0)) * cf_max(t80, CLOSEDFORM_C(0.0));
     const real_t t88 = loff + lp * c + cf_sqrt(t87);
     const real_t t89 = t64 * t88;
     const real_t t90 = lp * t62 + c_phi * t89;
@@ -625,7 +625,7 @@ CF_INLINE void h6ar_loop_closed_skeleton_kernel(const int single,
     const int t6 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
     const real_t fore = cf_sqrt(L2 * L2 + a3 * a3);
     const real_t t7 = L1 + fore;
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (d * t7));
+    const real_t t8 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * (d * t7));
     const real_t t9 = c3R_half * c3L_half;
     const real_t t10 = s3R_half * s3L_half;
     const real_t t11 = t9 + t10;
@@ -677,12 +677,12 @@ CF_INLINE void h6ar_loop_closed_skeleton_kernel(const int single,
     const real_t t48 = cf_select(t38, large_left, small_left) * t40 * CLOSEDFORM_C(0.5);
     const real_t t49 = M_right * CLOSEDFORM_C(0.5) - (gap - t48);
     const real_t t50 = gs + al;
-    const real_t t51 = -(CLOSEDFORM_FEASIBILITY * t50);
+    const real_t t51 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t50);
     const real_t t52 = d * d;
     const real_t base = cf_sqrt(t52 + gap);
     const real_t t53 = t50 - base;
     const real_t t54 = base - (gs - al);
-    const int t55 = (t8 <= t47) & (t8 <= t49) & (t51 <= t53) & (t51 <= t54);
+    const int t55 = (-t8 <= t47) & (-t8 <= t49) & (-t51 <= t53) & (-t51 <= t54);
     const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= lp) & t6)) | (!t55);
     const real_t t56 = cf_poison(single, failed);
     const real_t t57 = CLOSEDFORM_C(0.0) + t56;
@@ -1307,10 +1307,10 @@ CF_INLINE void h6ar_loop_closed_jacobian_kernel(const int single,
     const int t85 = t84 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t86 = t85 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t87 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t88 = -(CLOSEDFORM_FEASIBILITY * (d * t23));
-    const real_t t89 = -(CLOSEDFORM_FEASIBILITY * t69);
-    const int t90 = (t88 <= t43) & (t88 <= t41) & (t89 <= t70) & (t89 <= t71);
-    const real_t t91 = cf_poison(single, (!(t86 & t87)) | (!t90));
+    const real_t t88 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * (d * t23));
+    const real_t t89 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t69);
+    const int t90 = (-t88 <= t43) & (-t88 <= t41) & (-t89 <= t70);
+    const real_t t91 = cf_poison(single, (!(t86 & t87)) | (!(t90 & (-t89 <= t71))));
     const real_t t92 = c_phi * t79;
     const real_t t93 = t63 * t79;
     const real_t t94 = t66 * t73;
@@ -1720,11 +1720,11 @@ CF_INLINE void h6ar_loop_closed_determinant_kernel(const int single,
     const int t84 = t83 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t85 = t84 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t86 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t87 = -(CLOSEDFORM_FEASIBILITY * (d * t41));
-    const real_t t88 = -(CLOSEDFORM_FEASIBILITY * t67);
-    const int t89 = (t87 <= t54) & (t87 <= t52) & (t88 <= t68) & (t88 <= t69);
-    const real_t t90 = t80 + cf_poison(single, (!(t85 & t86)) | (!t89));
-    det[0] = t90;
+    const real_t t87 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * (d * t41));
+    const real_t t88 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t67);
+    const int t89 = (-t87 <= t54) & (-t87 <= t52) & (-t88 <= t68);
+    const real_t t90 = cf_poison(single, (!(t85 & t86)) | (!(t89 & (-t88 <= t69))));
+    det[0] = t80 + t90;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1953,10 +1953,10 @@ CF_INLINE void h6ar_loop_closed_singularities_kernel(const int single,
     const int t74 = t73 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t75 = t74 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const int t76 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
-    const real_t t77 = -(CLOSEDFORM_FEASIBILITY * (d * t28));
-    const real_t t78 = -(CLOSEDFORM_FEASIBILITY * t63);
-    const int t79 = (t77 <= t47) & (t77 <= t45) & (t78 <= t64) & (t78 <= t65);
-    const real_t t80 = cf_poison(single, (!(t75 & t76)) | (!t79));
+    const real_t t77 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * (d * t28));
+    const real_t t78 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(1.25) * t63);
+    const int t79 = (-t77 <= t47) & (-t77 <= t45) & (-t78 <= t64);
+    const real_t t80 = cf_poison(single, (!(t75 & t76)) | (!(t79 & (-t78 <= t65))));
     const real_t t81 = ctheta2A * ctheta23A + stheta2A * stheta23A;
     const real_t t82 = stheta2A * ctheta23A - ctheta2A * stheta23A;
     const real_t s2R3R = t31 * t56 + t30 * t27;

@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
  *     sincos, 6 sqrt
- *   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
- *   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
+ *   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
+ *   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
- *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
- *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+ *   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
+ *   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
+ *   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
  *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
  *   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,

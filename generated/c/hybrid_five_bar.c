@@ -5,15 +5,15 @@
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 22 add, 22 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
- *   passive_angles: 16 add, 25 compare and select, 4 atan2, 6 divide, 14 multiply, 2 sincos, 2
+ *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 2
  *     sqrt
- *   skeleton: 30 add, 21 compare and select, 6 divide, 22 multiply, 3 sincos, 2 sqrt
- *   jacobian_parallel: 27 add, 21 compare and select, 6 divide, 20 multiply, 3 sincos, 2 sqrt
- *   jacobian_serial: 24 add, 21 compare and select, 6 divide, 24 multiply, 2 sincos, 2 sqrt
- *   jacobian: 35 add, 21 compare and select, 18 divide, 43 multiply, 3 sincos, 2 sqrt
- *   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
- *   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
- *   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
+ *   skeleton: 30 add, 21 compare and select, 5 divide, 23 multiply, 3 sincos, 2 sqrt
+ *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 21 multiply, 3 sincos, 2 sqrt
+ *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 35 add, 21 compare and select, 17 divide, 44 multiply, 3 sincos, 2 sqrt
+ *   determinant: 20 add, 21 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
+ *   singularities: 26 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
+ *   condition_number: 9 add, 22 compare and select, 3 divide, 11 multiply, 2 sincos, 2 sqrt
  *   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
  *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
@@ -209,7 +209,7 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int single,
     const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t15 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t15 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-t15 <= t7));
     const real_t t16 = cf_poison(single, failed);
     const real_t DP_r = t5 + t9;
@@ -318,7 +318,7 @@ CF_INLINE void hybrid_five_bar_skeleton_kernel(const int single,
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t3 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const real_t size = L0 + L1 + L2;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const real_t t5 = L2 * CLOSEDFORM_C(2.0);
     const real_t C_r = L1 * s2;
     const real_t D_r = L1 * s3;
@@ -502,7 +502,7 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const int single,
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t3 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const real_t size = L0 + L1 + L2;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const real_t t5 = L2 * CLOSEDFORM_C(2.0);
     const real_t t6 = L1 * s2 - L1 * s3;
     const real_t t7 = L1 * c2 - (L0 + L1 * c3);
@@ -677,7 +677,7 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
     const int t11 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t13 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= L2) & t13)) | (!(-t14 <= t8));
     const real_t t15 = cf_poison(single, failed);
     const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
@@ -807,7 +807,7 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const int t11 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t13 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= L2) & t13)) | (!(-t14 <= t8));
     const real_t t15 = cf_poison(single, failed);
     const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
@@ -979,7 +979,7 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
     const int t15 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t16 = t15 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t17 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t18 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t18 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= L2) & t17)) | (!(-t18 <= t8));
     const real_t t19 = cf_poison(single, failed);
     const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
@@ -1095,7 +1095,7 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
     const int t11 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t13 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t14 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= L2) & t13)) | (!(-t14 <= t8));
     const real_t t15 = cf_poison(single, failed);
     const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
@@ -1220,7 +1220,7 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const int single,
     const int t9 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t10 = t9 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t11 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t12 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.625));
     const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= L2) & t11)) | (!(-t12 <= t6));
     const real_t t13 = cf_quotient(single, t8, cf_min(t4, height)) + cf_poison(single, failed);
     kappa[0] = t13;

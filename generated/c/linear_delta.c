@@ -391,7 +391,7 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t21 = t15 * (d_y - t15) + t17 * (t16 - t17);
     const real_t t22 = cf_rarely(single, in_line, -t21, CLOSEDFORM_C(0.0));
     const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t t25 = whole * t16;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
@@ -849,7 +849,7 @@ CF_INLINE void linear_delta_jacobian_parallel_whole_kernel(const int single, con
     const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = t21 * h;
     const real_t t26 = t20 - t25;
@@ -952,7 +952,7 @@ CF_INLINE void linear_delta_jacobian_parallel_common_kernel(const int single, co
     const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const real_t t31 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
     const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
     const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
     const real_t t33 = cf_poison(single, failed);
@@ -1174,7 +1174,7 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t22 = l * l - t21;
     const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t24 = w_z * h;
     const real_t A_13 = t20 - t24;
@@ -1252,7 +1252,7 @@ CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, cons
     const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t31 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
     const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
     const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
     const real_t t33 = cf_poison(single, failed);
@@ -1441,7 +1441,7 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1654,7 +1654,7 @@ CF_INLINE void linear_delta_determinant_whole_kernel(const int single, const lin
     const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1730,7 +1730,7 @@ CF_INLINE void linear_delta_determinant_common_kernel(const int single, const re
     const real_t t26 = (t2 * n_y + c3_y * t18) * h;
     const real_t t27 = t23 - t26;
     const real_t Delta = t21 * h;
-    const real_t t28 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t28 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t t29 = t27 * (t1 - t27) * (t3 - t27) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
     const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
@@ -1913,7 +1913,7 @@ CF_INLINE void linear_delta_singularities_whole_kernel(const int single, const l
     const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = w_z * h;
     const real_t A_13 = t21 - t25;
@@ -1996,7 +1996,7 @@ CF_INLINE void linear_delta_singularities_common_kernel(const int single, const 
     const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t32 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t32 = CLOSEDFORM_C(0.234375) * (l * size);
     const int t33 = t31 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t25);
     const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
     const real_t t34 = cf_poison(single, failed);
@@ -2191,7 +2191,7 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t23 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
     const real_t t24 = l * l - t23;
     const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t t25 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t25 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t26 = t22 * h;
     const real_t t27 = t21 - t26;
@@ -2386,7 +2386,7 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = l * size * CLOSEDFORM_C(0.234375);
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t25 = t21 * h;
     const real_t t26 = t20 - t25;

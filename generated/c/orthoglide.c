@@ -353,7 +353,7 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t10 = t6 * (d_y - t6) + t7 * (d_z - t7);
     const real_t t11 = cf_rarely(single, in_line, -t10, CLOSEDFORM_C(0.0));
     const int t12 = cf_abs(t11) <= t4 * CLOSEDFORM_FEASIBILITY;
-    const real_t t13 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t13 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t g_1 = d_z * whole;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
@@ -533,7 +533,7 @@ CF_INLINE void orthoglide_skeleton_common_kernel(const int single, const real_t 
     const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t3 = size * size;
     const int t4 = cf_abs(CLOSEDFORM_C(0.0)) <= t3 * CLOSEDFORM_FEASIBILITY;
-    const real_t t5 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t5 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t t6 = cf_rounded(single, one, rho1 * rho1);
     const real_t u_u = t6 + cf_rounded(single, one, rho2 * rho2);
     const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t3;
@@ -968,7 +968,7 @@ CF_INLINE void orthoglide_jacobian_parallel_whole_kernel(const int single, const
     const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t14 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t15 = w_x * h;
     const real_t t16 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
@@ -1060,7 +1060,7 @@ CF_INLINE void orthoglide_jacobian_parallel_common_kernel(const int single, cons
     const int t15 = cf_nought(L) == 0;
     const int t16 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t17 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
-    const real_t t18 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t18 = CLOSEDFORM_C(0.234375) * (L * size);
     const int t19 = t17 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t12);
     const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L) & t16)) | (!t19);
     const real_t t20 = cf_poison(single, failed);
@@ -1274,7 +1274,7 @@ CF_INLINE void orthoglide_jacobian_serial_whole_kernel(const int single, const o
     const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t14 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t15 = w_x * h;
     const real_t t16 = t7 * t11 - rho1 * CLOSEDFORM_C(0.5);
@@ -1341,7 +1341,7 @@ CF_INLINE void orthoglide_jacobian_serial_common_kernel(const int single, const 
     const int t15 = cf_nought(L) == 0;
     const int t16 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t17 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
-    const real_t t18 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t18 = CLOSEDFORM_C(0.234375) * (L * size);
     const int t19 = t17 & (-(CLOSEDFORM_FEASIBILITY * t18) <= t12);
     const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L) & t16)) | (!t19);
     const real_t t20 = cf_poison(single, failed);
@@ -1521,7 +1521,7 @@ CF_INLINE void orthoglide_jacobian_whole_kernel(const int single, const orthogli
     const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t15 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
@@ -1631,7 +1631,7 @@ CF_INLINE void orthoglide_jacobian_common_kernel(const int single, const real_t 
     const real_t t23 = rho3 - t18;
     const real_t t24 = rho2 - t21;
     const real_t Delta = t9 * h;
-    const real_t t25 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t25 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t t26 = A_11 * (t22 - t23 * t24) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t25), Delta);
     const int t27 = cf_nought(L) == 0;
     const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
@@ -1860,7 +1860,7 @@ CF_INLINE void orthoglide_determinant_whole_kernel(const int single, const ortho
     const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t15 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
@@ -1930,7 +1930,7 @@ CF_INLINE void orthoglide_determinant_common_kernel(const int single, const real
     const real_t t19 = t8 * t11 - rho2 * CLOSEDFORM_C(0.5);
     const real_t t20 = (rho3 - (t12 + t15)) * (t16 - t17) * (rho2 - (t18 - t19));
     const real_t Delta = t10 * h;
-    const real_t t21 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t21 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t t22 = t20 / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t21), Delta);
     const int t23 = cf_nought(L) == 0;
     const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
@@ -2100,7 +2100,7 @@ CF_INLINE void orthoglide_singularities_whole_kernel(const int single, const ort
     const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t15 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
@@ -2171,7 +2171,7 @@ CF_INLINE void orthoglide_singularities_common_kernel(const int single, const re
     const int t16 = cf_nought(L) == 0;
     const int t17 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t18 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
-    const real_t t19 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t19 = CLOSEDFORM_C(0.234375) * (L * size);
     const int t20 = t18 & (-(CLOSEDFORM_FEASIBILITY * t19) <= t13);
     const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= L) & t17)) | (!t20);
     const real_t t21 = cf_poison(single, failed);
@@ -2356,7 +2356,7 @@ CF_INLINE void orthoglide_condition_number_whole_kernel(const int single, const 
     const real_t t13 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t12 * t12) + mu * CLOSEDFORM_C(0.25));
     const real_t t14 = L * L - t13;
     const real_t slack = cf_max(t14, CLOSEDFORM_C(0.0));
-    const real_t t15 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t15 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t15, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t16 = w_x * h;
     const real_t t17 = t7 * t12 - rho1 * CLOSEDFORM_C(0.5);
@@ -2498,7 +2498,7 @@ CF_INLINE void orthoglide_condition_number_common_kernel(const int single, const
     const real_t t41 = t30 + t27 * A_21;
     const real_t t42 = (t26 + (t27 * t27 + t23 + t24)) * (t40 + t41 * t41);
     const real_t t43 = CLOSEDFORM_C(3.0) * (t10 * h);
-    const real_t t44 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t44 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t t45 = cf_sqrt(t42) / cf_divisor(single, (u_u <= t3) | (nu <= t3) | (slack <= CLOSEDFORM_VANISHING * t44), t43);
     const int t46 = cf_nought(L) == 0;
     const int t47 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
@@ -2691,7 +2691,7 @@ CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthog
     const real_t t12 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t11 * t11) + mu * CLOSEDFORM_C(0.25));
     const real_t t13 = L * L - t12;
     const real_t slack = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t14 = CLOSEDFORM_C(0.234375) * (L * size);
     const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t14, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
     const real_t t15 = w_y * h;
     const real_t t16 = n_y * t11 - d_y * CLOSEDFORM_C(0.5);
@@ -2770,7 +2770,7 @@ CF_INLINE void orthoglide_constraint_common_kernel(const int single, const real_
     const int t22 = cf_nought(L) == 0;
     const int t23 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int t24 = cf_abs(CLOSEDFORM_C(0.0)) <= t2 * CLOSEDFORM_FEASIBILITY;
-    const real_t t25 = L * size * CLOSEDFORM_C(0.234375);
+    const real_t t25 = CLOSEDFORM_C(0.234375) * (L * size);
     const int t26 = t24 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t13);
     const int failed = (!(t22 & (CLOSEDFORM_C(0.0) <= L) & t23)) | (!t26);
     const real_t t27 = cf_poison(single, failed);

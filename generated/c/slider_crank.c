@@ -146,7 +146,7 @@ CF_INLINE void slider_crank_skeleton_kernel(const int single, const slider_crank
     const int t1 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t3 = cf_nought(theta) == 0;
-    const real_t t4 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const real_t t5 = r * s;
     const real_t aside_2 = e - t5;
     const real_t t6 = l - aside_2;
@@ -296,7 +296,7 @@ CF_INLINE void slider_crank_jacobian_parallel_kernel(const int single, const sli
     const int t4 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t6 = cf_nought(theta) == 0;
-    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t7 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const int failed = (!(t5 & t6)) | (!((-t7 <= t1) & (-t7 <= t2)));
     const real_t t8 = cf_poison(single, failed);
     A[0] = m_2 - root_2 - m_2 + t8;
@@ -392,7 +392,7 @@ CF_INLINE void slider_crank_jacobian_serial_kernel(const int single, const slide
     const int t6 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t7 = t6 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t8 = cf_nought(theta) == 0;
-    const real_t t9 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t9 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const int failed = (!(t7 & t8)) | (!((-t9 <= t3) & (-t9 <= t4)));
     const real_t t10 = cf_poison(single, failed);
     B[0] = t2 + t1 * (m_2 - (m_2 - root_2)) + t10;
@@ -489,7 +489,7 @@ CF_INLINE void slider_crank_jacobian_kernel(const int single, const slider_crank
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);
@@ -588,7 +588,7 @@ CF_INLINE void slider_crank_determinant_kernel(const int single, const slider_cr
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);
@@ -687,7 +687,7 @@ CF_INLINE void slider_crank_singularities_kernel(const int single, const slider_
     const int t7 = cf_nought(r) + cf_nought(l) + cf_nought(e) == 0;
     const int t8 = t7 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= l);
     const int t9 = cf_nought(theta) == 0;
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.375));
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * ((r + l + cf_abs(e)) * CLOSEDFORM_C(0.46875));
     const int failed = (!(t8 & t9)) | (!((-t10 <= t3) & (-t10 <= t4)));
     const real_t t11 = cf_poison(single, failed);
     const real_t t12 = m_2 - (m_2 + root_2);

@@ -520,7 +520,7 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const real_t t25 = t20 - t21;
     const real_t t26 = cf_rarely(single, same, r_2, r);
     const real_t t27 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t26;
-    const real_t t28 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t27);
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t27));
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t29 = cf_rarely(single, same, c1_y, t15);
     const real_t t30 = cf_rarely(single, same, c1_x, t12);
@@ -860,7 +860,7 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t48 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t49 = (-t48 <= t29) & (-t48 <= t26) & (-t48 <= t28);
     const real_t t50 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t51 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t50);
+    const real_t t51 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t50));
     const int failed = (!(t46 & t47)) | (!(t49 & (-t51 <= t35) & (-t51 <= t36)));
     const real_t t52 = cf_poison(single, failed);
     const real_t t53 = t11 * X + t18 * Y;
@@ -1115,7 +1115,7 @@ CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
     const real_t t51 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t52 = (-t51 <= t29) & (-t51 <= t26) & (-t51 <= t28);
     const real_t t53 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t54 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t53);
+    const real_t t54 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t53));
     const int failed = (!(t49 & t50)) | (!(t52 & (-t54 <= t35) & (-t54 <= t36)));
     const real_t t55 = cf_poison(single, failed);
     const real_t t56 = s_gamma * c2_z;
@@ -1347,7 +1347,7 @@ CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
     const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t54 = (-t53 <= t29) & (-t53 <= t26) & (-t53 <= t28);
     const real_t t55 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t56 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t55);
+    const real_t t56 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t55));
     const int failed = (!(t51 & t52)) | (!(t54 & (-t56 <= t35) & (-t56 <= t36)));
     const real_t t57 = cf_poison(single, failed);
     const real_t t58 = B_11 * (A_02 * t46 + A_03 * A_22) / t47 + t57;
@@ -1610,7 +1610,7 @@ CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
     const real_t t51 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t52 = (-t51 <= t29) & (-t51 <= t26) & (-t51 <= t28);
     const real_t t53 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t54 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t53);
+    const real_t t54 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t53));
     const int failed = (!(t49 & t50)) | (!(t52 & (-t54 <= t35) & (-t54 <= t36)));
     const real_t t55 = cf_poison(single, failed);
     const real_t t56 = s_gamma * c2_z;
@@ -1869,7 +1869,7 @@ CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
     const real_t t64 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
     const int t65 = (-t64 <= t29) & (-t64 <= t26) & (-t64 <= t28);
     const real_t t66 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t67 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.625) * t66);
+    const real_t t67 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t66));
     const int failed = (!(t62 & t63)) | (!(t65 & (-t67 <= t35) & (-t67 <= t36)));
     const real_t t68 = cf_poison(single, failed);
     const real_t t69 = t39 + t41;

@@ -376,7 +376,7 @@ function _skeleton(v, o) {
     const in_line = nu <= t35;
     const t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40);
     const t46 = Math.abs(in_line ? -t45 : 0.0) <= t34 * _runtime.FEASIBILITY;
-    const t47 = l * size * 0.9375;
+    const t47 = 0.9375 * (l * size);
     const g_1 = whole * d_z;
     const s_w = t36 * a_x < 0 ? -1 : 1;
     const t48 = whole * (t36 + a_x * s_w);
@@ -708,7 +708,7 @@ function _jacobian_parallel(v, o) {
     const t25 = all_same ? 0.0 : nu * (t24 * t24) + mu * 0.25;
     const t26 = l * l - t25;
     const slack = Math.max(t26, 0.0);
-    const t27 = l * size * 0.9375;
+    const t27 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t27 ? 0.0 : Math.sqrt(part * slack);
     const t28 = (in_line ? g_1 * s_w : t13 * n_z - d_z * t21) * h;
     const t29 = t19 * t24 + d_x * 0.5;
@@ -879,7 +879,7 @@ function _jacobian_serial(v, o) {
     const t28 = all_same ? 0.0 : nu * (t27 * t27) + mu * 0.25;
     const t29 = l * l - t28;
     const slack = Math.max(t29, 0.0);
-    const t30 = l * size * 0.9375;
+    const t30 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t30 ? 0.0 : Math.sqrt(part * slack);
     const t31 = (in_line ? g_1 * s_w : t16 * n_z - d_z * t24) * h;
     const t32 = t22 * t27 + d_x * 0.5;
@@ -1049,7 +1049,7 @@ function _jacobian(v, o) {
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
     const t30 = l * l - t29;
     const slack = Math.max(t30, 0.0);
-    const t31 = l * size * 0.9375;
+    const t31 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
     const t32 = (in_line ? g_1 * s_w : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
@@ -1259,7 +1259,7 @@ function _determinant(v, o) {
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
     const t30 = l * l - t29;
     const slack = Math.max(t30, 0.0);
-    const t31 = l * size * 0.9375;
+    const t31 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
     const t32 = (in_line ? g_1 * s_w : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
@@ -1428,7 +1428,7 @@ function _singularities(v, o) {
     const t29 = all_same ? 0.0 : nu * (t28 * t28) + mu * 0.25;
     const t30 = l * l - t29;
     const slack = Math.max(t30, 0.0);
-    const t31 = l * size * 0.9375;
+    const t31 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t31 ? 0.0 : Math.sqrt(part * slack);
     const t32 = (in_line ? g_1 * s_w : t16 * n_z - d_z * t24) * h;
     const t33 = t22 * t28 + d_x * 0.5;
@@ -1598,7 +1598,7 @@ function _condition_number(v, o) {
     const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
     const t27 = l * l - t26;
     const slack = Math.max(t27, 0.0);
-    const t28 = l * size * 0.9375;
+    const t28 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
     const t29 = (in_line ? g_1 * s_w : t13 * n_z - d_z * t21) * h;
     const t30 = t19 * t25 + d_x * 0.5;
@@ -1792,7 +1792,7 @@ function _constraint(v, o) {
     const t26 = all_same ? 0.0 : nu * (t25 * t25) + mu * 0.25;
     const t27 = l * l - t26;
     const slack = Math.max(t27, 0.0);
-    const t28 = l * size * 0.9375;
+    const t28 = 0.9375 * (l * size);
     const h = slack <= _runtime.VANISHING * t28 ? 0.0 : Math.sqrt(part * slack);
     const t29 = h * (in_line ? -t23 : a_x * t22 + t14 * t20);
     const t30 = n_z * t25 - d_z * 0.5;

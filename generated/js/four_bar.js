@@ -194,7 +194,7 @@ function _skeleton(v, o) {
     const t2 = t1 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
     const t3 = L3 + L4;
     const size = L1 + L2 + t3;
-    const t4 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t4 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const t5 = L2 * c;
     const t6 = L1 - t5;
     const wv_2 = L2 * s;
@@ -335,7 +335,7 @@ function _jacobian_parallel(v, o) {
     const t17 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t18 = t17 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t19 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t19 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const failed = !(t18 && Number.isFinite(theta)) || !(t19 <= t5 && t19 <= t9 && t19 <= t7);
     const t20 = failed ? NaN : 0;
     const t21 = wv_2 + share_2 * (t4 ? 0.0 : t12 + t13);
@@ -430,7 +430,7 @@ function _jacobian_serial(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t21 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const t23 = wv_2 * (t2 + share_2 * (t5 ? 1.0 : t13 - t14));
@@ -526,7 +526,7 @@ function _jacobian(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t21 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
@@ -623,7 +623,7 @@ function _determinant(v, o) {
     const t19 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t20 = t19 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t21 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t21 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
@@ -719,7 +719,7 @@ function _singularities(v, o) {
     const t18 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(L4);
     const t19 = t18 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= L4;
-    const t20 = -(_runtime.FEASIBILITY * (0.375 * size));
+    const t20 = -(_runtime.FEASIBILITY * (0.46875 * size));
     const failed = !(t19 && Number.isFinite(theta)) || !(t20 <= t6 && t20 <= t10 && t20 <= t8);
     const t21 = failed ? NaN : 0;
     const wx_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);

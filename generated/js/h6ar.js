@@ -5,13 +5,13 @@
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
 //     sincos, 3 sqrt
-//   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
+//   pose: 72 add, 32 compare and select, 8 divide, 102 multiply, 6 sincos, 3 sqrt
 //   arm_tips: 18 add, 26 multiply, 5 sincos
-//   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
+//   skeleton: 157 add, 32 compare and select, 8 divide, 151 multiply, 6 sincos, 3 sqrt
 //   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
-//   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
-//   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
-//   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+//   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
+//   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
+//   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
 //   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
 //     sincos, 51 sqrt
 //   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
@@ -363,7 +363,7 @@ function _pose(v, o) {
     const t37 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const t38 = gs + al;
-    const t39 = -(_runtime.FEASIBILITY * t38);
+    const t39 = -(_runtime.FEASIBILITY * (1.25 * t38));
     const t40 = t38 - base;
     const t41 = base - (gs - al);
     const failed = !(t36 && 0.0 <= lp && t37) || !(t39 <= t40 && t39 <= t41);
@@ -588,7 +588,7 @@ function _skeleton(v, o) {
     const t4 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const t5 = gs + al;
-    const t6 = -(_runtime.FEASIBILITY * t5);
+    const t6 = -(_runtime.FEASIBILITY * (1.25 * t5));
     const t7 = d * d;
     const t8 = c3L_half * c3R_half;
     const t9 = s3L_half * s3R_half;
@@ -1009,7 +1009,7 @@ function _jacobian(v, o) {
     const t46 = t45 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t47 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t48 = -(_runtime.FEASIBILITY * t34);
+    const t48 = -(_runtime.FEASIBILITY * (1.25 * t34));
     const t49 = !(t46 && t47) || !(t48 <= t35 && t48 <= t33) ? NaN : 0;
     const t50 = c2R_half * c2R_half - s2R_half * s2R_half;
     const t51 = s2R_half * c2R_half;
@@ -1254,7 +1254,7 @@ function _determinant(v, o) {
     const t41 = t40 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t42 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t43 = -(_runtime.FEASIBILITY * t33);
+    const t43 = -(_runtime.FEASIBILITY * (1.25 * t33));
     const t44 = !(t41 && t42) || !(t43 <= t34 && t43 <= t32) ? NaN : 0;
     o[0] = -(t38 / (t26 * 4.0)) + t44;
 }
@@ -1387,7 +1387,7 @@ function _singularities(v, o) {
     const t36 = t35 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t37 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t38 = -(_runtime.FEASIBILITY * t29);
+    const t38 = -(_runtime.FEASIBILITY * (1.25 * t29));
     const t39 = !(t36 && t37) || !(t38 <= t30 && t38 <= t28) ? NaN : 0;
     const s2A = side2A * t26;
     const t40 = c2A * c23A + s2A * s23A;

@@ -5,13 +5,13 @@
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 //     sincos, 6 sqrt
-//   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
-//   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
+//   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
+//   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
 //   arm_tips: 18 add, 26 multiply, 5 sincos
 //   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-//   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
-//   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
-//   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+//   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
+//   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
+//   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
 //   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
 //     sincos, 42 sqrt
 //   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
@@ -478,9 +478,9 @@ function _pose(v, o) {
     const t67 = t66 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
     const t68 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t69 = -(_runtime.FEASIBILITY * (d * t27));
+    const t69 = -(_runtime.FEASIBILITY * (1.25 * (d * t27)));
     const t70 = gs + al;
-    const t71 = -(_runtime.FEASIBILITY * t70);
+    const t71 = -(_runtime.FEASIBILITY * (1.25 * t70));
     const t72 = t70 - base;
     const t73 = base - (gs - al);
     const t74 = t69 <= t48 && t69 <= t45 && t71 <= t72 && t71 <= t73;
@@ -624,7 +624,7 @@ function _skeleton(v, o) {
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const fore = Math.sqrt(L2 * L2 + a3 * a3);
     const t5 = L1 + fore;
-    const t6 = -(_runtime.FEASIBILITY * (d * t5));
+    const t6 = -(_runtime.FEASIBILITY * (1.25 * (d * t5)));
     const t7 = c3R_half * c3L_half;
     const t8 = s3R_half * s3L_half;
     const t9 = t7 + t8;
@@ -676,7 +676,7 @@ function _skeleton(v, o) {
     const t48 = gap - (t36 ? large_left : small_left) * t38 * 0.5;
     const t49 = t47 - t48;
     const t50 = gs + al;
-    const t51 = -(_runtime.FEASIBILITY * t50);
+    const t51 = -(_runtime.FEASIBILITY * (1.25 * t50));
     const t52 = d * d;
     const base = Math.sqrt(t52 + gap);
     const t53 = t50 - base;
@@ -1224,8 +1224,8 @@ function _jacobian(v, o) {
     const t79 = t78 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t80 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t81 = -(_runtime.FEASIBILITY * (d * t23));
-    const t82 = -(_runtime.FEASIBILITY * t65);
+    const t81 = -(_runtime.FEASIBILITY * (1.25 * (d * t23)));
+    const t82 = -(_runtime.FEASIBILITY * (1.25 * t65));
     const t83 = t81 <= t45 && t81 <= t42 && t82 <= t66 && t82 <= t67;
     const t84 = !(t79 && t80) || !t83 ? NaN : 0;
     const t85 = c_phi * t74;
@@ -1562,8 +1562,8 @@ function _determinant(v, o) {
     const t77 = t76 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t78 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t79 = -(_runtime.FEASIBILITY * (d * t41));
-    const t80 = -(_runtime.FEASIBILITY * t64);
+    const t79 = -(_runtime.FEASIBILITY * (1.25 * (d * t41)));
+    const t80 = -(_runtime.FEASIBILITY * (1.25 * t64));
     const t81 = t79 <= t56 && t79 <= t53 && t80 <= t65 && t80 <= t66;
     const t82 = t72 * t73 / t74 + (!(t77 && t78) || !t81 ? NaN : 0);
     o[0] = t82;
@@ -1755,8 +1755,8 @@ function _singularities(v, o) {
     const t68 = t67 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t69 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t70 = -(_runtime.FEASIBILITY * (d * t28));
-    const t71 = -(_runtime.FEASIBILITY * t59);
+    const t70 = -(_runtime.FEASIBILITY * (1.25 * (d * t28)));
+    const t71 = -(_runtime.FEASIBILITY * (1.25 * t59));
     const t72 = t70 <= t49 && t70 <= t46 && t71 <= t60 && t71 <= t61;
     const t73 = !(t68 && t69) || !t72 ? NaN : 0;
     const t74 = ctheta2A * ctheta23A + stheta2A * stheta23A;

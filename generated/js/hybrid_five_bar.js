@@ -4,15 +4,15 @@
 //     Manipulator.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 22 add, 22 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
-//   passive_angles: 16 add, 25 compare and select, 4 atan2, 6 divide, 14 multiply, 2 sincos, 2
+//   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 2
 //     sqrt
-//   skeleton: 30 add, 21 compare and select, 6 divide, 22 multiply, 3 sincos, 2 sqrt
-//   jacobian_parallel: 27 add, 21 compare and select, 6 divide, 20 multiply, 3 sincos, 2 sqrt
-//   jacobian_serial: 24 add, 21 compare and select, 6 divide, 24 multiply, 2 sincos, 2 sqrt
-//   jacobian: 35 add, 21 compare and select, 18 divide, 43 multiply, 3 sincos, 2 sqrt
-//   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
-//   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
-//   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
+//   skeleton: 30 add, 21 compare and select, 5 divide, 23 multiply, 3 sincos, 2 sqrt
+//   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 21 multiply, 3 sincos, 2 sqrt
+//   jacobian_serial: 24 add, 21 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
+//   jacobian: 35 add, 21 compare and select, 17 divide, 44 multiply, 3 sincos, 2 sqrt
+//   determinant: 20 add, 21 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
+//   singularities: 26 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
+//   condition_number: 9 add, 22 compare and select, 3 divide, 11 multiply, 2 sincos, 2 sqrt
 //   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
 //   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 //   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
@@ -238,17 +238,17 @@ function _passive_angles(v, o) {
     const t12 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t14 = t12 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t13;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7);
-    const t15 = !t14 || unreachable ? NaN : 0;
+    const t15 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7;
+    const t16 = !t14 || !t15 ? NaN : 0;
     const DP_r = t5 + t8;
     const CP_y_right_of_CD = t9 - t10;
-    const t16 = Math.atan2(DP_r, -CP_y_right_of_CD);
-    const t17 = -Math.atan2(DP_r, CP_y_right_of_CD);
-    const t18 = Math.atan2(DP_r_right_of_CD, -CP_y);
-    o[0] = (t11 <= -Math.PI ? Math.PI : t11) + t15;
-    o[1] = (t16 <= -Math.PI ? Math.PI : t16) + t15;
-    o[2] = (t17 <= -Math.PI ? Math.PI : t17) + t15;
-    o[3] = (t18 <= -Math.PI ? Math.PI : t18) + t15;
+    const t17 = Math.atan2(DP_r, -CP_y_right_of_CD);
+    const t18 = -Math.atan2(DP_r, CP_y_right_of_CD);
+    const t19 = Math.atan2(DP_r_right_of_CD, -CP_y);
+    o[0] = (t11 <= -Math.PI ? Math.PI : t11) + t16;
+    o[1] = (t17 <= -Math.PI ? Math.PI : t17) + t16;
+    o[2] = (t18 <= -Math.PI ? Math.PI : t18) + t16;
+    o[3] = (t19 <= -Math.PI ? Math.PI : t19) + t16;
 }
 
 const _PASSIVE_ANGLES = _runtime.kernel({
@@ -331,59 +331,59 @@ function _skeleton(v, o) {
     const t6 = C_y - D_y;
     const apart = Math.sqrt(t5 * t5 + t6 * t6);
     const t7 = t4 - apart;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7);
-    const t8 = !t3 || unreachable ? NaN : 0;
-    const t9 = 0.0 + t8;
-    const t10 = L0 + t8;
-    const t11 = -(C_r * c1) + t8;
-    const t12 = C_y + t8;
-    const t13 = C_r * s1 + t8;
-    const t14 = -(D_r * c1) + t8;
-    const t15 = D_y + t8;
-    const t16 = D_r * s1 + t8;
-    const t17 = size * _runtime.VANISHING;
-    const coincide = apart <= t17;
+    const t8 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7;
+    const t9 = !t3 || !t8 ? NaN : 0;
+    const t10 = 0.0 + t9;
+    const t11 = L0 + t9;
+    const t12 = -(C_r * c1) + t9;
+    const t13 = C_y + t9;
+    const t14 = C_r * s1 + t9;
+    const t15 = -(D_r * c1) + t9;
+    const t16 = D_y + t9;
+    const t17 = D_r * s1 + t9;
+    const t18 = size * _runtime.VANISHING;
+    const coincide = apart <= t18;
     const distance = coincide ? 0.0 : apart;
-    const t18 = coincide ? 0.0 : t5 / apart;
-    const t19 = distance * t18 * 0.5;
+    const t19 = coincide ? 0.0 : t5 / apart;
+    const t20 = distance * t19 * 0.5;
     const n_1 = coincide ? 1.0 : -(t6 / apart);
     const slack = Math.max(t7, 0.0);
-    const height = slack <= t17 ? 0.0 : Math.sqrt(slack * (apart + t4)) * 0.5;
-    const t20 = n_1 * height;
-    const P_r = C_r - (t19 - t20);
-    const t21 = distance * n_1 * 0.5;
-    const t22 = t18 * height;
-    const P_r_right_of_CD = C_r - (t19 + t20);
-    o[0] = t9;
-    o[1] = t9;
-    o[2] = t9;
-    o[3] = t9;
-    o[4] = t10;
-    o[5] = t9;
-    o[6] = t11;
-    o[7] = t12;
-    o[8] = t13;
-    o[9] = t14;
-    o[10] = t15;
-    o[11] = t16;
-    o[12] = -(c1 * P_r) + t8;
-    o[13] = C_y + (t21 + t22) + t8;
-    o[14] = s1 * P_r + t8;
-    o[15] = t9;
-    o[16] = t9;
-    o[17] = t9;
-    o[18] = t9;
-    o[19] = t10;
-    o[20] = t9;
-    o[21] = t11;
-    o[22] = t12;
-    o[23] = t13;
-    o[24] = t14;
-    o[25] = t15;
-    o[26] = t16;
-    o[27] = -(c1 * P_r_right_of_CD) + t8;
-    o[28] = C_y + (t21 - t22) + t8;
-    o[29] = s1 * P_r_right_of_CD + t8;
+    const height = slack <= t18 ? 0.0 : Math.sqrt(slack * (apart + t4)) * 0.5;
+    const t21 = n_1 * height;
+    const P_r = C_r - (t20 - t21);
+    const t22 = distance * n_1 * 0.5;
+    const t23 = t19 * height;
+    const P_r_right_of_CD = C_r - (t20 + t21);
+    o[0] = t10;
+    o[1] = t10;
+    o[2] = t10;
+    o[3] = t10;
+    o[4] = t11;
+    o[5] = t10;
+    o[6] = t12;
+    o[7] = t13;
+    o[8] = t14;
+    o[9] = t15;
+    o[10] = t16;
+    o[11] = t17;
+    o[12] = -(c1 * P_r) + t9;
+    o[13] = C_y + (t22 + t23) + t9;
+    o[14] = s1 * P_r + t9;
+    o[15] = t10;
+    o[16] = t10;
+    o[17] = t10;
+    o[18] = t10;
+    o[19] = t11;
+    o[20] = t10;
+    o[21] = t12;
+    o[22] = t13;
+    o[23] = t14;
+    o[24] = t15;
+    o[25] = t16;
+    o[26] = t17;
+    o[27] = -(c1 * P_r_right_of_CD) + t9;
+    o[28] = C_y + (t22 - t23) + t9;
+    o[29] = s1 * P_r_right_of_CD + t9;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -462,48 +462,48 @@ function _jacobian_parallel(v, o) {
     const t6 = L1 * c2 - (L0 + L1 * c3);
     const apart = Math.sqrt(t5 * t5 + t6 * t6);
     const t7 = t4 - apart;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7);
-    const t8 = !t3 || unreachable ? NaN : 0;
-    const t9 = L2 * s1 + t8;
-    const t10 = 0.0 + t8;
-    const t11 = L2 * c1 + t8;
-    const t12 = size * _runtime.VANISHING;
-    const coincide = apart <= t12;
+    const t8 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7;
+    const t9 = !t3 || !t8 ? NaN : 0;
+    const t10 = L2 * s1 + t9;
+    const t11 = 0.0 + t9;
+    const t12 = L2 * c1 + t9;
+    const t13 = size * _runtime.VANISHING;
+    const coincide = apart <= t13;
     const distance = coincide ? 0.0 : apart;
-    const t13 = coincide ? 0.0 : t5 / apart;
-    const t14 = distance * t13 * 0.5;
+    const t14 = coincide ? 0.0 : t5 / apart;
+    const t15 = distance * t14 * 0.5;
     const n_1 = coincide ? 1.0 : -(t6 / apart);
     const slack = Math.max(t7, 0.0);
-    const height = slack <= t12 ? 0.0 : Math.sqrt(slack * (apart + t4)) * 0.5;
-    const t15 = n_1 * height;
-    const DP_r_right_of_CD = t14 - t15;
-    const t16 = c1 * DP_r_right_of_CD;
-    const t17 = distance * n_1 * 0.5;
-    const t18 = t13 * height;
-    const CP_y = t17 + t18;
-    const t19 = s1 * DP_r_right_of_CD;
-    const DP_r = t14 + t15;
-    const t20 = c1 * DP_r;
-    const CP_y_right_of_CD = t17 - t18;
-    const t21 = s1 * DP_r;
-    o[0] = t9;
-    o[1] = t10;
-    o[2] = t11;
-    o[3] = t16 + t8;
-    o[4] = CP_y + t8;
-    o[5] = -t19 + t8;
-    o[6] = -t20 + t8;
-    o[7] = -CP_y_right_of_CD + t8;
-    o[8] = t21 + t8;
-    o[9] = t9;
-    o[10] = t10;
-    o[11] = t11;
-    o[12] = t20 + t8;
-    o[13] = CP_y_right_of_CD + t8;
-    o[14] = -t21 + t8;
-    o[15] = -t16 + t8;
-    o[16] = -CP_y + t8;
-    o[17] = t19 + t8;
+    const height = slack <= t13 ? 0.0 : Math.sqrt(slack * (apart + t4)) * 0.5;
+    const t16 = n_1 * height;
+    const DP_r_right_of_CD = t15 - t16;
+    const t17 = c1 * DP_r_right_of_CD;
+    const t18 = distance * n_1 * 0.5;
+    const t19 = t14 * height;
+    const CP_y = t18 + t19;
+    const t20 = s1 * DP_r_right_of_CD;
+    const DP_r = t15 + t16;
+    const t21 = c1 * DP_r;
+    const CP_y_right_of_CD = t18 - t19;
+    const t22 = s1 * DP_r;
+    o[0] = t10;
+    o[1] = t11;
+    o[2] = t12;
+    o[3] = t17 + t9;
+    o[4] = CP_y + t9;
+    o[5] = -t20 + t9;
+    o[6] = -t21 + t9;
+    o[7] = -CP_y_right_of_CD + t9;
+    o[8] = t22 + t9;
+    o[9] = t10;
+    o[10] = t11;
+    o[11] = t12;
+    o[12] = t21 + t9;
+    o[13] = CP_y_right_of_CD + t9;
+    o[14] = -t22 + t9;
+    o[15] = -t17 + t9;
+    o[16] = -CP_y + t9;
+    o[17] = t20 + t9;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -593,19 +593,19 @@ function _jacobian_serial(v, o) {
     const t10 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t11 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t12 = t10 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t11;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8);
-    const t13 = !t12 || unreachable ? NaN : 0;
-    const t14 = distance * n_1 * 0.5;
-    const t15 = t5 * height;
-    const CP_y = t14 + t15;
+    const t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8;
+    const t14 = !t12 || !t13 ? NaN : 0;
+    const t15 = distance * n_1 * 0.5;
+    const t16 = t5 * height;
+    const CP_y = t15 + t16;
     const DP_r = t6 + t9;
-    const CP_y_right_of_CD = t14 - t15;
-    o[0] = L2 * (C_r - DP_r_right_of_CD) + t13;
-    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t13;
-    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t13;
-    o[3] = L2 * (C_r - DP_r) + t13;
-    o[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t13;
-    o[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t13;
+    const CP_y_right_of_CD = t15 - t16;
+    o[0] = L2 * (C_r - DP_r_right_of_CD) + t14;
+    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14;
+    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t14;
+    o[3] = L2 * (C_r - DP_r) + t14;
+    o[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14;
+    o[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t14;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -700,42 +700,42 @@ function _jacobian(v, o) {
     const t10 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t11 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t12 = t10 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t11;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8);
-    const t13 = !t12 || unreachable ? NaN : 0;
-    const t14 = distance * n_1 * 0.5;
-    const t15 = t5 * height;
-    const CP_y_right_of_CD = t14 - t15;
-    const t16 = c1 * CP_y_right_of_CD;
-    const CP_y = t14 + t15;
-    const t17 = C_y * DP_r_right_of_CD + C_r * CP_y;
+    const t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8;
+    const t14 = !t12 || !t13 ? NaN : 0;
+    const t15 = distance * n_1 * 0.5;
+    const t16 = t5 * height;
+    const CP_y_right_of_CD = t15 - t16;
+    const t17 = c1 * CP_y_right_of_CD;
+    const CP_y = t15 + t16;
+    const t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
     const side = distance * height;
-    const t18 = c1 * CP_y;
+    const t19 = c1 * CP_y;
     const DP_r = t6 + t9;
     const along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
-    const t19 = 0.0 + t13;
-    const t20 = s1 * CP_y_right_of_CD;
-    const t21 = s1 * CP_y;
+    const t20 = 0.0 + t14;
+    const t21 = s1 * CP_y_right_of_CD;
+    const t22 = s1 * CP_y;
     const P_r_right_of_CD = C_r - DP_r;
-    const t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const t23 = C_y * DP_r + C_r * CP_y_right_of_CD;
     const along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
-    o[0] = s1 * P_r + t13;
-    o[1] = t16 * t17 / side + t13;
-    o[2] = -(t18 * along_d / side) + t13;
-    o[3] = t19;
-    o[4] = -(DP_r * t17 / side) + t13;
-    o[5] = DP_r_right_of_CD * along_d / side + t13;
-    o[6] = c1 * P_r + t13;
-    o[7] = -(t20 * t17 / side) + t13;
-    o[8] = t21 * along_d / side + t13;
-    o[9] = s1 * P_r_right_of_CD + t13;
-    o[10] = -(t18 * t22 / side) + t13;
-    o[11] = t16 * along_d_right_of_CD / side + t13;
-    o[12] = t19;
-    o[13] = DP_r_right_of_CD * t22 / side + t13;
-    o[14] = -(DP_r * along_d_right_of_CD / side) + t13;
-    o[15] = c1 * P_r_right_of_CD + t13;
-    o[16] = t21 * t22 / side + t13;
-    o[17] = -(t20 * along_d_right_of_CD / side) + t13;
+    o[0] = s1 * P_r + t14;
+    o[1] = t17 * t18 / side + t14;
+    o[2] = -(t19 * along_d / side) + t14;
+    o[3] = t20;
+    o[4] = -(DP_r * t18 / side) + t14;
+    o[5] = DP_r_right_of_CD * along_d / side + t14;
+    o[6] = c1 * P_r + t14;
+    o[7] = -(t21 * t18 / side) + t14;
+    o[8] = t22 * along_d / side + t14;
+    o[9] = s1 * P_r_right_of_CD + t14;
+    o[10] = -(t19 * t23 / side) + t14;
+    o[11] = t17 * along_d_right_of_CD / side + t14;
+    o[12] = t20;
+    o[13] = DP_r_right_of_CD * t23 / side + t14;
+    o[14] = -(DP_r * along_d_right_of_CD / side) + t14;
+    o[15] = c1 * P_r_right_of_CD + t14;
+    o[16] = t22 * t23 / side + t14;
+    o[17] = -(t21 * along_d_right_of_CD / side) + t14;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -834,12 +834,12 @@ function _determinant(v, o) {
     const t14 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t15 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t16 = t14 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t15;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8);
-    const t17 = !t16 || unreachable ? NaN : 0;
-    const t18 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
-    const t19 = t18 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
-    o[0] = -t13 + t17;
-    o[1] = t19 + t17;
+    const t17 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8;
+    const t18 = !t16 || !t17 ? NaN : 0;
+    const t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
+    const t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
+    o[0] = -t13 + t18;
+    o[1] = t20 + t18;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -929,22 +929,22 @@ function _singularities(v, o) {
     const t10 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t11 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t12 = t10 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t11;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8);
-    const t13 = !t12 || unreachable ? NaN : 0;
-    const t14 = distance * n_1 * 0.5;
-    const t15 = t5 * height;
-    const CP_y = t14 + t15;
+    const t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8;
+    const t14 = !t12 || !t13 ? NaN : 0;
+    const t15 = distance * n_1 * 0.5;
+    const t16 = t5 * height;
+    const CP_y = t15 + t16;
     const DP_r = t6 + t9;
-    const CP_y_right_of_CD = t14 - t15;
+    const CP_y_right_of_CD = t15 - t16;
     const side = distance * height;
-    o[0] = C_r - DP_r_right_of_CD + t13;
-    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t13;
-    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t13;
-    o[3] = side + t13;
-    o[4] = C_r - DP_r + t13;
-    o[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t13;
-    o[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t13;
-    o[7] = -side + t13;
+    o[0] = C_r - DP_r_right_of_CD + t14;
+    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14;
+    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t14;
+    o[3] = side + t14;
+    o[4] = C_r - DP_r + t14;
+    o[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14;
+    o[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t14;
+    o[7] = -side + t14;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1027,10 +1027,10 @@ function _condition_number(v, o) {
     const t8 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t9 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const t10 = t8 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t9;
-    const unreachable = !(-(_runtime.FEASIBILITY * (size * 0.5)) <= t6);
-    const t11 = t7 + (!t10 || unreachable ? NaN : 0);
-    o[0] = t11;
-    o[1] = t11;
+    const t11 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t6;
+    const t12 = t7 + (!t10 || !t11 ? NaN : 0);
+    o[0] = t12;
+    o[1] = t12;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

@@ -355,7 +355,7 @@ function _skeleton(v, o) {
     const in_line = nu <= t13;
     const t20 = t14 * (d_y - t14) + t16 * (t15 - t16);
     const t21 = Math.abs(in_line ? -t20 : 0.0) <= t12 * _runtime.FEASIBILITY;
-    const t22 = l * size * 0.234375;
+    const t22 = 0.234375 * (l * size);
     const t23 = whole * t15;
     const s_w = d_y * a_x < 0 ? -1 : 1;
     const g_2 = whole * (d_y + a_x * s_w);
@@ -647,7 +647,7 @@ function _jacobian_parallel(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.234375;
+    const t19 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t21 = t16 - t20;
@@ -725,7 +725,7 @@ function _jacobian_parallel_common(v, o) {
     const t19 = t17 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t18;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t20 = size * size;
-    const t21 = l * size * 0.234375;
+    const t21 = 0.234375 * (l * size);
     const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
         t14;
     const t23 = !t19 || !t22 ? NaN : 0;
@@ -858,7 +858,7 @@ function _jacobian_serial(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.234375;
+    const t19 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t16 - t20;
@@ -913,7 +913,7 @@ function _jacobian_serial_common(v, o) {
     const t19 = t17 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t18;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t20 = size * size;
-    const t21 = l * size * 0.234375;
+    const t21 = 0.234375 * (l * size);
     const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
         t14;
     const t23 = !t19 || !t22 ? NaN : 0;
@@ -1026,7 +1026,7 @@ function _jacobian(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.234375;
+    const t20 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1191,7 +1191,7 @@ function _determinant(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.234375;
+    const t20 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1248,7 +1248,7 @@ function _determinant_common(v, o) {
     const t20 = t18 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t19;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t21 = size * size;
-    const t22 = l * size * 0.234375;
+    const t22 = 0.234375 * (l * size);
     const t23 = Math.abs(0.0) <= t21 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t22) <=
         t15;
     const t24 = !t20 || !t23 ? NaN : 0;
@@ -1357,7 +1357,7 @@ function _singularities(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.234375;
+    const t20 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? -g_2 : a_x * n_y + d_y * t12) * h;
     const A_13 = t17 - t21;
@@ -1417,7 +1417,7 @@ function _singularities_common(v, o) {
     const t20 = t18 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t19;
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t21 = size * size;
-    const t22 = l * size * 0.234375;
+    const t22 = 0.234375 * (l * size);
     const t23 = Math.abs(0.0) <= t21 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t22) <=
         t15;
     const t24 = !t20 || !t23 ? NaN : 0;
@@ -1533,7 +1533,7 @@ function _condition_number(v, o) {
     const t18 = all_same ? 0.0 : nu * (t16 * t16) + mu * 0.25;
     const t19 = l * l - t18;
     const slack = Math.max(t19, 0.0);
-    const t20 = l * size * 0.234375;
+    const t20 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t20 ? 0.0 : Math.sqrt(part * slack);
     const t21 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t22 = t17 - t21;
@@ -1698,7 +1698,7 @@ function _constraint(v, o) {
     const t17 = all_same ? 0.0 : nu * (t15 * t15) + mu * 0.25;
     const t18 = l * l - t17;
     const slack = Math.max(t18, 0.0);
-    const t19 = l * size * 0.234375;
+    const t19 = 0.234375 * (l * size);
     const h = slack <= _runtime.VANISHING * t19 ? 0.0 : Math.sqrt(part * slack);
     const t20 = (in_line ? t13 * s_w : d_y * t12 - t8 * n_y) * h;
     const t21 = t16 - t20;

@@ -315,7 +315,7 @@ function _skeleton(v, o) {
     const in_line = nu <= t4;
     const t9 = t5 * (d_y - t5) + t6 * (d_z - t6);
     const t10 = Math.abs(in_line ? -t9 : 0.0) <= t3 * _runtime.FEASIBILITY;
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const g_1 = d_z * whole;
     const s_w = d_y * a_x < 0 ? -1 : 1;
     const g_2 = whole * (d_y + a_x * s_w);
@@ -478,7 +478,7 @@ function _skeleton_common(v, o) {
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t2 = size * size;
-    const t3 = L * size * 0.234375;
+    const t3 = 0.234375 * (L * size);
     const t4 = rho1 * rho1;
     const u_u = t4 + rho2 * rho2;
     const over = 1.0 / u_u;
@@ -731,7 +731,7 @@ function _jacobian_parallel(v, o) {
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
     const t12 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t13 = t7 * t9 - rho1 * 0.5;
@@ -802,7 +802,7 @@ function _jacobian_parallel_common(v, o) {
     const t9 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t10 = size * size;
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const t12 = Math.abs(0.0) <= t10 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t11) <=
         t6;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t9) || !t12;
@@ -933,7 +933,7 @@ function _jacobian_serial(v, o) {
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
     const t12 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t13 = t7 * t9 - rho1 * 0.5;
@@ -979,7 +979,7 @@ function _jacobian_serial_common(v, o) {
     const t9 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t10 = size * size;
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const t12 = Math.abs(0.0) <= t10 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t11) <=
         t6;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t9) || !t12;
@@ -1089,7 +1089,7 @@ function _jacobian(v, o) {
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
     const t12 = L * L - t11;
     const slack = Math.max(t12, 0.0);
-    const t13 = L * size * 0.234375;
+    const t13 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
     const t14 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
@@ -1180,7 +1180,7 @@ function _jacobian_common(v, o) {
     const t19 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t20 = size * size;
-    const t21 = L * size * 0.234375;
+    const t21 = 0.234375 * (L * size);
     const t22 = Math.abs(0.0) <= t20 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t21) <=
         t7;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t19) || !t22;
@@ -1312,7 +1312,7 @@ function _determinant(v, o) {
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
     const t12 = L * L - t11;
     const slack = Math.max(t12, 0.0);
-    const t13 = L * size * 0.234375;
+    const t13 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
     const t14 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
@@ -1364,7 +1364,7 @@ function _determinant_common(v, o) {
     const t15 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t16 = size * size;
-    const t17 = L * size * 0.234375;
+    const t17 = 0.234375 * (L * size);
     const t18 = Math.abs(0.0) <= t16 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t17) <=
         t8;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t15) || !t18;
@@ -1467,7 +1467,7 @@ function _singularities(v, o) {
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
     const t12 = L * L - t11;
     const slack = Math.max(t12, 0.0);
-    const t13 = L * size * 0.234375;
+    const t13 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
     const t14 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
@@ -1517,7 +1517,7 @@ function _singularities_common(v, o) {
     const t10 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t11 = size * size;
-    const t12 = L * size * 0.234375;
+    const t12 = 0.234375 * (L * size);
     const t13 = Math.abs(0.0) <= t11 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t12) <=
         t7;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t10) || !t13;
@@ -1630,7 +1630,7 @@ function _condition_number(v, o) {
     const t11 = all_same ? 0.0 : nu * (t10 * t10) + mu * 0.25;
     const t12 = L * L - t11;
     const slack = Math.max(t12, 0.0);
-    const t13 = L * size * 0.234375;
+    const t13 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t13 ? 0.0 : Math.sqrt(part * slack);
     const t14 = (in_line ? s_w * g_1 : d_y * n_z - d_z * n_y) * h;
     const t15 = t7 * t10 - rho1 * 0.5;
@@ -1754,7 +1754,7 @@ function _condition_number_common(v, o) {
     const t38 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t39 = size * size;
-    const t40 = L * size * 0.234375;
+    const t40 = 0.234375 * (L * size);
     const t41 = Math.abs(0.0) <= t39 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t40) <=
         t8;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t38) || !t41;
@@ -1880,7 +1880,7 @@ function _constraint(v, o) {
     const t9 = in_line ? 0.0 : mu * part * t8 * 0.5;
     const t10 = L * L - (all_same ? 0.0 : nu * (t9 * t9) + mu * 0.25);
     const slack = Math.max(t10, 0.0);
-    const t11 = L * size * 0.234375;
+    const t11 = 0.234375 * (L * size);
     const h = slack <= _runtime.VANISHING * t11 ? 0.0 : Math.sqrt(part * slack);
     const t12 = (in_line ? g_1 : -(a_x * n_z + d_z * t7)) * h;
     const t13 = n_y * t9 - d_y * 0.5;
@@ -1938,7 +1938,7 @@ function _constraint_common(v, o) {
     const t16 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
     const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t17 = size * size;
-    const t18 = L * size * 0.234375;
+    const t18 = 0.234375 * (L * size);
     const t19 = Math.abs(0.0) <= t17 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t18) <=
         t7;
     const failed = !(Number.isFinite(L) && 0.0 <= L && t16) || !t19;

@@ -164,7 +164,7 @@ function _skeleton(v, o) {
     const c = _runtime.found[1];
     const t1 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t2 = t1 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t3 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t3 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t4 = r * s;
     const aside_2 = e - t4;
     const t5 = l - aside_2;
@@ -269,7 +269,7 @@ function _jacobian_parallel(v, o) {
     const root_2 = Math.sqrt(Math.max(t1, 0.0) * Math.max(t2, 0.0));
     const t3 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t4 = t3 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t5 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t5 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t6 = !t4 || !(-t5 <= t1 && -t5 <= t2) ? NaN : 0;
     o[0] = m_2 - root_2 - m_2 + t6;
     o[1] = m_2 + root_2 - m_2 + t6;
@@ -342,7 +342,7 @@ function _jacobian_serial(v, o) {
     const root_2 = Math.sqrt(Math.max(t3, 0.0) * Math.max(t4, 0.0));
     const t5 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t6 = t5 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t7 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t7 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t8 = !t6 || !(-t7 <= t3 && -t7 <= t4) ? NaN : 0;
     o[0] = t2 + t1 * (m_2 - (m_2 - root_2)) + t8;
     o[1] = t2 + t1 * (m_2 - (m_2 + root_2)) + t8;
@@ -417,7 +417,7 @@ function _jacobian(v, o) {
     const t5 = m_2 - (m_2 - root_2);
     const t6 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t7 = t6 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t9 = !t7 || !(-t8 <= t3 && -t8 <= t4) ? NaN : 0;
     const t10 = m_2 - (m_2 + root_2);
     o[0] = -((t2 + t1 * t5) / t5) + t9;
@@ -493,7 +493,7 @@ function _determinant(v, o) {
     const t5 = m_2 - (m_2 - root_2);
     const t6 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t7 = t6 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t9 = !t7 || !(-t8 <= t3 && -t8 <= t4) ? NaN : 0;
     const t10 = m_2 - (m_2 + root_2);
     o[0] = -((t2 + t1 * t5) / t5) + t9;
@@ -569,7 +569,7 @@ function _singularities(v, o) {
     const t5 = m_2 - (m_2 - root_2);
     const t6 = Number.isFinite(r) && Number.isFinite(l) && Number.isFinite(e);
     const t7 = t6 && 0.0 <= r && 0.0 <= l && Number.isFinite(theta);
-    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.375);
+    const t8 = _runtime.FEASIBILITY * ((r + l + Math.abs(e)) * 0.46875);
     const t9 = !t7 || !(-t8 <= t3 && -t8 <= t4) ? NaN : 0;
     const t10 = m_2 - (m_2 + root_2);
     o[0] = t2 + t1 * t5 + t9;

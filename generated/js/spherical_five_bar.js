@@ -463,7 +463,7 @@ function _skeleton(v, o) {
     const t23 = t22 - t19;
     const t24 = t19 - t20;
     const t25 = same ? r_2 : r;
-    const t26 = r * 0.625 * (r * 2.2737367544323206e-13 + t25);
+    const t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25));
     const t27 = -(_runtime.FEASIBILITY * t26);
     const over = 1.0 / mu;
     const t28 = same ? c1_y : t14;
@@ -730,7 +730,7 @@ function _jacobian_parallel(v, o) {
     const t43 = t42 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t44 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t45 = -(_runtime.FEASIBILITY * (r * 0.3125));
-    const t46 = r * 0.625 * (r * 2.2737367544323206e-13 + t35);
+    const t46 = 0.625 * (r * (r * 2.2737367544323206e-13 + t35));
     const t47 = -(_runtime.FEASIBILITY * t46);
     const t48 = t45 <= t28 && t45 <= t25 && t45 <= t27 && t47 <= t33;
     const t49 = !(t43 && t44) || !(t48 && t47 <= t34) ? NaN : 0;
@@ -930,7 +930,7 @@ function _jacobian_serial(v, o) {
     const t46 = t45 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t47 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t48 = -(_runtime.FEASIBILITY * (r * 0.3125));
-    const t49 = r * 0.625 * (r * 2.2737367544323206e-13 + t35);
+    const t49 = 0.625 * (r * (r * 2.2737367544323206e-13 + t35));
     const t50 = -(_runtime.FEASIBILITY * t49);
     const t51 = t48 <= t28 && t48 <= t25 && t48 <= t27 && t50 <= t33;
     const t52 = !(t46 && t47) || !(t51 && t50 <= t34) ? NaN : 0;
@@ -1122,7 +1122,7 @@ function _jacobian(v, o) {
     const t47 = t46 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t48 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t49 = -(_runtime.FEASIBILITY * (r * 0.3125));
-    const t50 = r * 0.625 * (r * 2.2737367544323206e-13 + t35);
+    const t50 = 0.625 * (r * (r * 2.2737367544323206e-13 + t35));
     const t51 = -(_runtime.FEASIBILITY * t50);
     const t52 = t49 <= t28 && t49 <= t25 && t49 <= t27 && t51 <= t33;
     const t53 = !(t47 && t48) || !(t52 && t51 <= t34) ? NaN : 0;
@@ -1340,7 +1340,7 @@ function _singularities(v, o) {
     const t46 = t45 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t47 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t48 = -(_runtime.FEASIBILITY * (r * 0.3125));
-    const t49 = r * 0.625 * (r * 2.2737367544323206e-13 + t35);
+    const t49 = 0.625 * (r * (r * 2.2737367544323206e-13 + t35));
     const t50 = -(_runtime.FEASIBILITY * t49);
     const t51 = t48 <= t28 && t48 <= t25 && t48 <= t27 && t50 <= t33;
     const t52 = !(t46 && t47) || !(t51 && t50 <= t34) ? NaN : 0;
@@ -1556,7 +1556,7 @@ function _condition_number(v, o) {
     const t57 = t56 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t58 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t59 = -(_runtime.FEASIBILITY * (r * 0.3125));
-    const t60 = r * 0.625 * (r * 2.2737367544323206e-13 + t35);
+    const t60 = 0.625 * (r * (r * 2.2737367544323206e-13 + t35));
     const t61 = -(_runtime.FEASIBILITY * t60);
     const t62 = t59 <= t28 && t59 <= t25 && t59 <= t27 && t61 <= t33;
     const t63 = !(t57 && t58) || !(t62 && t61 <= t34) ? NaN : 0;

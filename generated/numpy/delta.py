@@ -414,7 +414,7 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t37, t38, t40
     t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
     del t34
-    t47 = l * size * 0.9375
+    t47 = 0.9375 * (l * size)
     del size
     g_1 = whole * d_z
     s_w = _runtime.sign(t36 * a_x)
@@ -784,7 +784,7 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t26 = l * l - t25
     del t25
     slack = np.maximum(t26, 0.0)
-    t27 = l * size * 0.9375
+    t27 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t27, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -963,7 +963,7 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t29 = l * l - t28
     del t28
     slack = np.maximum(t29, 0.0)
-    t30 = l * size * 0.9375
+    t30 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1148,7 +1148,7 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = l * l - t29
     del t29
     slack = np.maximum(t30, 0.0)
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1385,7 +1385,7 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = l * l - t29
     del t29
     slack = np.maximum(t30, 0.0)
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1573,7 +1573,7 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = l * l - t29
     del t29
     slack = np.maximum(t30, 0.0)
-    t31 = l * size * 0.9375
+    t31 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1762,7 +1762,7 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t27 = l * l - t26
     del t26
     slack = np.maximum(t27, 0.0)
-    t28 = l * size * 0.9375
+    t28 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1986,7 +1986,7 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t27 = l * l - t26
     del t26
     slack = np.maximum(t27, 0.0)
-    t28 = l * size * 0.9375
+    t28 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
     del part, slack

@@ -211,7 +211,7 @@ def _skeleton(theta, L1, L2, L3, L4):
     del t1
     t3 = L3 + L4
     size = L1 + L2 + t3
-    t4 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t4 = -(_runtime.FEASIBILITY * (0.46875 * size))
     t5 = L2 * c
     del c
     t6 = L1 - t5
@@ -372,7 +372,7 @@ def _jacobian_parallel(theta, L1, L2, L3, L4):
     del t19
     invalid = np.logical_not(t20 & (0.0 <= L4) & np.isfinite(theta))
     del t20
-    t21 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t21 = -(_runtime.FEASIBILITY * (0.46875 * size))
     del size
     unreachable = np.logical_not((t21 <= t5) & (t21 <= t9) & (t21 <= t7))
     del t21, t5, t7, t9
@@ -477,7 +477,7 @@ def _jacobian_serial(theta, L1, L2, L3, L4):
     del t19
     invalid = np.logical_not(t20 & (0.0 <= L4) & np.isfinite(theta))
     del t20
-    t21 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t21 = -(_runtime.FEASIBILITY * (0.46875 * size))
     del size
     unreachable = np.logical_not((t21 <= t6) & (t21 <= t10) & (t21 <= t8))
     del t10, t21, t6, t8
@@ -586,7 +586,7 @@ def _jacobian(theta, L1, L2, L3, L4):
     del t21
     invalid = np.logical_not(t22 & (0.0 <= L4) & np.isfinite(theta))
     del t22
-    t23 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t23 = -(_runtime.FEASIBILITY * (0.46875 * size))
     del size
     unreachable = np.logical_not((t23 <= t6) & (t23 <= t10) & (t23 <= t8))
     del t10, t23, t6, t8
@@ -698,7 +698,7 @@ def _determinant(theta, L1, L2, L3, L4):
     del t21
     invalid = np.logical_not(t22 & (0.0 <= L4) & np.isfinite(theta))
     del t22
-    t23 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t23 = -(_runtime.FEASIBILITY * (0.46875 * size))
     del size
     unreachable = np.logical_not((t23 <= t6) & (t23 <= t10) & (t23 <= t8))
     del t10, t23, t6, t8
@@ -807,7 +807,7 @@ def _singularities(theta, L1, L2, L3, L4):
     del t20
     invalid = np.logical_not(t21 & (0.0 <= L4) & np.isfinite(theta))
     del t21
-    t22 = -(_runtime.FEASIBILITY * (0.375 * size))
+    t22 = -(_runtime.FEASIBILITY * (0.46875 * size))
     del size
     unreachable = np.logical_not((t22 <= t6) & (t22 <= t10) & (t22 <= t8))
     del t10, t22, t6, t8

@@ -5,13 +5,13 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
 #     sincos, 3 sqrt
-#   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
+#   pose: 72 add, 32 compare and select, 8 divide, 102 multiply, 6 sincos, 3 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
+#   skeleton: 157 add, 32 compare and select, 8 divide, 151 multiply, 6 sincos, 3 sqrt
 #   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
-#   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
-#   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
-#   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+#   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
+#   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
+#   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
 #   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
 #     sincos, 51 sqrt
 #   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
@@ -375,7 +375,7 @@ def _pose(
     invalid = np.logical_not(t36 & (0.0 <= loff) & (0.0 <= lp) & t37)
     del t36, t37
     t38 = gs + al
-    t39 = -(_runtime.FEASIBILITY * t38)
+    t39 = -(_runtime.FEASIBILITY * (1.25 * t38))
     t40 = t38 - base
     del t38
     t41 = base - (gs - al)
@@ -564,7 +564,7 @@ def _skeleton(
     del t2
     t4 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t5 = gs + al
-    t6 = -(_runtime.FEASIBILITY * t5)
+    t6 = -(_runtime.FEASIBILITY * (1.25 * t5))
     t7 = d * d
     t8 = c3L_half * c3R_half
     t9 = s3L_half * s3R_half
@@ -1009,7 +1009,7 @@ def _jacobian(
     t46 = t45 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t45
     t47 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t48 = -(_runtime.FEASIBILITY * t34)
+    t48 = -(_runtime.FEASIBILITY * (1.25 * t34))
     del t34
     failed = np.logical_not(t46 & (0.0 <= lp) & t47) | np.logical_not((t48 <= t35) & (t48 <= t33))
     del t33, t35, t46, t47, t48
@@ -1293,7 +1293,7 @@ def _determinant(
     t41 = t40 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t40
     t42 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t43 = -(_runtime.FEASIBILITY * t33)
+    t43 = -(_runtime.FEASIBILITY * (1.25 * t33))
     del t33
     failed = np.logical_not(t41 & (0.0 <= lp) & t42) | np.logical_not((t43 <= t34) & (t43 <= t32))
     del t32, t34, t41, t42, t43
@@ -1420,7 +1420,7 @@ def _singularities(
     t36 = t35 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t35
     t37 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t38 = -(_runtime.FEASIBILITY * t29)
+    t38 = -(_runtime.FEASIBILITY * (1.25 * t29))
     del t29
     failed = np.logical_not(t36 & (0.0 <= lp) & t37) | np.logical_not((t38 <= t30) & (t38 <= t28))
     del t28, t30, t36, t37, t38

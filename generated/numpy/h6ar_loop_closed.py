@@ -5,13 +5,13 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 #     sincos, 6 sqrt
-#   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
-#   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
+#   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
+#   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
-#   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
-#   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+#   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
+#   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
+#   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
 #   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
 #     sincos, 42 sqrt
 #   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
@@ -543,10 +543,10 @@ def _pose(
     t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     invalid = np.logical_not(t65 & (0.0 <= loff) & (0.0 <= lp) & t66)
     del t65, t66
-    t67 = -(_runtime.FEASIBILITY * (d * t27))
+    t67 = -(_runtime.FEASIBILITY * (1.25 * (d * t27)))
     del t27
     t68 = gs + al
-    t69 = -(_runtime.FEASIBILITY * t68)
+    t69 = -(_runtime.FEASIBILITY * (1.25 * t68))
     t70 = t68 - base
     del t68
     t71 = base - (gs - al)
@@ -677,7 +677,7 @@ def _skeleton(
     t4 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t5 = L1 + fore
-    t6 = -(_runtime.FEASIBILITY * (d * t5))
+    t6 = -(_runtime.FEASIBILITY * (1.25 * (d * t5)))
     t7 = c3R_half * c3L_half
     t8 = s3R_half * s3L_half
     t9 = t7 + t8
@@ -748,7 +748,7 @@ def _skeleton(
     t47 = t46 * t38 * 0.5 - (gap - M_left * 0.5)
     del M_left, t38, t46
     t48 = gs + al
-    t49 = -(_runtime.FEASIBILITY * t48)
+    t49 = -(_runtime.FEASIBILITY * (1.25 * t48))
     t50 = d * d
     base = np.sqrt(t50 + gap)
     del gap
@@ -1324,9 +1324,9 @@ def _jacobian(
     t77 = t76 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t76
     t78 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t79 = -(_runtime.FEASIBILITY * (d * t23))
+    t79 = -(_runtime.FEASIBILITY * (1.25 * (d * t23)))
     del t23
-    t80 = -(_runtime.FEASIBILITY * t63)
+    t80 = -(_runtime.FEASIBILITY * (1.25 * t63))
     del t63
     t81 = (t79 <= t43) & (t79 <= t41) & (t80 <= t64) & (t80 <= t65)
     del t41, t43, t64, t65, t79, t80
@@ -1744,9 +1744,9 @@ def _determinant(
     t75 = t74 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t74
     t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t77 = -(_runtime.FEASIBILITY * (d * t41))
+    t77 = -(_runtime.FEASIBILITY * (1.25 * (d * t41)))
     del t41
-    t78 = -(_runtime.FEASIBILITY * t62)
+    t78 = -(_runtime.FEASIBILITY * (1.25 * t62))
     del t62
     t79 = (t77 <= t54) & (t77 <= t52) & (t78 <= t63) & (t78 <= t64)
     del t52, t54, t63, t64, t77, t78
@@ -1953,9 +1953,9 @@ def _singularities(
     t66 = t65 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t65
     t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t68 = -(_runtime.FEASIBILITY * (d * t28))
+    t68 = -(_runtime.FEASIBILITY * (1.25 * (d * t28)))
     del t28
-    t69 = -(_runtime.FEASIBILITY * t57)
+    t69 = -(_runtime.FEASIBILITY * (1.25 * t57))
     del t57
     t70 = (t68 <= t47) & (t68 <= t45) & (t69 <= t58) & (t69 <= t59)
     del t45, t47, t58, t59, t68, t69

@@ -4,15 +4,15 @@
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 22 add, 22 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
-#   passive_angles: 16 add, 25 compare and select, 4 atan2, 6 divide, 14 multiply, 2 sincos, 2
+#   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 2
 #     sqrt
-#   skeleton: 30 add, 21 compare and select, 6 divide, 22 multiply, 3 sincos, 2 sqrt
-#   jacobian_parallel: 27 add, 21 compare and select, 6 divide, 20 multiply, 3 sincos, 2 sqrt
-#   jacobian_serial: 24 add, 21 compare and select, 6 divide, 24 multiply, 2 sincos, 2 sqrt
-#   jacobian: 35 add, 21 compare and select, 18 divide, 43 multiply, 3 sincos, 2 sqrt
-#   determinant: 20 add, 21 compare and select, 8 divide, 27 multiply, 2 sincos, 2 sqrt
-#   singularities: 26 add, 21 compare and select, 6 divide, 23 multiply, 2 sincos, 2 sqrt
-#   condition_number: 9 add, 22 compare and select, 4 divide, 10 multiply, 2 sincos, 2 sqrt
+#   skeleton: 30 add, 21 compare and select, 5 divide, 23 multiply, 3 sincos, 2 sqrt
+#   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 21 multiply, 3 sincos, 2 sqrt
+#   jacobian_serial: 24 add, 21 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
+#   jacobian: 35 add, 21 compare and select, 17 divide, 44 multiply, 3 sincos, 2 sqrt
+#   determinant: 20 add, 21 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
+#   singularities: 26 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
+#   condition_number: 9 add, 22 compare and select, 3 divide, 11 multiply, 2 sincos, 2 sqrt
 #   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
@@ -261,24 +261,26 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     del t12
     t14 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7)
+    t15 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7
     del size, t7
-    t15 = _runtime.poison(np.logical_not(t13 & t14) | unreachable)
-    del t13, t14, unreachable
+    failed = np.logical_not(t13 & t14) | np.logical_not(t15)
+    del t13, t14, t15
+    t16 = _runtime.poison(failed)
+    del failed
     DP_r = t5 + t8
     del t5, t8
     CP_y_right_of_CD = t9 - t10
     del t10, t9
-    t16 = _runtime.wrap_cut(np.arctan2(DP_r, -CP_y_right_of_CD))
-    t17 = _runtime.wrap_cut(-np.arctan2(DP_r, CP_y_right_of_CD))
+    t17 = _runtime.wrap_cut(np.arctan2(DP_r, -CP_y_right_of_CD))
+    t18 = _runtime.wrap_cut(-np.arctan2(DP_r, CP_y_right_of_CD))
     del CP_y_right_of_CD, DP_r
-    t18 = _runtime.wrap_cut(np.arctan2(DP_r_right_of_CD, -CP_y))
+    t19 = _runtime.wrap_cut(np.arctan2(DP_r_right_of_CD, -CP_y))
     del CP_y, DP_r_right_of_CD
     return (
-        t11 + t15,
-        t16 + t15,
-        t17 + t15,
-        t18 + t15,
+        t11 + t16,
+        t17 + t16,
+        t18 + t16,
+        t19 + t16,
     )
 
 
@@ -349,71 +351,71 @@ def _skeleton(theta1, theta2, theta3, L0, L1, L2):
     t6 = C_y - D_y
     apart = np.sqrt(t5 * t5 + t6 * t6)
     t7 = t4 - apart
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7)
-    t8 = _runtime.poison(np.logical_not(t3) | unreachable)
-    del t3, unreachable
-    t9 = 0.0 + t8
-    t10 = L0 + t8
-    t11 = -(C_r * c1) + t8
-    t12 = C_y + t8
-    t13 = C_r * s1 + t8
-    t14 = -(D_r * c1) + t8
-    t15 = D_y + t8
+    t8 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7
+    t9 = _runtime.poison(np.logical_not(t3) | np.logical_not(t8))
+    del t3, t8
+    t10 = 0.0 + t9
+    t11 = L0 + t9
+    t12 = -(C_r * c1) + t9
+    t13 = C_y + t9
+    t14 = C_r * s1 + t9
+    t15 = -(D_r * c1) + t9
+    t16 = D_y + t9
     del D_y
-    t16 = D_r * s1 + t8
+    t17 = D_r * s1 + t9
     del D_r
-    t17 = size * _runtime.VANISHING
+    t18 = size * _runtime.VANISHING
     del size
-    coincide = apart <= t17
+    coincide = apart <= t18
     distance = _runtime.select(coincide, 0.0, apart)
-    t18 = _runtime.select(coincide, 0.0, t5 / apart)
+    t19 = _runtime.select(coincide, 0.0, t5 / apart)
     del t5
-    t19 = distance * t18 * 0.5
+    t20 = distance * t19 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t6 / apart))
     del coincide, t6
     slack = np.maximum(t7, 0.0)
     del t7
-    height = _runtime.select(slack <= t17, 0.0, np.sqrt(slack * (apart + t4)) * 0.5)
-    del apart, slack, t17, t4
-    t20 = n_1 * height
-    P_r = C_r - (t19 - t20)
-    t21 = distance * n_1 * 0.5
+    height = _runtime.select(slack <= t18, 0.0, np.sqrt(slack * (apart + t4)) * 0.5)
+    del apart, slack, t18, t4
+    t21 = n_1 * height
+    P_r = C_r - (t20 - t21)
+    t22 = distance * n_1 * 0.5
     del distance, n_1
-    t22 = t18 * height
-    del height, t18
-    P_r_right_of_CD = C_r - (t19 + t20)
-    del C_r, t19, t20
+    t23 = t19 * height
+    del height, t19
+    P_r_right_of_CD = C_r - (t20 + t21)
+    del C_r, t20, t21
     return (
-        t9,
-        t9,
-        t9,
-        t9,
         t10,
-        t9,
+        t10,
+        t10,
+        t10,
         t11,
+        t10,
         t12,
         t13,
         t14,
         t15,
         t16,
-        -(c1 * P_r) + t8,
-        C_y + (t21 + t22) + t8,
-        s1 * P_r + t8,
-        t9,
-        t9,
-        t9,
-        t9,
+        t17,
+        -(c1 * P_r) + t9,
+        C_y + (t22 + t23) + t9,
+        s1 * P_r + t9,
         t10,
-        t9,
+        t10,
+        t10,
+        t10,
         t11,
+        t10,
         t12,
         t13,
         t14,
         t15,
         t16,
-        -(c1 * P_r_right_of_CD) + t8,
-        C_y + (t21 - t22) + t8,
-        s1 * P_r_right_of_CD + t8,
+        t17,
+        -(c1 * P_r_right_of_CD) + t9,
+        C_y + (t22 - t23) + t9,
+        s1 * P_r_right_of_CD + t9,
     )
 
 
@@ -477,62 +479,62 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     del c2, c3
     apart = np.sqrt(t5 * t5 + t6 * t6)
     t7 = t4 - apart
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t7)
-    t8 = _runtime.poison(np.logical_not(t3) | unreachable)
-    del t3, unreachable
-    t9 = L2 * s1 + t8
-    t10 = 0.0 + t8
-    t11 = L2 * c1 + t8
-    t12 = size * _runtime.VANISHING
+    t8 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t7
+    t9 = _runtime.poison(np.logical_not(t3) | np.logical_not(t8))
+    del t3, t8
+    t10 = L2 * s1 + t9
+    t11 = 0.0 + t9
+    t12 = L2 * c1 + t9
+    t13 = size * _runtime.VANISHING
     del size
-    coincide = apart <= t12
+    coincide = apart <= t13
     distance = _runtime.select(coincide, 0.0, apart)
-    t13 = _runtime.select(coincide, 0.0, t5 / apart)
+    t14 = _runtime.select(coincide, 0.0, t5 / apart)
     del t5
-    t14 = distance * t13 * 0.5
+    t15 = distance * t14 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t6 / apart))
     del coincide, t6
     slack = np.maximum(t7, 0.0)
     del t7
-    height = _runtime.select(slack <= t12, 0.0, np.sqrt(slack * (apart + t4)) * 0.5)
-    del apart, slack, t12, t4
-    t15 = n_1 * height
-    DP_r_right_of_CD = t14 - t15
-    t16 = c1 * DP_r_right_of_CD
-    t17 = distance * n_1 * 0.5
+    height = _runtime.select(slack <= t13, 0.0, np.sqrt(slack * (apart + t4)) * 0.5)
+    del apart, slack, t13, t4
+    t16 = n_1 * height
+    DP_r_right_of_CD = t15 - t16
+    t17 = c1 * DP_r_right_of_CD
+    t18 = distance * n_1 * 0.5
     del distance, n_1
-    t18 = t13 * height
-    del height, t13
-    CP_y = t17 + t18
-    t19 = s1 * DP_r_right_of_CD
+    t19 = t14 * height
+    del height, t14
+    CP_y = t18 + t19
+    t20 = s1 * DP_r_right_of_CD
     del DP_r_right_of_CD
-    DP_r = t14 + t15
-    del t14, t15
-    t20 = c1 * DP_r
+    DP_r = t15 + t16
+    del t15, t16
+    t21 = c1 * DP_r
     del c1
-    CP_y_right_of_CD = t17 - t18
-    del t17, t18
-    t21 = s1 * DP_r
+    CP_y_right_of_CD = t18 - t19
+    del t18, t19
+    t22 = s1 * DP_r
     del DP_r, s1
     return (
-        t9,
         t10,
         t11,
-        t16 + t8,
-        CP_y + t8,
-        -t19 + t8,
-        -t20 + t8,
-        -CP_y_right_of_CD + t8,
-        t21 + t8,
-        t9,
+        t12,
+        t17 + t9,
+        CP_y + t9,
+        -t20 + t9,
+        -t21 + t9,
+        -CP_y_right_of_CD + t9,
+        t22 + t9,
         t10,
         t11,
-        t20 + t8,
-        CP_y_right_of_CD + t8,
-        -t21 + t8,
-        -t16 + t8,
-        -CP_y + t8,
-        t19 + t8,
+        t12,
+        t21 + t9,
+        CP_y_right_of_CD + t9,
+        -t22 + t9,
+        -t17 + t9,
+        -CP_y + t9,
+        t20 + t9,
     )
 
 
@@ -614,26 +616,28 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     del t10
     t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8)
+    t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8
     del size, t8
-    t13 = _runtime.poison(np.logical_not(t11 & t12) | unreachable)
-    del t11, t12, unreachable
-    t14 = distance * n_1 * 0.5
+    failed = np.logical_not(t11 & t12) | np.logical_not(t13)
+    del t11, t12, t13
+    t14 = _runtime.poison(failed)
+    del failed
+    t15 = distance * n_1 * 0.5
     del distance, n_1
-    t15 = t5 * height
+    t16 = t5 * height
     del height, t5
-    CP_y = t14 + t15
+    CP_y = t15 + t16
     DP_r = t6 + t9
     del t6, t9
-    CP_y_right_of_CD = t14 - t15
-    del t14, t15
+    CP_y_right_of_CD = t15 - t16
+    del t15, t16
     return (
-        L2 * (C_r - DP_r_right_of_CD) + t13,
-        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t13,
-        t2 * DP_r + D_r * CP_y_right_of_CD + t13,
-        L2 * (C_r - DP_r) + t13,
-        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t13,
-        t2 * DP_r_right_of_CD + D_r * CP_y + t13,
+        L2 * (C_r - DP_r_right_of_CD) + t14,
+        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
+        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
+        L2 * (C_r - DP_r) + t14,
+        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
+        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
     )
 
 
@@ -718,52 +722,54 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     del t10
     t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8)
+    t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8
     del size, t8
-    t13 = _runtime.poison(np.logical_not(t11 & t12) | unreachable)
-    del t11, t12, unreachable
-    t14 = distance * n_1 * 0.5
+    failed = np.logical_not(t11 & t12) | np.logical_not(t13)
+    del t11, t12, t13
+    t14 = _runtime.poison(failed)
+    del failed
+    t15 = distance * n_1 * 0.5
     del n_1
-    t15 = t5 * height
+    t16 = t5 * height
     del t5
-    CP_y_right_of_CD = t14 - t15
-    t16 = c1 * CP_y_right_of_CD
-    CP_y = t14 + t15
-    del t14, t15
-    t17 = C_y * DP_r_right_of_CD + C_r * CP_y
+    CP_y_right_of_CD = t15 - t16
+    t17 = c1 * CP_y_right_of_CD
+    CP_y = t15 + t16
+    del t15, t16
+    t18 = C_y * DP_r_right_of_CD + C_r * CP_y
     side = distance * height
     del distance, height
-    t18 = c1 * CP_y
+    t19 = c1 * CP_y
     DP_r = t6 + t9
     del t6, t9
     along_d = t2 * DP_r + D_r * CP_y_right_of_CD
-    t19 = 0.0 + t13
-    t20 = s1 * CP_y_right_of_CD
-    t21 = s1 * CP_y
+    t20 = 0.0 + t14
+    t21 = s1 * CP_y_right_of_CD
+    t22 = s1 * CP_y
     P_r_right_of_CD = C_r - DP_r
-    t22 = C_y * DP_r + C_r * CP_y_right_of_CD
+    t23 = C_y * DP_r + C_r * CP_y_right_of_CD
     del CP_y_right_of_CD, C_r, C_y
     along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y
     del CP_y, D_r, t2
     return (
-        s1 * P_r + t13,
-        t16 * t17 / side + t13,
-        -(t18 * along_d / side) + t13,
-        t19,
-        -(DP_r * t17 / side) + t13,
-        DP_r_right_of_CD * along_d / side + t13,
-        c1 * P_r + t13,
-        -(t20 * t17 / side) + t13,
-        t21 * along_d / side + t13,
-        s1 * P_r_right_of_CD + t13,
-        -(t18 * t22 / side) + t13,
-        t16 * along_d_right_of_CD / side + t13,
-        t19,
-        DP_r_right_of_CD * t22 / side + t13,
-        -(DP_r * along_d_right_of_CD / side) + t13,
-        c1 * P_r_right_of_CD + t13,
-        t21 * t22 / side + t13,
-        -(t20 * along_d_right_of_CD / side) + t13,
+        s1 * P_r + t14,
+        t17 * t18 / side + t14,
+        -(t19 * along_d / side) + t14,
+        t20,
+        -(DP_r * t18 / side) + t14,
+        DP_r_right_of_CD * along_d / side + t14,
+        c1 * P_r + t14,
+        -(t21 * t18 / side) + t14,
+        t22 * along_d / side + t14,
+        s1 * P_r_right_of_CD + t14,
+        -(t19 * t23 / side) + t14,
+        t17 * along_d_right_of_CD / side + t14,
+        t20,
+        DP_r_right_of_CD * t23 / side + t14,
+        -(DP_r * along_d_right_of_CD / side) + t14,
+        c1 * P_r_right_of_CD + t14,
+        t22 * t23 / side + t14,
+        -(t21 * along_d_right_of_CD / side) + t14,
     )
 
 
@@ -860,17 +866,19 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     t15 = t14 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     del t14
     t16 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8)
+    t17 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8
     del size, t8
-    t17 = _runtime.poison(np.logical_not(t15 & t16) | unreachable)
-    del t15, t16, unreachable
-    t18 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
+    failed = np.logical_not(t15 & t16) | np.logical_not(t17)
+    del t15, t16, t17
+    t18 = _runtime.poison(failed)
+    del failed
+    t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
     del CP_y_right_of_CD, C_r, C_y, DP_r
-    t19 = t18 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
-    del CP_y, DP_r_right_of_CD, D_r, side, t18, t2
+    t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
+    del CP_y, DP_r_right_of_CD, D_r, side, t19, t2
     return (
-        -t13 + t17,
-        t19 + t17,
+        -t13 + t18,
+        t20 + t18,
     )
 
 
@@ -952,30 +960,32 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     del t10
     t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t8)
+    t13 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t8
     del size, t8
-    t13 = _runtime.poison(np.logical_not(t11 & t12) | unreachable)
-    del t11, t12, unreachable
-    t14 = distance * n_1 * 0.5
+    failed = np.logical_not(t11 & t12) | np.logical_not(t13)
+    del t11, t12, t13
+    t14 = _runtime.poison(failed)
+    del failed
+    t15 = distance * n_1 * 0.5
     del n_1
-    t15 = t5 * height
+    t16 = t5 * height
     del t5
-    CP_y = t14 + t15
+    CP_y = t15 + t16
     DP_r = t6 + t9
     del t6, t9
-    CP_y_right_of_CD = t14 - t15
-    del t14, t15
+    CP_y_right_of_CD = t15 - t16
+    del t15, t16
     side = distance * height
     del distance, height
     return (
-        C_r - DP_r_right_of_CD + t13,
-        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t13,
-        t2 * DP_r + D_r * CP_y_right_of_CD + t13,
-        side + t13,
-        C_r - DP_r + t13,
-        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t13,
-        t2 * DP_r_right_of_CD + D_r * CP_y + t13,
-        -side + t13,
+        C_r - DP_r_right_of_CD + t14,
+        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
+        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
+        side + t14,
+        C_r - DP_r + t14,
+        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
+        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
+        -side + t14,
     )
 
 
@@ -1049,15 +1059,15 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t10 = t8 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t9
     del t8, t9
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (size * 0.5)) <= t6)
+    t11 = -(_runtime.FEASIBILITY * (size * 0.625)) <= t6
     del size, t6
-    t11 = _runtime.poison(np.logical_not(t10) | unreachable)
-    del t10, unreachable
-    t12 = t7 / np.minimum(t4, height) + t11
-    del height, t11, t4, t7
+    t12 = _runtime.poison(np.logical_not(t10) | np.logical_not(t11))
+    del t10, t11
+    t13 = t7 / np.minimum(t4, height) + t12
+    del height, t12, t4, t7
     return (
-        t12,
-        t12,
+        t13,
+        t13,
     )
 
 

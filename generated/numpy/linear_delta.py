@@ -415,7 +415,7 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     del t15, t17
     t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
     del t13
-    t23 = l * size * 0.234375
+    t23 = 0.234375 * (l * size)
     del size
     t24 = whole * t16
     s_w = _runtime.sign(d_y * a_x)
@@ -741,7 +741,7 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -839,7 +839,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     del t17, t18
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t20 = size * size
-    t21 = l * size * 0.234375
+    t21 = 0.234375 * (l * size)
     del size
     t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
     del t14
@@ -987,7 +987,7 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     t18 = l * l - t17
     del t17
     slack = np.maximum(t18, 0.0)
-    t19 = l * size * 0.234375
+    t19 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1054,7 +1054,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     del t17, t18
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t20 = size * size
-    t21 = l * size * 0.234375
+    t21 = 0.234375 * (l * size)
     del size
     t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
     del t14
@@ -1174,7 +1174,7 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1371,7 +1371,7 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1445,7 +1445,7 @@ def _determinant_common(rho1, rho2, rho3, f, e, l):
     del t18, t19
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t21 = size * size
-    t22 = l * size * 0.234375
+    t22 = 0.234375 * (l * size)
     del size
     t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
     del t15
@@ -1565,7 +1565,7 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1639,7 +1639,7 @@ def _singularities_common(rho1, rho2, rho3, f, e, l):
     del t18, t19
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t21 = size * size
-    t22 = l * size * 0.234375
+    t22 = 0.234375 * (l * size)
     del size
     t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
     del t15
@@ -1763,7 +1763,7 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t20 = l * l - t19
     del t19
     slack = np.maximum(t20, 0.0)
-    t21 = l * size * 0.234375
+    t21 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1966,7 +1966,7 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     t19 = l * l - t18
     del t18
     slack = np.maximum(t19, 0.0)
-    t20 = l * size * 0.234375
+    t20 = 0.234375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
     del part, slack

@@ -374,7 +374,7 @@ def _skeleton(rho1, rho2, rho3, L):
     del t5, t6
     t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
     del t3
-    t11 = L * size * 0.234375
+    t11 = 0.234375 * (L * size)
     del size
     g_1 = d_z * whole
     s_w = _runtime.sign(d_y * a_x)
@@ -558,7 +558,7 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = L * size * 0.234375
+    t3 = 0.234375 * (L * size)
     del size
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
@@ -826,7 +826,7 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     t11 = L * L - t10
     del t10
     slack = np.maximum(t11, 0.0)
-    t12 = L * size * 0.234375
+    t12 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -916,7 +916,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     del t9
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t10 = size * size
-    t11 = L * size * 0.234375
+    t11 = 0.234375 * (L * size)
     del size
     t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
     del t6
@@ -1059,7 +1059,7 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     t11 = L * L - t10
     del t10
     slack = np.maximum(t11, 0.0)
-    t12 = L * size * 0.234375
+    t12 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1121,7 +1121,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     del t9
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t10 = size * size
-    t11 = L * size * 0.234375
+    t11 = 0.234375 * (L * size)
     del size
     t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
     del t6
@@ -1239,7 +1239,7 @@ def _jacobian(rho1, rho2, rho3, L):
     t12 = L * L - t11
     del t11
     slack = np.maximum(t12, 0.0)
-    t13 = L * size * 0.234375
+    t13 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1355,7 +1355,7 @@ def _jacobian_common(rho1, rho2, rho3, L):
     del t19
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t20 = size * size
-    t21 = L * size * 0.234375
+    t21 = 0.234375 * (L * size)
     del size
     t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t7)
     del t7
@@ -1496,7 +1496,7 @@ def _determinant(rho1, rho2, rho3, L):
     t12 = L * L - t11
     del t11
     slack = np.maximum(t12, 0.0)
-    t13 = L * size * 0.234375
+    t13 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1570,7 +1570,7 @@ def _determinant_common(rho1, rho2, rho3, L):
     del t15
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t16 = size * size
-    t17 = L * size * 0.234375
+    t17 = 0.234375 * (L * size)
     del size
     t18 = (np.abs(0.0) <= t16 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t17) <= t8)
     del t8
@@ -1680,7 +1680,7 @@ def _singularities(rho1, rho2, rho3, L):
     t12 = L * L - t11
     del t11
     slack = np.maximum(t12, 0.0)
-    t13 = L * size * 0.234375
+    t13 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -1747,7 +1747,7 @@ def _singularities_common(rho1, rho2, rho3, L):
     del t10
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t11 = size * size
-    t12 = L * size * 0.234375
+    t12 = 0.234375 * (L * size)
     del size
     t13 = (np.abs(0.0) <= t11 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t12) <= t7)
     del t7
@@ -1869,7 +1869,7 @@ def _condition_number(rho1, rho2, rho3, L):
     t12 = L * L - t11
     del t11
     slack = np.maximum(t12, 0.0)
-    t13 = L * size * 0.234375
+    t13 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -2044,7 +2044,7 @@ def _condition_number_common(rho1, rho2, rho3, L):
     del t38
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t39 = size * size
-    t40 = L * size * 0.234375
+    t40 = 0.234375 * (L * size)
     del size
     t41 = (np.abs(0.0) <= t39 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t40) <= t8)
     del t8
@@ -2189,7 +2189,7 @@ def _constraint(rho1, rho2, rho3, L):
     t11 = L * L - t10
     del t10
     slack = np.maximum(t11, 0.0)
-    t12 = L * size * 0.234375
+    t12 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
     del part, slack
@@ -2272,7 +2272,7 @@ def _constraint_common(rho1, rho2, rho3, L):
     del t16
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t17 = size * size
-    t18 = L * size * 0.234375
+    t18 = 0.234375 * (L * size)
     del size
     t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t7)
     del t7

@@ -180,7 +180,7 @@ def _skeleton(theta, r, l, e):
     t1 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t2 = t1 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t1
-    t3 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t3 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     t4 = r * s
     del s
     aside_2 = e - t4
@@ -285,7 +285,7 @@ def _jacobian_parallel(theta, r, l, e):
     t3 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t4 = t3 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t3
-    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t5 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     failed = np.logical_not(t4) | np.logical_not((-t5 <= t1) & (-t5 <= t2))
     del t1, t2, t4, t5
     t6 = _runtime.poison(failed)
@@ -355,7 +355,7 @@ def _jacobian_serial(theta, r, l, e):
     t5 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t6 = t5 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t5
-    t7 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t7 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     failed = np.logical_not(t6) | np.logical_not((-t7 <= t3) & (-t7 <= t4))
     del t3, t4, t6, t7
     t8 = _runtime.poison(failed)
@@ -426,7 +426,7 @@ def _jacobian(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)
@@ -500,7 +500,7 @@ def _determinant(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)
@@ -573,7 +573,7 @@ def _singularities(theta, r, l, e):
     t6 = np.isfinite(r) & np.isfinite(l) & np.isfinite(e)
     t7 = t6 & (0.0 <= r) & (0.0 <= l) & np.isfinite(theta)
     del t6
-    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.375)
+    t8 = _runtime.FEASIBILITY * ((r + l + np.abs(e)) * 0.46875)
     failed = np.logical_not(t7) | np.logical_not((-t8 <= t3) & (-t8 <= t4))
     del t3, t4, t7, t8
     t9 = _runtime.poison(failed)

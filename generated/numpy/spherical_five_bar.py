@@ -541,7 +541,7 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t24 = t19 - t20
     del t20
     t25 = _runtime.select(same, r_2, r)
-    t26 = r * 0.625 * (r * 2.2737367544323206e-13 + t25)
+    t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25))
     t27 = -(_runtime.FEASIBILITY * t26)
     del t26
     over = 1.0 / mu
@@ -876,7 +876,7 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t45
     t47 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t48 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    t48 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
     del t37
     t49 = -(_runtime.FEASIBILITY * t48)
     del t48
@@ -1112,7 +1112,7 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t48
     t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t51 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
     del t37
     t52 = -(_runtime.FEASIBILITY * t51)
     del t51
@@ -1337,7 +1337,7 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t49
     t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t52 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    t52 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
     del t37
     t53 = -(_runtime.FEASIBILITY * t52)
     del t52
@@ -1603,7 +1603,7 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t48
     t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t51 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
     del t37
     t52 = -(_runtime.FEASIBILITY * t51)
     del t51
@@ -1870,7 +1870,7 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t59
     t61 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t62 = r * 0.625 * (r * 2.2737367544323206e-13 + t37)
+    t62 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
     del t37
     t63 = -(_runtime.FEASIBILITY * t62)
     del t62

@@ -2,7 +2,13 @@
 
 import sympy as sp
 from closedform.derivations.claims.h6ar import state
-from closedform.derivations.h6ar_free_turn import as_published, free_turn, turn_step, turned_by
+from closedform.derivations.h6ar_free_turn import (
+    as_published,
+    free_turn,
+    turn_step,
+    turned_by,
+    with_waist,
+)
 from closedform.derivations.h6ar_jacobian import factors_shown
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
@@ -450,10 +456,10 @@ seen = (
     p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
 )
 v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
-free = free_turn(p, m, elbow, slack)
+free, waist_rate = with_waist(free_turn(p, m, elbow, slack), upper, middle.outward)
 fore_size = p.let("fore_size", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
 # in exact arithmetic all these turns are zero
-turns, upper_turns = [], []
+turns, fore_turns, upper_turns = [], [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
     aligned = v[0] * seen[0] + v[1] * seen[1]
@@ -465,16 +471,16 @@ for sine in ("alpha", "beta"):
     part = p.let(f"part_{sine}", part)
     to_whole, to_part = map(sign_of, (whole, part))
     margin = p.let(f"margin_{sine}", to_whole * whole - to_part * part)
-    slopes = (
-        p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate),
-        p.let(f"slope_aside_{sine}", m.L1 * (to_whole * v[1] - to_part * seen_rate)),
-    )
+    aside = p.let(f"slope_aside_{sine}", m.L1 * (to_whole * v[1] - to_part * seen_rate))
+    by_fore = -to_whole * free.drawn * v[1] - to_part * rate
+    slopes = p.let(f"slope_{sine}", free.fore * by_fore + free.aside * aside), aside
     size = (fore_size if sine == "alpha" else m.L1) * beside
     corrected = free.correction(sine, margin, slopes, size, "a sine is at most 1")
     spent = corrected.spent
     turn = p.let(f"turn_{sine}", choose(spent, corrected.linear_turn(), 0))
     upper_turn = p.let(f"lean_{sine}", choose(spent, free.upper_turn(turn, corrected.aside), 0))
-    back, on = turned_by(upper_turn), turned_by(turn)
+    fore_turn = p.let(f"fore_turn_{sine}", choose(spent, free.fore * turn, 0))
+    back, on = turned_by(upper_turn), turned_by(fore_turn)
     ahead = on - back
     v, seen = (
         tuple(
@@ -486,6 +492,7 @@ for sine in ("alpha", "beta"):
         for name, e, by in (("v", v, ahead), ("p", seen, -back))
     )
     turns.append(turn)
+    fore_turns.append(fore_turn)
     upper_turns.append(upper_turn)
 half = two_sines(
     p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
@@ -501,11 +508,19 @@ p.determined(
 )
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
+
+
+def together(first: sp.Expr, second: sp.Expr) -> sp.Expr:
+    """The angle of two small turns after each other, from their tangents."""
+    return atan2(first + second, 1 - first * second)
+
+
 turned_halves = {
-    theta2A: theta2A + sum(atan2(e, sp.S.One) for e in upper_turns),
-    theta23A: theta23A + sum(atan2(e, sp.S.One) for e in turns),
+    theta2A: theta2A + together(*upper_turns),
+    theta23A: theta23A + together(*fore_turns),
 }
-joints = {s: s for s in (theta1, theta)} | {
+waist_turn = p.let("waist_turn", choose(at_limit, waist_rate * sum(turns), 0))
+joints = {theta1: theta1 + atan2(waist_turn, sp.S.One), theta: theta} | {
     s: halves[s].xreplace(turned_halves) for s in (theta2R, theta3R, theta2L, theta3L)
 }
 from_upper = sp.Matrix([[cos(theta2A), -sin(theta2A)], [sin(theta2A), cos(theta2A)]])

@@ -1,13 +1,14 @@
 """The free turn of a straight virtual arm, which keeps the real arms of the H6AR within reach."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
     L_2W,
     Dimensions,
+    L_theta,
     Pair,
     a_3W,
     pair,
@@ -54,6 +55,11 @@ class FreeTurn:
     Real arms at their own limit may then seem to be beyond it.  All postures that differ by a small
     turn of the virtual fore-arm reach the target equally well, so one that exists is taken.  In
     exact arithmetic the turn is zero.
+
+    The free turn by t moves the tip by ``tilt`` times t.  It does so along the upper arm, and the
+    fore-arm turns by t.  If the waist is tangent and the virtual arm bent, it does so away from the
+    waist axis, and the waist turns too, which leaves the tip where it is.  Then the fore-arm turns
+    by ``fore`` times t, and the upper arm by ``aside`` times t besides.
     """
 
     program: Program
@@ -61,10 +67,17 @@ class FreeTurn:
     slack: sp.Symbol
     tilt: sp.Symbol
     drawn: sp.Symbol
+    fore: sp.Expr = sp.S.One
+    aside: sp.Expr = sp.S.Zero
+    left: sp.Expr = sp.S.One
+    """The share of the way of the tip that the waist does not make up for."""
+    curve: sp.Expr = sp.S.Zero
+    """The same of half of the square of the way."""
 
     def upper_turn(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
-        """The tangent of the turn of the upper arm that belongs to a turn of the fore-arm."""
-        return turn - self.drawn * turn / self.m.L1 + aside
+        """The tangent of the turn of the upper arm that belongs to a free turn."""
+        fore = self.fore * turn
+        return fore - self.drawn * fore / self.m.L1 + self.aside * turn + aside
 
     def correction(
         self,
@@ -80,12 +93,14 @@ class FreeTurn:
         aside.  Each turn takes a share, in proportion to what it can add within the tolerance of
         the tip.
         """
-        let, upper = self.program.let, 1 - self.drawn / self.m.L1
+        let, fore = self.program.let, sqrt(L_2W**2 + a_3W**2)
         # how far each turn moves the tip, by itself and by its square, in units of the tolerance
-        squares = (self.m.L1 * upper**2 + sqrt(L_2W**2 + a_3W**2), self.m.L1)
+        upper = self.upper_turn(sp.S.One, sp.S.Zero)
+        square = self.m.L1 * upper**2 + fore * self.fore**2 + self.curve * self.tilt**2
+        squares = (square, self.m.L1)
         tip_rates = [
             (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
-            for by, square in zip((sp.Abs(self.tilt), self.m.L1), squares, strict=True)
+            for by, square in zip((self.left * sp.Abs(self.tilt), self.m.L1), squares, strict=True)
         ]
         spent = self.program.vanishes(
             f"spent_{name}", used_up(margin), scale, f"no margin left: {meaning}"
@@ -166,6 +181,28 @@ def free_turn(program: Program, m: Dimensions, bend: Pair, slack: sp.Symbol) -> 
     """The free turn of a virtual arm from the angle of its elbow."""
     tilt, drawn = bent_whole(m, bend)
     return FreeTurn(program, m, slack, program.let("tilt", tilt), program.let("drawn", drawn))
+
+
+def with_waist(free: FreeTurn, upper: Pair, outward: sp.Expr) -> tuple[FreeTurn, sp.Expr]:
+    """The free turn, with the waist where this is tangent, and the rate of the waist.
+
+    The tip is ``outward`` from the waist axis in the mid-plane, and L_theta beside this plane.
+    """
+    let = free.program.let
+    tangent = sp.And(
+        sp.Symbol("tangent"),
+        16 * sp.Abs(outward) <= sp.Abs(L_theta),
+        sp.Abs(free.tilt) >= free.m.L1 / 2**20,
+    )
+    far = sqrt(outward**2 + L_theta**2) + free.slack / 2**60
+    free = replace(
+        free,
+        fore=let("fore_rate", choose(tangent, upper.c, 1)),
+        aside=let("aside_rate", choose(tangent, -upper.s * free.tilt / free.m.L1, 0)),
+        left=let("left_rate", choose(tangent, sp.Abs(outward) / far, 1)),
+        curve=let("left_curve", choose(tangent, 1 / far, 0)),
+    )
+    return free, choose(tangent, L_theta * free.tilt / far**2, 0)
 
 
 def turn_step(d: Derivation, m: Dimensions) -> None:

@@ -35,7 +35,7 @@ theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")
 x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
 target = (x, y, z, psi, phi, pitch)
-L_2W, a_3W = real("L_2W"), real("a_3W")
+L_theta, L_2W, a_3W = real("L_theta"), real("L_2W"), real("a_3W")
 sigma_waist, sigma_elbow = real("sigma_waist"), real("sigma_elbow")
 WAIST = (sigma_waist, {+1: "front", -1: "rear"})
 ELBOW = (sigma_elbow, {+1: "elbow_up", -1: "elbow_down"})
@@ -384,6 +384,8 @@ class MidPlane(NamedTuple):
     fore: Pair
     elbow: Pair
     """Cosine and sine of the angle from the upper arm to the fore-arm."""
+    outward: sp.Symbol
+    """How far the tip is from the waist axis in the mid-plane."""
 
 
 def solve_mid_plane(
@@ -451,7 +453,7 @@ def solve_mid_plane(
     )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
     pairs = (bend.pair(e) for e in (theta2A, theta23A, theta23A - theta2A))
-    return MidPlane((pitched, turn, bend), *pairs)
+    return MidPlane((pitched, turn, bend), *pairs, outward)
 
 
 def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:

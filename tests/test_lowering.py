@@ -12,6 +12,7 @@ from sympy import cos, sin, sqrt
 
 from closedform.lower import Lowered, lower
 from closedform.lower.graph import Graph, hardly_ever, reachable
+from closedform.lower.share import same
 from closedform.mechanics.frames import exponential
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Function, Program, array, choose, real, sign_of
@@ -276,3 +277,10 @@ def test_a_condition_on_what_was_chosen_is_refused_before_sympy_drops_a_part_of_
         with pytest.raises(ValueError, match="name what is compared before you choose by it"):
             refused()
     assert sign_of(sp.Integer(3)) == 1 and sign_of(sp.Integer(-3)) == -1
+
+
+def test_an_arctangent_of_constants_is_a_constant() -> None:
+    """A turn that is zero in the common case costs no arctangent there."""
+    graph = Graph()
+    turn = graph.atan2(graph.input("x"), graph.const(1))
+    assert same(graph, turn, (graph.const(0), graph.const(1))) is graph.const(0)

@@ -165,6 +165,8 @@ def same(graph: Graph, node: Node, args: tuple[Node, ...]) -> Node:
         return graph.div(*args)
     if node.op == "select":
         return graph.select(*args)
+    if node.op == "atan2" and all(a.op == "const" for a in args):
+        return graph.atan2(*args)
     if node.op == "not":
         return graph.negate(args[0])
     if node.op == "and":

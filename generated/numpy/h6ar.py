@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 594 compare and select, 468 add, 33 atan2, 157 divide, 580 multiply, 1 reduce to a turn, 3
-#     sincos, 51 sqrt
-#   ik where nothing vanishes: 249 compare and select, 168 add, 17 atan2, 34 divide, 148 multiply,
+#   ik: 629 compare and select, 516 add, 29 atan2, 163 divide, 668 multiply, 1 reduce to a turn, 3
+#     sincos, 54 sqrt
+#   ik where nothing vanishes: 249 compare and select, 163 add, 16 atan2, 34 divide, 148 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1487,51 +1487,48 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 
 def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
+    s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     s_phi, c_phi = _runtime.sincos_as_in_c(phi)
     s_pitch, c_pitch = _runtime.sincos_as_in_c(pitch)
-    s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     principal_pitch = _runtime.principal(pitch)
+    t1 = 1.0 / c_psi
+    t_psi = s_psi * t1
+    ahead = d * t_psi
+    t2 = z - d1
     h = np.sqrt(x * x + y * y)
-    t1 = gs + al
-    t2 = L2 + a3
-    lengths = L1 + d1 + d + loff + lp + t1 + t2
-    nowhere = h <= _runtime.VANISHING * lengths
-    t3 = np.arctan2(x, y)
-    t4 = lp * s_pitch
+    t3 = lp * s_pitch
     del s_pitch
-    t5 = t1 * c_psi - d
+    t4 = gs + al
+    t5 = t4 * c_psi - d
     t6 = d - c_psi * (gs - al)
     t7 = np.sqrt(np.maximum(t5, 0.0) * np.maximum(t6, 0.0))
-    t8 = 1.0 / c_psi
-    wrist = t7 * t8
-    del t7
-    t9 = loff + lp * c_pitch + wrist
+    wrist = t7 * t1
+    del t1, t7
+    t8 = loff + lp * c_pitch + wrist
     del c_pitch
-    t10 = s_psi * t9
-    t11 = s_phi * t4 - c_phi * t10
-    t12 = h - t11
-    above = np.maximum(t12, 0.0)
-    t13 = h + t11
-    del t11
-    below = np.maximum(t13, 0.0)
-    t14 = above * below
-    root = np.sqrt(t14)
-    L_2W = L2 + c_psi * t9
-    del t9
-    a_3W = a3 + c_phi * t4 + s_phi * t10
-    del t10, t4
+    t9 = s_psi * t8
+    t10 = s_phi * t3 - c_phi * t9
+    t11 = h - t10
+    above = np.maximum(t11, 0.0)
+    t12 = h + t10
+    below = np.maximum(t12, 0.0)
+    t13 = above * below
+    root = np.sqrt(t13)
+    L_2W = L2 + c_psi * t8
+    del t8
+    a_3W = a3 + c_phi * t3 + s_phi * t9
+    del t3, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t15 = L1 + fore
+    t14 = L1 + fore
+    t15 = L2 + a3
+    lengths = L1 + d1 + d + loff + lp + t4 + t15
     t_phi = s_phi / c_phi
     del s_phi
     higher = d * t_phi
     t16 = np.abs(t_phi * higher)
-    t_psi = s_psi * t8
-    del t8
-    ahead = d * t_psi
     t17 = np.abs(t_psi * ahead)
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
-    t18 = al * (t1 + t16 + t17)
+    t18 = al * (t4 + t16 + t17)
     t19 = al * 8.673617379884035e-19 + gs * 8.673617379884035e-19
     t20 = t19 + t16 * 8.673617379884035e-19 + t17 * 8.673617379884035e-19
     del t19
@@ -1541,47 +1538,45 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del stretched, t16, t17, t18, t21
     slack = lengths * 0.25 + far_apart
     t22 = h * slack
-    del h
-    tangent = 4.0 * root * t15 - t22 * 0.00390625 <= _runtime.VANISHING * t22
+    tangent = 4.0 * root * t14 - t22 * 0.00390625 <= _runtime.VANISHING * t22
     gap_size = np.sqrt(higher * higher + ahead * ahead)
     fore_size = np.sqrt(L2 * L2 + a3 * a3)
     t23 = L1 < fore_size
     shorter = _runtime.select(t23, L1, fore)
-    t24 = z - d1
-    t25 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
-    t26 = 1.0 / (t25 + gap_size)
-    del t25
-    t27 = 1.0 / fore_size
-    t28 = _runtime.select(t23, t27 * (L2 * L_2W + a3 * a_3W), L1)
-    t29 = t26 * t28
-    del t28
-    t30 = _runtime.select(t23, -(t27 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    t24 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    t25 = 1.0 / (t24 + gap_size)
+    del t24
+    t26 = 1.0 / fore_size
+    t27 = _runtime.select(t23, t26 * (L2 * L_2W + a3 * a_3W), L1)
+    t28 = t25 * t27
     del t27
-    long_x = t26 * t30
-    del t30
-    t31 = ahead * t29 - higher * long_x
-    beyond_gap_behind = t24 - t31
-    t32 = gap_size * (shorter - np.abs(beyond_gap_behind))
-    t33 = np.abs(higher)
-    across_long = _runtime.select(t23, L1 * t33 * t26, fore_size)
-    del t23, t26
-    long_r = ahead * long_x + higher * t29
-    del long_x, t29
-    t34 = long_r * long_r
+    t29 = _runtime.select(t23, -(t26 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    del t26
+    long_x = t25 * t29
+    del t29
+    t30 = ahead * t28 - higher * long_x
+    beyond_gap_behind = t2 - t30
+    t31 = gap_size * (shorter - np.abs(beyond_gap_behind))
+    t32 = np.abs(higher)
+    across_long = _runtime.select(t23, L1 * t32 * t25, fore_size)
+    del t23, t25
+    long_r = ahead * long_x + higher * t28
+    del long_x, t28
+    t33 = long_r * long_r
     del long_r
     short_h_behind = np.maximum(-shorter, np.minimum(beyond_gap_behind, shorter))
-    beyond_gap_ahead = t24 + t31
+    beyond_gap_ahead = t2 + t30
+    del t30
+    t34 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
+    left_r_behind = np.sqrt(np.maximum(0.0, t33 - t34))
+    del t34
+    t35 = -t31 <= across_long * left_r_behind
     del t31
-    t35 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
-    left_r_behind = np.sqrt(np.maximum(0.0, t34 - t35))
-    del t35
-    t36 = -t32 <= across_long * left_r_behind
-    del t32
-    t37 = gap_size <= np.maximum(L1, fore_size)
-    t38 = (shorter - short_h_behind) * (shorter + short_h_behind)
+    t36 = gap_size <= np.maximum(L1, fore_size)
+    t37 = (shorter - short_h_behind) * (shorter + short_h_behind)
     del short_h_behind
-    short_r_behind = np.sqrt(t38)
-    del t38
+    short_r_behind = np.sqrt(t37)
+    del t37
     root_apart_behind = np.abs(left_r_behind - short_r_behind)
     root_apart_behind_squared = root_apart_behind * root_apart_behind
     del root_apart_behind
@@ -1589,1325 +1584,1450 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del left_r_behind, short_r_behind
     root_same_behind_squared = root_same_behind * root_same_behind
     del root_same_behind
-    root_same_behind_away = np.abs(t14 - root_same_behind_squared)
-    t39 = gap_size * (shorter - np.abs(beyond_gap_ahead))
+    root_same_behind_away = np.abs(t13 - root_same_behind_squared)
+    t38 = gap_size * (shorter - np.abs(beyond_gap_ahead))
     del gap_size
     short_h_ahead = np.maximum(-shorter, np.minimum(beyond_gap_ahead, shorter))
-    t40 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
+    t39 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
     del beyond_gap_ahead, beyond_gap_behind
-    left_r_ahead = np.sqrt(np.maximum(0.0, t34 - t40))
-    del t34, t40
-    t41 = (-t39 <= across_long * left_r_ahead) & t37
-    del across_long, t39
-    t42 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
+    left_r_ahead = np.sqrt(np.maximum(0.0, t33 - t39))
+    del t33, t39
+    t40 = (-t38 <= across_long * left_r_ahead) & t36
+    del across_long, t38
+    t41 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
     del short_h_ahead, shorter
-    short_r_ahead = np.sqrt(t42)
-    del t42
+    short_r_ahead = np.sqrt(t41)
+    del t41
     root_apart_ahead = np.abs(left_r_ahead - short_r_ahead)
     root_apart_ahead_squared = root_apart_ahead * root_apart_ahead
     del root_apart_ahead
-    root_apart_ahead_away = np.abs(t14 - root_apart_ahead_squared)
+    root_apart_ahead_away = np.abs(t13 - root_apart_ahead_squared)
     root_same_ahead = left_r_ahead + short_r_ahead
     del left_r_ahead, short_r_ahead
     root_same_ahead_squared = root_same_ahead * root_same_ahead
     del root_same_ahead
-    root_same_ahead_away = np.abs(t14 - root_same_ahead_squared)
-    t43 = t22 * 1.8189894035458565e-12
-    t44 = t41 & (root_same_ahead_away <= t43)
-    root_same_ahead_least = _runtime.select(t44, root_same_ahead_away, t43)
-    del root_same_ahead_away, t43
-    t45 = root_apart_ahead_away <= root_same_ahead_least
-    t46 = t41 & t45
-    del t41, t45
-    root_apart_ahead_least = _runtime.select(t46, root_apart_ahead_away, root_same_ahead_least)
+    root_same_ahead_away = np.abs(t13 - root_same_ahead_squared)
+    t42 = t22 * 1.8189894035458565e-12
+    t43 = t40 & (root_same_ahead_away <= t42)
+    root_same_ahead_least = _runtime.select(t43, root_same_ahead_away, t42)
+    del root_same_ahead_away, t42
+    t44 = root_apart_ahead_away <= root_same_ahead_least
+    t45 = t40 & t44
+    del t40, t44
+    root_apart_ahead_least = _runtime.select(t45, root_apart_ahead_away, root_same_ahead_least)
     del root_apart_ahead_away, root_same_ahead_least
-    t47 = root_same_behind_away <= root_apart_ahead_least
-    t48 = t47 & t36 & t37
-    del t47
-    root_same_behind_least = _runtime.select(t48, root_same_behind_away, root_apart_ahead_least)
+    t46 = root_same_behind_away <= root_apart_ahead_least
+    t47 = t46 & t35 & t36
+    del t46
+    root_same_behind_least = _runtime.select(t47, root_same_behind_away, root_apart_ahead_least)
     del root_apart_ahead_least, root_same_behind_away
-    t49 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
+    t48 = np.abs(t13 - root_apart_behind_squared) <= root_same_behind_least
     del root_same_behind_least
-    t50 = L1 - fore
-    t51 = t50 * t50
-    t52 = t24 * t24
-    t53 = t15 * t15
-    wanted = np.maximum(np.maximum(0.0, t51 - t52), np.minimum(t14, t53 - t52))
-    t54 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t22, wanted, t14)
-    del t14, t22, wanted
-    root_same_ahead_held = _runtime.select(t44, root_same_ahead_squared, t54)
-    del root_same_ahead_squared, t44, t54
-    root_apart_ahead_held = _runtime.select(t46, root_apart_ahead_squared, root_same_ahead_held)
-    del root_apart_ahead_squared, root_same_ahead_held, t46
-    root_same_behind_held = _runtime.select(t48, root_same_behind_squared, root_apart_ahead_held)
-    del root_apart_ahead_held, root_same_behind_squared, t48
-    root_apart_behind_held = _runtime.select(t36 & t37 & t49, root_apart_behind_squared, root_same_behind_held)
-    del root_apart_behind_squared, root_same_behind_held, t36, t37, t49
-    t55 = np.sqrt(root_apart_behind_held)
+    t49 = L1 - fore
+    t50 = t49 * t49
+    t51 = t2 * t2
+    t52 = t14 * t14
+    wanted = np.maximum(np.maximum(0.0, t50 - t51), np.minimum(t13, t52 - t51))
+    t53 = _runtime.select(549755813888.0 * np.abs(t13 - wanted) <= t22, wanted, t13)
+    del t13, t22, wanted
+    root_same_ahead_held = _runtime.select(t43, root_same_ahead_squared, t53)
+    del root_same_ahead_squared, t43, t53
+    root_apart_ahead_held = _runtime.select(t45, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t45
+    root_same_behind_held = _runtime.select(t47, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t47
+    root_apart_behind_held = _runtime.select(t35 & t36 & t48, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t35, t36, t48
+    t54 = np.sqrt(root_apart_behind_held)
     del root_apart_behind_held
-    t56 = _runtime.select(tangent, np.arctan2(t55, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below
-    t57 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t56))
-    t58 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t59 = t58 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t58
-    t60 = t59 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t59
-    t61 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t62 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
-    del t2
-    t63 = t60 & (0.0 <= loff) & (0.0 <= lp) & t61 & (t62 <= _runtime.ROTATION)
-    del t60, t61, t62
-    invalid = np.logical_not(t63)
-    del t63
-    t64 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
-    del c_psi, s_psi
-    t65 = -(_runtime.FEASIBILITY * (t1 * t64))
-    del t1, t64
-    t66 = (-_runtime.FEASIBILITY <= c_phi) & (t65 <= t5)
-    del c_phi, t5
-    t67 = -(_runtime.FEASIBILITY * slack)
-    t68 = t66 & (t65 <= t6) & (t67 <= t13) & (t67 <= t12)
-    del t12, t13, t6, t65, t66, t67
-    t69 = 2.0 * fore
-    t70 = _runtime.FEASIBILITY * ((L1 * 2.0 + t69) * slack)
-    in_reach = _runtime.select(tangent, t55, root)
-    del root, t55, tangent
-    square = t52 + in_reach * in_reach
-    del t52
-    t71 = t53 - square
-    t72 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t73 = _runtime.FEASIBILITY * ((t72 + 2.0 * np.abs(t50)) * slack)
-    del t72
-    t74 = square - t51
-    del square, t51
-    t75 = t68 & (-t70 <= t71) & (-t73 <= t74)
-    del t68, t70, t73
-    t76 = d * 0.25 + t33 * 0.25 + np.abs(ahead) * 0.25 + far_apart
-    del far_apart, t33
-    play = t76 + lengths * 0.00048828125
-    del lengths, t76
-    t77 = fore_size * play
-    t78 = _runtime.VANISHING * t15
-    folded = np.abs(t24) + np.abs(in_reach) <= t78
-    short = L1 * fore <= _runtime.VANISHING * t53
-    del t53
-    M = np.maximum(t74, 0.0)
-    del t74
-    N = np.maximum(t71, 0.0)
-    del t71
-    t79 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t15, t50 + t69 * M * t79)
-    del t15, t50, t69
-    t80 = in_reach * ahead_1
-    t81 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t79 * t81)
-    t82 = fore * s_bend_front_elbow_down
-    t83 = t24 * t82
-    out_2 = t80 - t83
-    t84 = t24 * ahead_1
-    del ahead_1, t24
-    t85 = in_reach * t82
-    del in_reach, t82
-    up = t84 + t85
-    t86 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t87 = out_2 * t86
-    ctheta2A = _runtime.select(folded, 1.0, t87)
-    stheta2A = _runtime.select(folded, 0.0, up * t86)
-    del t86
-    t88 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t88
-    bare = fore <= t78
-    del t78
-    t89 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t89)
-    t90 = M - N
+    in_reach = _runtime.select(tangent, t54, root)
+    t55 = np.abs(in_reach)
+    t56 = _runtime.VANISHING * t14
+    folded = np.abs(t2) + t55 <= t56
+    short = L1 * fore <= _runtime.VANISHING * t52
+    t57 = 2.0 * fore
+    t58 = in_reach * in_reach
+    square = t51 + t58
+    del t51
+    t59 = square - t50
+    del t50
+    M = np.maximum(t59, 0.0)
+    t60 = t52 - square
+    del square, t52
+    N = np.maximum(t60, 0.0)
+    t61 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t14, t49 + t57 * M * t61)
+    del t14
+    t62 = in_reach * ahead_1
+    t63 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t61 * t63)
+    t64 = fore * s_bend_front_elbow_down
+    t65 = t2 * t64
+    out_2 = t62 - t65
+    t66 = t2 * ahead_1
+    del ahead_1, t2
+    t67 = in_reach * t64
+    del in_reach, t64
+    up = t66 + t67
+    t68 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t69 = out_2 * t68
+    ctheta2A = _runtime.select(folded, 1.0, t69)
+    stheta2A = _runtime.select(folded, 0.0, up * t68)
+    del t68
+    t70 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t70
+    bare = fore <= t56
+    del t56
+    t71 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t71)
+    t72 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t79 * t90)
-    del t79
-    t91 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t89)
-    del bare, t89
-    t92 = c_lag * s_bend_front_elbow_down
-    s_relative = t91 - t92
-    t93 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t61 * t72)
+    del t61
+    t73 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t71)
+    del bare, t71
+    t74 = c_lag * s_bend_front_elbow_down
+    s_relative = t73 - t74
+    t75 = c_lag * c_bend
     del c_bend
-    t94 = s_lag * s_bend_front_elbow_down
+    t76 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t93 + t94
+    c_relative = t75 + t76
     v_2 = L2 * s_relative + a3 * c_relative
-    t95 = ahead * stheta2A
-    del stheta2A
-    t96 = t95 - higher * ctheta2A
-    del ctheta2A
+    t77 = ahead * stheta2A
+    t78 = t77 - higher * ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t97 = p_1 * v_2 + t96 * v_1
+    t79 = p_1 * v_2 + t78 * v_1
     whole_alpha = L1 * v_1
-    t98 = np.abs(whole_alpha)
-    t99 = np.abs(t97) - t98
-    t100 = np.maximum(t99 * 9.094947017729282e-13, -t99)
-    t101 = _runtime.VANISHING * t77
-    spent_alpha = t100 <= t101
-    del t100
-    t102 = v_2 * _runtime.sign(whole_alpha)
+    t80 = np.abs(whole_alpha)
+    t81 = np.abs(t79) - t80
+    t82 = np.maximum(t81 * 9.094947017729282e-13, -t81)
+    t83 = d * 0.25 + t32 * 0.25 + np.abs(ahead) * 0.25 + far_apart
+    del far_apart, t32
+    play = t83 + lengths * 0.00048828125
+    del t83
+    t84 = fore_size * play
+    t85 = _runtime.VANISHING * t84
+    spent_alpha = t82 <= t85
+    del t82
+    t86 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
-    drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t103 = t102 * drawn
-    t104 = _runtime.sign(-t97) * (p_1 * v_1 - v_2 * t96)
-    del t97
-    t105 = t103 - t104
-    del t104
-    t106 = np.abs(t105)
-    t107 = 1.0 / slack
-    t108 = 1.4142135623730951 * np.sqrt(slack)
-    del slack
-    t109 = 1.0 / L1
-    t110 = 1.0 - t109 * drawn
-    t111 = t108 * np.sqrt(fore + L1 * (t110 * t110)) / 2000000.0
-    del t110
-    t112 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    del c_relative, s_relative
-    t113 = t107 * (t111 + t112)
-    del t111, t112
-    heavy_0_alpha = _runtime.select(spent_alpha, t113, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t106 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t102
-    del t102
-    t114 = np.abs(slope_aside_alpha)
-    t115 = t107 * (L1 + np.sqrt(L1) * t108 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t115, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t114 / heavy_1_alpha, 0.0)
-    t116 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t117 = -(_runtime.FEASIBILITY * (t77 + t116)) <= -t99
-    del t116
-    t118 = L1 * play
-    t119 = gain_1_alpha * gain_1_alpha
-    del gain_1_alpha
-    t120 = play * play
-    t121 = fore_size * fore_size * t120
+    slope_aside_alpha = L1 * t86
+    t87 = np.abs(slope_aside_alpha)
+    t88 = 1.0 / slack
+    t89 = 1.4142135623730951 * np.sqrt(slack)
+    t90 = t88 * (L1 + np.sqrt(L1) * t89 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t90, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t87 / heavy_1_alpha, 0.0)
+    t91 = gain_1_alpha * gain_1_alpha
+    t92 = play * play
+    t93 = fore_size * fore_size * t92
     del fore_size
-    t122 = t119 / (t119 + t121 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t119
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t99 < 0.0, t122, 0.0), 0.0)
-    del t122
-    t123 = _runtime.sign(slope_aside_alpha)
-    del slope_aside_alpha
-    t124 = t114 + t77 * heavy_1_alpha * 5.960464477539063e-08
+    t94 = tangent & (16.0 * t55 <= np.abs(t10))
+    t95 = L1 * 9.5367431640625e-07
+    tilt = L_2W * c_relative - a_3W * s_relative
+    t96 = np.abs(tilt)
+    t97 = t94 & (t95 <= t96)
+    t98 = 1.0 / L1
+    aside_rate = _runtime.select(t97, -(t98 * (stheta2A * tilt)), 0.0)
+    fore_rate = _runtime.select(t97, ctheta2A, 1.0)
+    del ctheta2A
+    drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    del c_relative, s_relative
+    t99 = t86 * drawn
+    del t86
+    t100 = _runtime.sign(-t79) * (p_1 * v_1 - v_2 * t78)
+    del t79
+    slope_alpha = slope_aside_alpha * aside_rate - fore_rate * (t99 - t100)
+    del t100
+    t101 = np.abs(slope_alpha)
+    t102 = slack * 8.673617379884035e-19 + np.sqrt(t10 * t10 + t58)
+    del t58
+    t103 = 1.0 / t102
+    t104 = t55 * t103
+    del t55
+    t105 = t96 * _runtime.select(t97, t104, 1.0)
+    del t96
+    t106 = fore_rate * drawn
+    t107 = aside_rate + fore_rate - t98 * t106
+    t108 = L1 * (t107 * t107) + fore * (fore_rate * fore_rate)
+    del t107
+    t109 = _runtime.select(t97, t103, 0.0) * (tilt * tilt)
+    t110 = t105 + t89 * np.sqrt(t108 + t109) / 2000000.0
+    del t108
+    t111 = t88 * t110
+    del t110
+    heavy_0_alpha = _runtime.select(spent_alpha, t111, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t101 / heavy_0_alpha, 0.0)
+    t112 = t91 / (t91 + t93 + gain_0_alpha * gain_0_alpha)
+    del t91
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t81 < 0.0, t112, 0.0), 0.0)
+    del t112
+    t113 = _runtime.sign(slope_aside_alpha)
+    t114 = t87 + t84 * heavy_1_alpha * 5.960464477539063e-08
     del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t99 * share_alpha * t123 / t124, 0.0)
-    del t124
-    lack_alpha = t99 * (1.0 - share_alpha)
-    del share_alpha, t99
-    t125 = t106 + t77 * heavy_0_alpha * 5.960464477539063e-08
-    del t106
-    t126 = 1.0 / t125
-    del t125
-    t127 = heavy_0_alpha * lack_alpha * t126 <= 9.094947017729282e-13
+    aside_alpha = _runtime.select(spent_alpha, t81 * share_alpha * t113 / t114, 0.0)
+    del t114
+    lack_alpha = t81 * (1.0 - share_alpha)
+    del share_alpha
+    t115 = t101 + t84 * heavy_0_alpha * 5.960464477539063e-08
+    del t101
+    t116 = 1.0 / t115
+    del t115
+    t117 = heavy_0_alpha * lack_alpha * t116 <= 9.094947017729282e-13
     del heavy_0_alpha
-    t128 = lack_alpha * t126
-    del lack_alpha, t126
-    t129 = _runtime.select(t127 & (0.0 < t128), t128, 0.0)
-    del t127, t128
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t105) * t129, 0.0)
-    del t105, t129
-    t130 = aside_alpha + turn_alpha - t109 * (drawn * turn_alpha)
+    t118 = lack_alpha * t116
+    del lack_alpha, t116
+    t119 = _runtime.select(t117 & (0.0 < t118), t118, 0.0)
+    del t117, t118
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(slope_alpha) * t119, 0.0)
+    del slope_alpha, t119
+    t120 = fore_rate * turn_alpha
+    t121 = aside_alpha + aside_rate * turn_alpha + t120 - t98 * (t106 * turn_alpha)
     del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t130, 0.0)
-    del t130
-    t131 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t132 = 1.0 / t131
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t132 - t96 * lean_alpha * t132, p_1)
+    lean_alpha = _runtime.select(spent_alpha, t121, 0.0)
+    del t121
+    t122 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t123 = 1.0 / t122
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t123 - t78 * lean_alpha * t123, p_1)
     part_beta = L1 * p_1_alpha
-    t133 = t131 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t131
-    t134 = 1.0 / t133
-    del t133
-    t135 = t134 + t134 * (turn_alpha * lean_alpha)
-    t136 = lean_alpha * t134 - turn_alpha * t134
-    del t134
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t135 + v_2 * t136, v_1)
-    whole_beta = L1 * v_1_alpha
-    t137 = np.abs(part_beta) - np.abs(whole_beta)
-    t138 = np.maximum(t137 * 9.094947017729282e-13, -t137)
-    t139 = _runtime.VANISHING * t118
-    spent_beta = t138 <= t139
-    del t138
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t135 - v_1 * t136, v_2)
-    del t135, t136
-    t140 = v_2_alpha * _runtime.sign(whole_beta)
-    del whole_beta
-    t141 = _runtime.select(spent_alpha, t132 * (p_1 * lean_alpha) + t96 * t132, t96)
-    del p_1, t132, t96
-    t142 = t141 * _runtime.sign(part_beta)
-    del part_beta
-    t143 = L1 - drawn
-    t144 = drawn * t140 - t142 * t143
-    t145 = np.abs(t144)
-    heavy_0_beta = _runtime.select(spent_beta, t113, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t145 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t140 + t142)
-    del t140, t142
-    t146 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t115, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t146 / heavy_1_beta, 0.0)
-    t147 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t148 = -(_runtime.FEASIBILITY * (t118 + t147)) <= -t137
-    del t147
-    t149 = -(_runtime.FEASIBILITY * play)
-    t150 = gain_1_beta * gain_1_beta
-    del gain_1_beta
-    t151 = L1 * L1 * t120
+    fore_turn_alpha = _runtime.select(spent_alpha, t120, 0.0)
     del t120
-    t152 = t150 / (t150 + t151 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t150
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t137 < 0.0, t152, 0.0), 0.0)
-    del t152
-    lack_beta = t137 * (1.0 - share_beta)
-    t153 = t145 + t118 * heavy_0_beta * 5.960464477539063e-08
-    del t145
-    t154 = 1.0 / t153
-    del t153
-    t155 = heavy_0_beta * lack_beta * t154 <= 9.094947017729282e-13
+    t124 = np.sqrt(1.0 + fore_turn_alpha * fore_turn_alpha)
+    t125 = 1.0 / (t122 * t124)
+    del t122, t124
+    t126 = t125 + t125 * (lean_alpha * fore_turn_alpha)
+    t127 = fore_turn_alpha * t125 - lean_alpha * t125
+    del t125
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t126 - v_2 * t127, v_1)
+    whole_beta = L1 * v_1_alpha
+    t128 = np.abs(part_beta) - np.abs(whole_beta)
+    t129 = np.maximum(t128 * 9.094947017729282e-13, -t128)
+    t130 = L1 * play
+    t131 = _runtime.VANISHING * t130
+    spent_beta = t129 <= t131
+    del t129
+    t132 = _runtime.select(spent_alpha, t123 * (p_1 * lean_alpha) + t78 * t123, t78)
+    del p_1, t123, t78
+    t133 = t132 * _runtime.sign(part_beta)
+    del part_beta
+    v_2_alpha = _runtime.select(spent_alpha, v_1 * t127 + v_2 * t126, v_2)
+    del t126, t127
+    t134 = v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    slope_aside_beta = L1 * (t133 + t134)
+    t135 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t90, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t135 / heavy_1_beta, 0.0)
+    t136 = gain_1_beta * gain_1_beta
+    t137 = L1 * L1 * t92
+    del t92
+    t138 = L1 - drawn
+    slope_beta = aside_rate * slope_aside_beta - fore_rate * (drawn * t134 - t133 * t138)
+    del t133, t134
+    t139 = np.abs(slope_beta)
+    heavy_0_beta = _runtime.select(spent_beta, t111, 1.0)
+    del t111
+    gain_0_beta = _runtime.select(spent_beta, t139 / heavy_0_beta, 0.0)
+    t140 = t136 / (t136 + t137 + gain_0_beta * gain_0_beta)
+    del t136
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t128 < 0.0, t140, 0.0), 0.0)
+    del t140
+    t141 = t128 * share_beta * _runtime.sign(slope_aside_beta)
+    del slope_aside_beta
+    t142 = t135 + t130 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t135
+    aside_beta = _runtime.select(spent_beta, t141 / t142, 0.0)
+    del t141, t142
+    lack_beta = t128 * (1.0 - share_beta)
+    del share_beta
+    t143 = t139 + t130 * heavy_0_beta * 5.960464477539063e-08
+    del t139
+    t144 = 1.0 / t143
+    del t143
+    t145 = heavy_0_beta * lack_beta * t144 <= 9.094947017729282e-13
     del heavy_0_beta
-    t156 = lack_beta * t154
-    del lack_beta, t154
-    t157 = _runtime.select(t155 & (0.0 < t156), t156, 0.0)
-    del t155, t156
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t144) * t157, 0.0)
-    del t144, t157
-    t158 = t137 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t137
-    t159 = t146 + t118 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t146
-    aside_beta = _runtime.select(spent_beta, t158 / t159, 0.0)
-    del t158, t159
-    t160 = turn_beta + aside_beta - t109 * (drawn * turn_beta)
-    del aside_beta
-    lean_beta = _runtime.select(spent_beta, t160, 0.0)
-    del t160
-    t161 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t162 = 1.0 / (t161 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t163 = t162 + t162 * (turn_beta * lean_beta)
-    t164 = lean_beta * t162 - turn_beta * t162
-    del t162
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t163 + v_2_alpha * t164, v_1_alpha)
+    t146 = lack_beta * t144
+    del lack_beta, t144
+    t147 = _runtime.select(t145 & (0.0 < t146), t146, 0.0)
+    del t145, t146
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(slope_beta) * t147, 0.0)
+    del slope_beta, t147
+    t148 = fore_rate * turn_beta
+    del fore_rate
+    t149 = aside_beta + aside_rate * turn_beta + t148 - t98 * (t106 * turn_beta)
+    del aside_beta, aside_rate, t106
+    lean_beta = _runtime.select(spent_beta, t149, 0.0)
+    del t149
+    t150 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t151 = 1.0 / t150
+    t152 = _runtime.select(spent_beta, p_1_alpha * lean_beta * t151 + t132 * t151, t132)
+    fore_turn_beta = _runtime.select(spent_beta, t148, 0.0)
+    del t148
+    t153 = np.sqrt(1.0 + fore_turn_beta * fore_turn_beta)
+    t154 = 1.0 / (t150 * t153)
+    del t150, t153
+    t155 = fore_turn_beta * t154 - lean_beta * t154
+    t156 = t154 + t154 * (lean_beta * fore_turn_beta)
+    del t154
+    v_2_beta = _runtime.select(spent_beta, v_1_alpha * t155 + v_2_alpha * t156, v_2_alpha)
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t156 - v_2_alpha * t155, v_1_alpha)
+    del t155, t156, v_1_alpha, v_2_alpha
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t165 = 1.0 / t161
-    del t161
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t165 - t141 * lean_beta * t165, p_1_alpha)
-    t166 = sigma_uv * p_1_beta
-    t167 = v_1_beta * sigma_uv
+    t157 = v_1_beta * sigma_uv
+    t158 = np.abs(v_2_beta)
+    parallel = -t157 <= _runtime.VANISHING * (64.0 * t158)
+    whole_y = _runtime.select(parallel, L1 + t158, -t157)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t151 - t151 * (t132 * lean_beta), p_1_alpha)
+    del p_1_alpha, t132, t151
+    t159 = sigma_uv * p_1_beta
     del sigma_uv
-    t168 = t75 & t117 & t148 & (t149 <= t166 - t167) & (t149 <= -(t167 + t166))
-    del t117, t148
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t163 - v_1_alpha * t164, v_2_alpha)
-    del t163, t164, v_1_alpha, v_2_alpha
-    t169 = np.abs(v_2_beta)
-    parallel = -t167 <= _runtime.VANISHING * (64.0 * t169)
-    whole_y = _runtime.select(parallel, L1 + t169, -t167)
-    t170 = _runtime.select(spent_beta, t165 * (p_1_alpha * lean_beta) + t141 * t165, t141)
-    del p_1_alpha, t141, t165
-    t171 = _runtime.select(parallel, t170 * _runtime.sign(v_2_beta), t166)
-    del t166
-    t172 = whole_y + t171
-    t173 = whole_y - t171
-    t174 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t172, t174)
-    above_beta_0 = np.maximum(t173, t174)
-    t175 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t160 = _runtime.select(parallel, t152 * _runtime.sign(v_2_beta), t159)
+    t161 = whole_y + t160
+    t162 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t161, t162)
+    t163 = whole_y - t160
+    above_beta_0 = np.maximum(t163, t162)
+    t164 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t176 = t170 - v_2_beta * t175
-    del t175
-    left_along = L1 - np.abs(t176)
-    t177 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t178 = _runtime.VANISHING * play
-    spent_along = t177 <= t178
-    del t177
-    t179 = L1 / 1000000000.0
-    t180 = _runtime.select(spent_along, t169 / (t179 - t167), 0.0)
-    del t169
-    t181 = -(_runtime.FEASIBILITY * (play * (1.0 + t180)))
-    del t180
-    t182 = t168 & (t149 <= t172) & (t149 <= t173) & (t181 <= left_along)
-    del t168, t172, t173, t181
-    t183 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
-    del left_along
-    t184 = t183 / (t167 * t167 + v_2_beta * v_2_beta) * _runtime.sign(-t176)
-    del t167, t176, t183
-    t185 = _runtime.select(spent_along, t171 + whole_y * t184, t171)
-    del t171, t184
-    t186 = whole_y + t185
-    t187 = whole_y - t185
-    del t185, whole_y
-    below_beta = np.maximum(t186, t174)
-    above_beta = np.maximum(t187, t174)
-    t188 = 1.0 / (below_beta + above_beta)
-    t189 = (below_beta - above_beta) * t188
-    t190 = t170 - v_2_beta * t189
-    del t170, v_2_beta
-    t191 = L1 + t190
-    t192 = t182 & (t149 <= t186) & (t149 <= t187) & (t149 <= t191)
-    del t182, t186, t187
-    t193 = L1 - t190
-    unreachable = np.logical_not(t192 & (t149 <= t193))
-    del t192
-    t194 = _runtime.poison(invalid | unreachable)
-    t195 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t196 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t197 = t195 + t196
-    del t195
-    below_alpha = np.maximum(t191, t174)
-    del t191
-    above_alpha = np.maximum(t193, t174)
-    del t193
-    t198 = 1.0 / (below_alpha + above_alpha)
-    t199 = (below_alpha - above_alpha) * t198
-    t200 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    del above_alpha, below_alpha
-    t201 = np.arctan2(t199, t198 * t200)
-    del t198, t200
-    t202 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    t165 = t152 - v_2_beta * t164
+    del t164
+    left_along = L1 - np.abs(t165)
+    t166 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t167 = _runtime.VANISHING * play
+    spent_along = t166 <= t167
+    del t166
+    t168 = spent_along | spent_alpha | spent_beta
+    t169 = 1.0 / (t102 * t102)
+    del t102
+    t170 = _runtime.select(t97, -(t10 * tilt * t169), 0.0)
+    waist_turn = _runtime.select(t168, (turn_alpha + turn_beta) * t170, 0.0)
     del turn_alpha, turn_beta
-    t203 = np.arctan2(s_lag, c_lag)
-    del c_lag, s_lag
-    t204 = _runtime.select(short, 0.0, np.arctan2(t81, t90))
-    del t81, t90
-    t205 = t203 - t204
-    t206 = t202 - (t196 - t205)
-    del t196, t202
-    t207 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    del above_beta, below_beta
-    t208 = t201 - np.arctan2(t189, t188 * t207)
-    del t188, t207
-    t209 = _runtime.wrap(principal_pitch)
-    del principal_pitch
-    out_front_elbow_down = t80 + t83
-    del t80, t83
-    up_front_elbow_down = t84 - t85
-    del t84, t85
-    t210 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t211 = 1.0 / np.sqrt(t210)
+    nowhere = h <= _runtime.VANISHING * lengths
+    del h, lengths
+    t171 = np.arctan2(x, y)
+    t172 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below, root, t54, tangent
+    t173 = _runtime.select(nowhere, 0.0, t171 - t172)
+    t174 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t173)
+    del waist_turn
+    t175 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t176 = t175 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t175
+    t177 = t176 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    del t176
+    t178 = t177 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    del t177
+    t179 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t180 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
+    del t15
+    t181 = t178 & t179 & (np.abs(t180) <= _runtime.ROTATION)
+    del t178, t179, t180
+    invalid = np.logical_not(t181)
+    del t181
+    t182 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    del c_psi, s_psi
+    t183 = -(_runtime.FEASIBILITY * (t4 * t182))
+    del t182, t4
+    t184 = (-_runtime.FEASIBILITY <= c_phi) & (t183 <= t5)
+    del c_phi, t5
+    t185 = -(_runtime.FEASIBILITY * slack)
+    t186 = t184 & (t183 <= t6) & (t185 <= t12) & (t185 <= t11)
+    del t11, t12, t183, t184, t185, t6
+    t187 = _runtime.FEASIBILITY * ((L1 * 2.0 + t57) * slack)
+    del t57
+    t188 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t189 = _runtime.FEASIBILITY * ((t188 + 2.0 * np.abs(t49)) * slack)
+    del slack, t188, t49
+    t190 = t186 & (-t187 <= t60) & (-t189 <= t59)
+    del t186, t187, t189, t59, t60
+    t191 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
+    del gain_0_alpha, gain_1_alpha, spent_alpha
+    t192 = -(_runtime.FEASIBILITY * (t84 + t191)) <= -t81
+    del t191, t81
+    t193 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
+    del gain_0_beta, gain_1_beta, spent_beta
+    t194 = -(_runtime.FEASIBILITY * (t130 + t193)) <= -t128
+    del t128, t193
+    t195 = -(_runtime.FEASIBILITY * play)
+    t196 = t190 & t192 & t194 & (t195 <= t159 - t157) & (t195 <= -(t157 + t159))
+    del t159, t192, t194
+    t197 = L1 / 1000000000.0
+    t198 = _runtime.select(spent_along, t158 / (t197 - t157), 0.0)
+    del t158
+    t199 = -(_runtime.FEASIBILITY * (play * (1.0 + t198)))
+    del t198
+    t200 = t196 & (t195 <= t161) & (t195 <= t163) & (t199 <= left_along)
+    del t161, t163, t196, t199
+    t201 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    del left_along
+    t202 = t201 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
+    del t157, t165, t201
+    t203 = _runtime.select(spent_along, t160 + whole_y * t202, t160)
+    del spent_along, t160, t202
+    t204 = whole_y + t203
+    t205 = whole_y - t203
+    del t203, whole_y
+    below_beta = np.maximum(t204, t162)
+    above_beta = np.maximum(t205, t162)
+    t206 = 1.0 / (below_beta + above_beta)
+    t207 = (below_beta - above_beta) * t206
+    t208 = t152 - v_2_beta * t207
+    del t152, v_2_beta
+    t209 = L1 + t208
+    t210 = t200 & (t195 <= t204) & (t195 <= t205) & (t195 <= t209)
+    del t200, t204, t205
+    t211 = L1 - t208
+    unreachable = np.logical_not(t210 & (t195 <= t211))
     del t210
-    t212 = out_front_elbow_down * t211
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t212)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t211)
+    t212 = _runtime.poison(invalid | unreachable)
+    t213 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t214 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    del lean_alpha, lean_beta
+    t215 = t213 + t214
+    del t213
+    below_alpha = np.maximum(t209, t162)
+    del t209
+    above_alpha = np.maximum(t211, t162)
     del t211
-    t213 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t213
-    s_relative_front_elbow_down = t91 + t92
-    del t91, t92
-    c_relative_front_elbow_down = t93 - t94
-    del t93, t94
-    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t214 = ahead * stheta2A_front_elbow_down
-    del stheta2A_front_elbow_down
-    t215 = t214 - higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down
-    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t216 = p_1_front_elbow_down * v_2_front_elbow_down + t215 * v_1_front_elbow_down
-    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t217 = np.abs(whole_alpha_front_elbow_down)
-    t218 = np.abs(t216) - t217
-    t219 = np.maximum(t218 * 9.094947017729282e-13, -t218)
-    spent_alpha_front_elbow_down = t219 <= t101
-    del t219
-    t220 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
-    del whole_alpha_front_elbow_down
-    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t221 = t220 * drawn_front_elbow_down
-    t222 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t215
-    t223 = t221 - _runtime.sign(-t216) * t222
-    del t216, t222
-    t224 = np.abs(t223)
-    t225 = 1.0 - t109 * drawn_front_elbow_down
-    t226 = t108 * np.sqrt(fore + L1 * (t225 * t225)) / 2000000.0
-    del fore, t108, t225
-    tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t227 = t107 * (t226 + np.abs(tilt_front_elbow_down))
-    del t107, t226, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t227, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t224 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t220
-    del t220
-    t228 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t115, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t228 / heavy_1_alpha_front_elbow_down, 0.0)
-    t229 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t230 = _runtime.select(spent_alpha_front_elbow_down, t229, 0.0)
+    t216 = 1.0 / (below_alpha + above_alpha)
+    t217 = (below_alpha - above_alpha) * t216
+    t218 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    del above_alpha, below_alpha
+    t219 = np.arctan2(t217, t216 * t218)
+    del t216, t218
+    t220 = np.arctan2(s_lag, c_lag)
+    del c_lag, s_lag
+    t221 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
+    del t63, t72
+    t222 = t220 - t221
+    t223 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    del fore_turn_alpha, fore_turn_beta
+    t224 = t222 - (t214 - t223)
+    del t214, t223
+    t225 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    del above_beta, below_beta
+    t226 = t219 - np.arctan2(t207, t206 * t225)
+    del t206, t225
+    t227 = _runtime.wrap(principal_pitch)
+    del principal_pitch
+    out_front_elbow_down = t62 + t65
+    del t62, t65
+    up_front_elbow_down = t66 - t67
+    del t66, t67
+    t228 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t229 = 1.0 / np.sqrt(t228)
+    del t228
+    t230 = out_front_elbow_down * t229
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t230)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t229)
     del t229
-    t231 = -(_runtime.FEASIBILITY * (t77 + t230)) <= -t218
-    del t230
-    t232 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    del gain_1_alpha_front_elbow_down
-    t233 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down
-    t234 = _runtime.select(-t218 < 0.0, t232 / (t121 + t232 + t233), 0.0)
-    del t232, t233
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t234, 0.0)
-    del t234
-    t235 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    del slope_aside_alpha_front_elbow_down
-    t236 = t77 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t237 = t218 * share_alpha_front_elbow_down * t235 / (t228 + t236)
-    del t236
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t237, 0.0)
+    t231 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t231
+    s_relative_front_elbow_down = t73 + t74
+    del t73, t74
+    c_relative_front_elbow_down = t75 - t76
+    del t75, t76
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    t232 = ahead * stheta2A_front_elbow_down
+    t233 = t232 - higher * ctheta2A_front_elbow_down
+    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
+    t234 = p_1_front_elbow_down * v_2_front_elbow_down + t233 * v_1_front_elbow_down
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t235 = np.abs(whole_alpha_front_elbow_down)
+    t236 = np.abs(t234) - t235
+    t237 = np.maximum(t236 * 9.094947017729282e-13, -t236)
+    spent_alpha_front_elbow_down = t237 <= t85
     del t237
-    lack_alpha_front_elbow_down = t218 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t218
-    t238 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t239 = t77 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_alpha_front_elbow_down
-    t240 = 1.0 / (t224 + t239)
-    del t224, t239
-    t241 = lack_alpha_front_elbow_down * t240
-    del lack_alpha_front_elbow_down
-    t242 = (t238 * t240 <= 9.094947017729282e-13) & (0.0 < t241)
-    del t238, t240
-    t243 = _runtime.sign(-t223) * _runtime.select(t242, t241, 0.0)
-    del t223, t241, t242
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243, 0.0)
+    t238 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    del whole_alpha_front_elbow_down
+    slope_aside_alpha_front_elbow_down = L1 * t238
+    t239 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t90, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t239 / heavy_1_alpha_front_elbow_down, 0.0)
+    t240 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
+    t241 = np.abs(tilt_front_elbow_down)
+    t242 = t94 & (t95 <= t241)
+    del t94, t95
+    t243 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t242, -(t98 * t243), 0.0)
     del t243
-    t244 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
-    del aside_alpha_front_elbow_down
-    t245 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t244 - t109 * t245, 0.0)
-    del t244, t245
-    t246 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t247 = np.sqrt(1.0 + t246)
-    del t246
-    t248 = 1.0 / t247
-    t249 = p_1_front_elbow_down * t248 - t215 * lean_alpha_front_elbow_down * t248
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t249, p_1_front_elbow_down)
-    del t249
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t250 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t251 = 1.0 / (t247 * np.sqrt(1.0 + t250))
-    del t247, t250
-    t252 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t253 = t251 + t251 * t252
-    del t252
-    t254 = lean_alpha_front_elbow_down * t251 - turn_alpha_front_elbow_down * t251
-    del t251
-    t255 = v_1_front_elbow_down * t253 + v_2_front_elbow_down * t254
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t255, v_1_front_elbow_down)
-    del t255
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t256 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t257 = np.maximum(t256 * 9.094947017729282e-13, -t256)
-    spent_beta_front_elbow_down = t257 <= t139
-    del t257
-    t258 = v_2_front_elbow_down * t253 - v_1_front_elbow_down * t254
-    del t253, t254
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t258, v_2_front_elbow_down)
-    del t258
-    t259 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
-    del whole_beta_front_elbow_down
-    t260 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t261 = _runtime.select(spent_alpha_front_elbow_down, t248 * t260 + t215 * t248, t215)
-    del t215, t248, t260
-    t262 = t261 * _runtime.sign(part_beta_front_elbow_down)
-    del part_beta_front_elbow_down
-    t263 = L1 - drawn_front_elbow_down
-    t264 = drawn_front_elbow_down * t259 - t262 * t263
-    t265 = np.abs(t264)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t227, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t265 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t259 + t262)
-    del t259, t262
-    t266 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t115, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t266 / heavy_1_beta_front_elbow_down, 0.0)
-    t267 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t268 = _runtime.select(spent_beta_front_elbow_down, t267, 0.0)
-    del t267
-    t269 = -(_runtime.FEASIBILITY * (t118 + t268)) <= -t256
+    t244 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t242, ctheta2A_front_elbow_down, 1.0)
+    del ctheta2A_front_elbow_down
+    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
+    del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
+    t245 = t238 * drawn_front_elbow_down
+    del t238
+    t246 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t233
+    t247 = fore_rate_front_elbow_down * (t245 - _runtime.sign(-t234) * t246)
+    del t234, t246
+    slope_alpha_front_elbow_down = t244 - t247
+    del t244, t247
+    t248 = np.abs(slope_alpha_front_elbow_down)
+    t249 = t241 * _runtime.select(t242, t104, 1.0)
+    del t104, t241
+    t250 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t251 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t252 = t250 - t98 * t251
+    del t250
+    t253 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t254 = tilt_front_elbow_down * tilt_front_elbow_down
+    t255 = _runtime.select(t242, t103, 0.0) * t254
+    del t103, t254
+    t256 = np.sqrt(L1 * (t252 * t252) + fore * t253 + t255)
+    del t252, t253
+    t257 = t88 * (t249 + t89 * t256 / 2000000.0)
+    del t256
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t257, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248 / heavy_0_alpha_front_elbow_down, 0.0)
+    t258 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t259 = _runtime.select(-t236 < 0.0, t240 / (t93 + t240 + t258), 0.0)
+    del t240, t258
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t259, 0.0)
+    del t259
+    t260 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t261 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t262 = t236 * share_alpha_front_elbow_down * t260 / (t239 + t261)
+    del t261
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t262, 0.0)
+    del t262
+    lack_alpha_front_elbow_down = t236 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down
+    t263 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t264 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t265 = 1.0 / (t248 + t264)
+    del t248, t264
+    t266 = lack_alpha_front_elbow_down * t265
+    del lack_alpha_front_elbow_down
+    t267 = (t263 * t265 <= 9.094947017729282e-13) & (0.0 < t266)
+    del t263, t265
+    t268 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t267, t266, 0.0)
+    del slope_alpha_front_elbow_down, t266, t267
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t268, 0.0)
     del t268
-    t270 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    del gain_1_beta_front_elbow_down
-    t271 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    del gain_0_beta_front_elbow_down
-    t272 = _runtime.select(-t256 < 0.0, t270 / (t151 + t270 + t271), 0.0)
-    del t270, t271
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t272, 0.0)
+    t269 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t270 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t271 = aside_alpha_front_elbow_down + t269 + t270 - t98 * (t251 * turn_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t269
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t271, 0.0)
+    del t271
+    t272 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t273 = np.sqrt(1.0 + t272)
     del t272
-    lack_beta_front_elbow_down = t256 * (1.0 - share_beta_front_elbow_down)
-    t273 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t274 = t118 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_front_elbow_down
-    t275 = 1.0 / (t265 + t274)
-    del t265, t274
-    t276 = lack_beta_front_elbow_down * t275
-    del lack_beta_front_elbow_down
-    t277 = (t273 * t275 <= 9.094947017729282e-13) & (0.0 < t276)
-    del t273, t275
-    t278 = _runtime.sign(-t264) * _runtime.select(t277, t276, 0.0)
-    del t264, t276, t277
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t278, 0.0)
+    t274 = 1.0 / t273
+    t275 = p_1_front_elbow_down * t274 - t233 * lean_alpha_front_elbow_down * t274
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, p_1_front_elbow_down)
+    del t275
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 0.0)
+    del t270
+    t276 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t277 = 1.0 / (t273 * np.sqrt(1.0 + t276))
+    del t273, t276
+    t278 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t279 = t277 + t277 * t278
     del t278
-    t279 = _runtime.sign(slope_aside_beta_front_elbow_down)
-    del slope_aside_beta_front_elbow_down
-    t280 = t118 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_front_elbow_down
-    t281 = t256 * share_beta_front_elbow_down * t279 / (t266 + t280)
-    del share_beta_front_elbow_down, t256, t266, t279, t280
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t281, 0.0)
+    t280 = fore_turn_alpha_front_elbow_down * t277 - lean_alpha_front_elbow_down * t277
+    del t277
+    t281 = v_1_front_elbow_down * t279 - v_2_front_elbow_down * t280
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t281, v_1_front_elbow_down)
     del t281
-    t282 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
-    del aside_beta_front_elbow_down
-    t283 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t282 - t109 * t283, 0.0)
-    del t282, t283
-    t284 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t285 = np.sqrt(1.0 + t284)
-    del t284
-    t286 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t287 = 1.0 / (t285 * np.sqrt(1.0 + t286))
-    del t286
-    t288 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t289 = t287 + t287 * t288
-    del t288
-    t290 = lean_beta_front_elbow_down * t287 - turn_beta_front_elbow_down * t287
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t282 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t283 = np.maximum(t282 * 9.094947017729282e-13, -t282)
+    spent_beta_front_elbow_down = t283 <= t131
+    del t283
+    t284 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t285 = _runtime.select(spent_alpha_front_elbow_down, t274 * t284 + t233 * t274, t233)
+    del t233, t274, t284
+    t286 = t285 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t287 = v_1_front_elbow_down * t280 + v_2_front_elbow_down * t279
+    del t279, t280
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t287, v_2_front_elbow_down)
     del t287
-    t291 = v_1_alpha_front_elbow_down * t289 + v_2_alpha_front_elbow_down * t290
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291, v_1_alpha_front_elbow_down)
-    del t291
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t292 = 1.0 / t285
-    del t285
-    t293 = p_1_alpha_front_elbow_down * t292 - t261 * lean_beta_front_elbow_down * t292
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t293, p_1_alpha_front_elbow_down)
-    del t293
-    t294 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t295 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    del sigma_uv_front_elbow_down
-    t296 = t75 & t231 & t269 & (t149 <= t294 - t295) & (t149 <= -(t295 + t294))
-    del t231, t269
-    t297 = v_2_alpha_front_elbow_down * t289 - v_1_alpha_front_elbow_down * t290
-    del t289, t290, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t297, v_2_alpha_front_elbow_down)
-    del t297, v_2_alpha_front_elbow_down
-    t298 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t295 <= _runtime.VANISHING * (64.0 * t298)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t298, -t295)
-    t299 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    del p_1_alpha_front_elbow_down
-    t300 = _runtime.select(spent_beta_front_elbow_down, t292 * t299 + t261 * t292, t261)
-    del t261, t292, t299
-    t301 = t300 * _runtime.sign(v_2_beta_front_elbow_down)
-    t302 = _runtime.select(parallel_front_elbow_down, t301, t294)
+    t288 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    del whole_beta_front_elbow_down
+    slope_aside_beta_front_elbow_down = L1 * (t286 + t288)
+    t289 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t90, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289 / heavy_1_beta_front_elbow_down, 0.0)
+    t290 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t291 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t292 = L1 - drawn_front_elbow_down
+    t293 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t288 - t286 * t292)
+    del t286, t288
+    slope_beta_front_elbow_down = t291 - t293
+    del t291, t293
+    t294 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, 1.0)
+    del t257
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t294 / heavy_0_beta_front_elbow_down, 0.0)
+    t295 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t296 = _runtime.select(-t282 < 0.0, t290 / (t137 + t290 + t295), 0.0)
+    del t290, t295
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296, 0.0)
+    del t296
+    t297 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    del slope_aside_beta_front_elbow_down
+    t298 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_front_elbow_down
+    t299 = t282 * share_beta_front_elbow_down * t297 / (t289 + t298)
+    del t289, t297, t298
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t299, 0.0)
+    del t299
+    lack_beta_front_elbow_down = t282 * (1.0 - share_beta_front_elbow_down)
+    del share_beta_front_elbow_down
+    t300 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t301 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_front_elbow_down
+    t302 = 1.0 / (t294 + t301)
     del t294, t301
-    t303 = whole_y_front_elbow_down + t302
-    t304 = whole_y_front_elbow_down - t302
-    below_beta_0_front_elbow_down = np.maximum(t303, t174)
-    above_beta_0_front_elbow_down = np.maximum(t304, t174)
-    t305 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t303 = lack_beta_front_elbow_down * t302
+    del lack_beta_front_elbow_down
+    t304 = (t300 * t302 <= 9.094947017729282e-13) & (0.0 < t303)
+    del t300, t302
+    t305 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t304, t303, 0.0)
+    del slope_beta_front_elbow_down, t303, t304
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t305, 0.0)
+    del t305
+    t306 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    del aside_rate_front_elbow_down
+    t307 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    del fore_rate_front_elbow_down
+    t308 = aside_beta_front_elbow_down + t306 + t307 - t98 * (t251 * turn_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t251, t306
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t308, 0.0)
+    del t308
+    t309 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t310 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t311 = np.sqrt(1.0 + t310)
+    del t310
+    t312 = 1.0 / t311
+    t313 = _runtime.select(spent_beta_front_elbow_down, t309 * t312 + t285 * t312, t285)
+    del t309
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307, 0.0)
+    del t307
+    t314 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t315 = 1.0 / (t311 * np.sqrt(1.0 + t314))
+    del t311, t314
+    t316 = fore_turn_beta_front_elbow_down * t315 - lean_beta_front_elbow_down * t315
+    t317 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t318 = t315 + t315 * t317
+    del t315, t317
+    t319 = v_1_alpha_front_elbow_down * t316 + v_2_alpha_front_elbow_down * t318
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t319, v_2_alpha_front_elbow_down)
+    del t319
+    t320 = v_1_alpha_front_elbow_down * t318 - v_2_alpha_front_elbow_down * t316
+    del t316, t318, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t320, v_1_alpha_front_elbow_down)
+    del t320, v_1_alpha_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t321 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t322 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t321 <= _runtime.VANISHING * (64.0 * t322)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t322, -t321)
+    t323 = t313 * _runtime.sign(v_2_beta_front_elbow_down)
+    t324 = p_1_alpha_front_elbow_down * t312 - t312 * (t285 * lean_beta_front_elbow_down)
+    del t285, t312
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t324, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t324
+    t325 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    del sigma_uv_front_elbow_down
+    t326 = _runtime.select(parallel_front_elbow_down, t323, t325)
+    del t323
+    t327 = whole_y_front_elbow_down + t326
+    below_beta_0_front_elbow_down = np.maximum(t327, t162)
+    t328 = whole_y_front_elbow_down - t326
+    above_beta_0_front_elbow_down = np.maximum(t328, t162)
+    t329 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t306 = v_2_beta_front_elbow_down * (t305 / total_beta_0_front_elbow_down)
-    del t305, total_beta_0_front_elbow_down
-    t307 = t300 - t306
-    del t306
-    left_along_front_elbow_down = L1 - np.abs(t307)
-    t308 = left_along_front_elbow_down * 9.094947017729282e-13
-    t309 = np.maximum(-t308, left_along_front_elbow_down)
-    del t308
-    spent_along_front_elbow_down = t309 <= t178
-    del t309
-    t310 = _runtime.select(spent_along_front_elbow_down, t298 / (t179 - t295), 0.0)
-    del t298
-    t311 = -(_runtime.FEASIBILITY * (play * (1.0 + t310)))
-    del t310
-    t312 = t296 & (t149 <= t303) & (t149 <= t304) & (t311 <= left_along_front_elbow_down)
-    del t296, t303, t304, t311
-    t313 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t314 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t315 = v_2_beta_front_elbow_down * t313 / (t295 * t295 + t314)
-    del t295, t313, t314
-    t316 = whole_y_front_elbow_down * (t315 * _runtime.sign(-t307))
-    del t307, t315
-    t317 = _runtime.select(spent_along_front_elbow_down, t302 + t316, t302)
-    del t302, t316
-    t318 = whole_y_front_elbow_down + t317
-    t319 = whole_y_front_elbow_down - t317
-    del t317, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t318, t174)
-    above_beta_front_elbow_down = np.maximum(t319, t174)
-    t320 = below_beta_front_elbow_down - above_beta_front_elbow_down
-    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t321 = 1.0 / total_beta_front_elbow_down
-    del total_beta_front_elbow_down
-    t322 = t320 * t321
-    del t320
-    t323 = t300 - v_2_beta_front_elbow_down * t322
-    del t300, v_2_beta_front_elbow_down
-    t324 = L1 + t323
-    t325 = t312 & (t149 <= t318) & (t149 <= t319) & (t149 <= t324)
-    del t312, t318, t319
-    t326 = L1 - t323
-    unreachable_2 = np.logical_not(t325 & (t149 <= t326))
-    del t325
-    t327 = _runtime.poison(invalid | unreachable_2)
-    t328 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t329 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t330 = _runtime.select(folded, 0.0, t328) + t329
-    del t328
-    below_alpha_front_elbow_down = np.maximum(t324, t174)
-    del t324
-    above_alpha_front_elbow_down = np.maximum(t326, t174)
-    del t326
-    t331 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t332 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
-    t333 = t331 * t332
-    del t331
-    t334 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t335 = np.arctan2(t333, t332 * t334)
-    del t332, t334
-    t336 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    t330 = v_2_beta_front_elbow_down * (t329 / total_beta_0_front_elbow_down)
+    del t329, total_beta_0_front_elbow_down
+    t331 = t313 - t330
+    del t330
+    left_along_front_elbow_down = L1 - np.abs(t331)
+    t332 = left_along_front_elbow_down * 9.094947017729282e-13
+    t333 = np.maximum(-t332, left_along_front_elbow_down)
+    del t332
+    spent_along_front_elbow_down = t333 <= t167
+    del t333
+    t334 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t335 = t334 | spent_beta_front_elbow_down
+    del t334
+    t336 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t337 = t203 + t204
-    del t203, t204
-    t338 = t336 - (t329 - t337)
-    del t329, t336
-    t339 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t337 = _runtime.select(t242, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t169
+    t338 = np.arctan2(_runtime.select(t335, t336 * t337, 0.0), 1.0)
+    del t336
+    t339 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
+    t340 = _runtime.select(spent_alpha_front_elbow_down, t339, 0.0)
+    del spent_alpha_front_elbow_down, t339
+    t341 = -(_runtime.FEASIBILITY * (t84 + t340)) <= -t236
+    del t236, t340
+    t342 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
+    t343 = _runtime.select(spent_beta_front_elbow_down, t342, 0.0)
+    del spent_beta_front_elbow_down, t342
+    t344 = -(_runtime.FEASIBILITY * (t130 + t343)) <= -t282
+    del t282, t343
+    t345 = t190 & t341 & t344 & (t195 <= t325 - t321) & (t195 <= -(t321 + t325))
+    del t325, t341, t344
+    t346 = _runtime.select(spent_along_front_elbow_down, t322 / (t197 - t321), 0.0)
+    del t322
+    t347 = -(_runtime.FEASIBILITY * (play * (1.0 + t346)))
+    del t346
+    t348 = t345 & (t195 <= t327) & (t195 <= t328) & (t347 <= left_along_front_elbow_down)
+    del t327, t328, t345, t347
+    t349 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t350 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t351 = v_2_beta_front_elbow_down * t349 / (t321 * t321 + t350)
+    del t321, t349, t350
+    t352 = whole_y_front_elbow_down * (t351 * _runtime.sign(-t331))
+    del t331, t351
+    t353 = _runtime.select(spent_along_front_elbow_down, t326 + t352, t326)
+    del spent_along_front_elbow_down, t326, t352
+    t354 = whole_y_front_elbow_down + t353
+    t355 = whole_y_front_elbow_down - t353
+    del t353, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t354, t162)
+    above_beta_front_elbow_down = np.maximum(t355, t162)
+    t356 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t357 = 1.0 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
+    t358 = t356 * t357
+    del t356
+    t359 = t313 - v_2_beta_front_elbow_down * t358
+    del t313, v_2_beta_front_elbow_down
+    t360 = L1 + t359
+    t361 = t348 & (t195 <= t354) & (t195 <= t355) & (t195 <= t360)
+    del t348, t354, t355
+    t362 = L1 - t359
+    unreachable_2 = np.logical_not(t361 & (t195 <= t362))
+    del t361
+    t363 = _runtime.poison(invalid | unreachable_2)
+    t364 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t365 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t366 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t367 = np.arctan2(t365, 1.0 - t366)
+    del t365, t366
+    t368 = _runtime.select(folded, 0.0, t364) + t367
+    del t364
+    below_alpha_front_elbow_down = np.maximum(t360, t162)
+    del t360
+    above_alpha_front_elbow_down = np.maximum(t362, t162)
+    del t362
+    t369 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t370 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t371 = t369 * t370
+    del t369
+    t372 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
+    t373 = np.arctan2(t371, t370 * t372)
+    del t370, t372
+    t374 = t220 + t221
+    del t220, t221
+    t375 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t376 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
+    t377 = t374 - (t367 - np.arctan2(t375, 1.0 - t376))
+    del t367, t375, t376
+    t378 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t340 = t335 - np.arctan2(t322, t321 * t339)
-    del t321, t339
-    t341 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t56))
-    del t3, t56
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t87)
-    del t87
-    p_1_rear_elbow_up = t88 + ahead * ctheta2A_rear_elbow_up
-    del t88
-    t342 = t95 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t95
-    t343 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t342
-    margin_alpha_rear_elbow_up = t217 - np.abs(t343)
-    del t217
-    t344 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t345 = np.maximum(-t344, margin_alpha_rear_elbow_up)
-    del t344
-    spent_alpha_rear_elbow_up = t345 <= t101
-    del t345
-    t346 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t342
-    t347 = t221 - _runtime.sign(-t343) * t346
-    del t221, t343, t346
-    t348 = np.abs(t347)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t348 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t115, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t228 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t349 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t350 = _runtime.select(spent_alpha_rear_elbow_up, t349, 0.0)
-    del t349
-    t351 = -(_runtime.FEASIBILITY * (t77 + t350)) <= margin_alpha_rear_elbow_up
-    del t350
-    t352 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    del gain_1_alpha_rear_elbow_up
-    t353 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    del gain_0_alpha_rear_elbow_up
-    t354 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t352 / (t121 + t352 + t353), 0.0)
-    del t352, t353
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t354, 0.0)
-    del t354
-    t355 = t235 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    t379 = t373 - np.arctan2(t358, t357 * t378)
+    del t357, t378
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t69)
+    del t69
+    p_1_rear_elbow_up = t70 + ahead * ctheta2A_rear_elbow_up
+    del t70
+    t380 = t77 - higher * ctheta2A_rear_elbow_up
+    del t77
+    t381 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t380
+    margin_alpha_rear_elbow_up = t235 - np.abs(t381)
     del t235
-    t356 = t77 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t355 / (t228 + t356)), 0.0)
-    del t228, t355, t356
-    t357 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t358 = t77 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t359 = 1.0 / (t348 + t358)
-    del t348, t358
-    t360 = -(heavy_0_alpha_rear_elbow_up * t357 * t359) <= 9.094947017729282e-13
-    del heavy_0_alpha_rear_elbow_up
-    t361 = -(t357 * t359)
-    del t357, t359
-    t362 = _runtime.select(t360 & (0.0 < t361), t361, 0.0)
-    del t360, t361
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t347) * t362, 0.0)
-    del t347, t362
-    t363 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
-    del aside_alpha_rear_elbow_up
-    t364 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t363 - t109 * t364, 0.0)
-    del t363, t364
-    t365 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t366 = np.sqrt(1.0 + t365)
-    del t365
-    t367 = 1.0 / t366
-    t368 = p_1_rear_elbow_up * t367 - t342 * lean_alpha_rear_elbow_up * t367
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t368, p_1_rear_elbow_up)
-    del t368
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t369 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t370 = 1.0 / (t366 * np.sqrt(1.0 + t369))
-    del t366, t369
-    t371 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t372 = t370 + t370 * t371
-    del t371
-    t373 = lean_alpha_rear_elbow_up * t370 - turn_alpha_rear_elbow_up * t370
-    del t370
-    t374 = v_1_front_elbow_down * t372 + v_2_front_elbow_down * t373
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t374, v_1_front_elbow_down)
-    del t374
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t375 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t376 = np.maximum(t375 * 9.094947017729282e-13, -t375)
-    spent_beta_rear_elbow_up = t376 <= t139
-    del t376
-    t377 = v_2_front_elbow_down * t372 - v_1_front_elbow_down * t373
-    del t372, t373, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t377, v_2_front_elbow_down)
-    del t377, v_2_front_elbow_down
-    t378 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
-    del whole_beta_rear_elbow_up
-    t379 = t367 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
-    del p_1_rear_elbow_up
-    t380 = _runtime.select(spent_alpha_rear_elbow_up, t379 + t342 * t367, t342)
-    del t342, t367, t379
-    t381 = t380 * _runtime.sign(part_beta_rear_elbow_up)
-    del part_beta_rear_elbow_up
-    t382 = drawn_front_elbow_down * t378 - t263 * t381
-    del t263
-    t383 = np.abs(t382)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t227, 1.0)
-    del t227
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t383 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t378 + t381)
-    del t378, t381
-    t384 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t115, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384 / heavy_1_beta_rear_elbow_up, 0.0)
-    t385 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t386 = _runtime.select(spent_beta_rear_elbow_up, t385, 0.0)
-    del t385
-    t387 = -(_runtime.FEASIBILITY * (t118 + t386)) <= -t375
-    del t386
-    t388 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    del gain_1_beta_rear_elbow_up
-    t389 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up
-    t390 = _runtime.select(-t375 < 0.0, t388 / (t151 + t388 + t389), 0.0)
-    del t388, t389
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t390, 0.0)
-    del t390
-    lack_beta_rear_elbow_up = t375 * (1.0 - share_beta_rear_elbow_up)
-    t391 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t392 = t118 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t393 = 1.0 / (t383 + t392)
-    del t383, t392
-    t394 = lack_beta_rear_elbow_up * t393
-    del lack_beta_rear_elbow_up
-    t395 = (t391 * t393 <= 9.094947017729282e-13) & (0.0 < t394)
-    del t391, t393
-    t396 = _runtime.sign(-t382) * _runtime.select(t395, t394, 0.0)
-    del t382, t394, t395
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t396, 0.0)
+    t382 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t383 = np.maximum(-t382, margin_alpha_rear_elbow_up)
+    del t382
+    spent_alpha_rear_elbow_up = t383 <= t85
+    del t383
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t90, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t239 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t384 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t242, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    del stheta2A, tilt_front_elbow_down
+    t385 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    del slope_aside_alpha_front_elbow_down
+    fore_rate_rear_elbow_up = _runtime.select(t242, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t242
+    t386 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t380
+    t387 = fore_rate_rear_elbow_up * (t245 - _runtime.sign(-t381) * t386)
+    del t245, t381, t386
+    slope_alpha_rear_elbow_up = t385 - t387
+    del t385, t387
+    t388 = np.abs(slope_alpha_rear_elbow_up)
+    t389 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t390 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t391 = t389 - t98 * t390
+    del t389
+    t392 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t393 = np.sqrt(t255 + L1 * (t391 * t391) + fore * t392)
+    del t255, t391, t392
+    t394 = t88 * (t249 + t89 * t393 / 2000000.0)
+    del t249, t393
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t394, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t388 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t395 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t396 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t384 / (t93 + t384 + t395), 0.0)
+    del t384, t395
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t396, 0.0)
     del t396
-    t397 = _runtime.sign(slope_aside_beta_rear_elbow_up)
-    del slope_aside_beta_rear_elbow_up
-    t398 = t118 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_up
-    t399 = t375 * share_beta_rear_elbow_up * t397 / (t384 + t398)
-    del share_beta_rear_elbow_up, t375, t384, t397, t398
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399, 0.0)
-    del t399
-    t400 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
-    del aside_beta_rear_elbow_up
-    t401 = drawn_front_elbow_down * turn_beta_rear_elbow_up
-    del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t400 - t109 * t401, 0.0)
-    del t400, t401
-    t402 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t403 = np.sqrt(1.0 + t402)
-    del t402
-    t404 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t405 = 1.0 / (t403 * np.sqrt(1.0 + t404))
-    del t404
-    t406 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t407 = t405 + t405 * t406
-    del t406
-    t408 = lean_beta_rear_elbow_up * t405 - turn_beta_rear_elbow_up * t405
+    t397 = t260 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t260
+    t398 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_up
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t397 / (t239 + t398)), 0.0)
+    del t239, t397, t398
+    t399 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    del share_alpha_rear_elbow_up
+    t400 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t401 = 1.0 / (t388 + t400)
+    del t388, t400
+    t402 = -(heavy_0_alpha_rear_elbow_up * t399 * t401) <= 9.094947017729282e-13
+    del heavy_0_alpha_rear_elbow_up
+    t403 = -(t399 * t401)
+    del t399, t401
+    t404 = _runtime.select(t402 & (0.0 < t403), t403, 0.0)
+    del t402, t403
+    t405 = _runtime.sign(slope_alpha_rear_elbow_up) * t404
+    del slope_alpha_rear_elbow_up, t404
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t405, 0.0)
     del t405
-    t409 = v_1_alpha_rear_elbow_up * t407 + v_2_alpha_rear_elbow_up * t408
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t409, v_1_alpha_rear_elbow_up)
+    t406 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t407 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t408 = aside_alpha_rear_elbow_up + t406 + t407 - t98 * (t390 * turn_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t406
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t408, 0.0)
+    del t408
+    t409 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t410 = np.sqrt(1.0 + t409)
     del t409
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t410 = 1.0 / t403
-    del t403
-    t411 = p_1_alpha_rear_elbow_up * t410 - t380 * lean_beta_rear_elbow_up * t410
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t411, p_1_alpha_rear_elbow_up)
-    del t411
-    t412 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t413 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del sigma_uv_rear_elbow_up
-    t414 = t75 & t351 & t387 & (t149 <= t412 - t413) & (t149 <= -(t413 + t412))
-    del t351, t387
-    t415 = v_2_alpha_rear_elbow_up * t407 - v_1_alpha_rear_elbow_up * t408
-    del t407, t408, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t415, v_2_alpha_rear_elbow_up)
-    del t415, v_2_alpha_rear_elbow_up
-    t416 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t413 <= _runtime.VANISHING * (64.0 * t416)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t416, -t413)
-    t417 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del p_1_alpha_rear_elbow_up
-    t418 = _runtime.select(spent_beta_rear_elbow_up, t410 * t417 + t380 * t410, t380)
-    del t380, t410, t417
-    t419 = _runtime.select(parallel_rear_elbow_up, t418 * _runtime.sign(v_2_beta_rear_elbow_up), t412)
+    t411 = 1.0 / t410
+    t412 = p_1_rear_elbow_up * t411 - t380 * lean_alpha_rear_elbow_up * t411
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t412, p_1_rear_elbow_up)
     del t412
-    t420 = whole_y_rear_elbow_up + t419
-    t421 = whole_y_rear_elbow_up - t419
-    below_beta_0_rear_elbow_up = np.maximum(t420, t174)
-    above_beta_0_rear_elbow_up = np.maximum(t421, t174)
-    t422 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t407, 0.0)
+    del t407
+    t413 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t414 = 1.0 / (t410 * np.sqrt(1.0 + t413))
+    del t410, t413
+    t415 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t416 = t414 + t414 * t415
+    del t415
+    t417 = fore_turn_alpha_rear_elbow_up * t414 - lean_alpha_rear_elbow_up * t414
+    del t414
+    t418 = v_1_front_elbow_down * t416 - v_2_front_elbow_down * t417
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t418, v_1_front_elbow_down)
+    del t418
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t419 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t420 = np.maximum(t419 * 9.094947017729282e-13, -t419)
+    spent_beta_rear_elbow_up = t420 <= t131
+    del t420
+    t421 = t411 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    del p_1_rear_elbow_up
+    t422 = _runtime.select(spent_alpha_rear_elbow_up, t421 + t380 * t411, t380)
+    del t380, t411, t421
+    t423 = t422 * _runtime.sign(part_beta_rear_elbow_up)
+    del part_beta_rear_elbow_up
+    t424 = v_1_front_elbow_down * t417 + v_2_front_elbow_down * t416
+    del t416, t417, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t424, v_2_front_elbow_down)
+    del t424, v_2_front_elbow_down
+    t425 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    del whole_beta_rear_elbow_up
+    slope_aside_beta_rear_elbow_up = L1 * (t423 + t425)
+    t426 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t90, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t426 / heavy_1_beta_rear_elbow_up, 0.0)
+    t427 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t428 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t429 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t425 - t292 * t423)
+    del drawn_front_elbow_down, t292, t423, t425
+    slope_beta_rear_elbow_up = t428 - t429
+    del t428, t429
+    t430 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t394, 1.0)
+    del t394
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t430 / heavy_0_beta_rear_elbow_up, 0.0)
+    t431 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t432 = _runtime.select(-t419 < 0.0, t427 / (t137 + t427 + t431), 0.0)
+    del t427, t431
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t432, 0.0)
+    del t432
+    t433 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t434 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t435 = t419 * share_beta_rear_elbow_up * t433 / (t426 + t434)
+    del t426, t433, t434
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t435, 0.0)
+    del t435
+    lack_beta_rear_elbow_up = t419 * (1.0 - share_beta_rear_elbow_up)
+    del share_beta_rear_elbow_up
+    t436 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t437 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t438 = 1.0 / (t430 + t437)
+    del t430, t437
+    t439 = lack_beta_rear_elbow_up * t438
+    del lack_beta_rear_elbow_up
+    t440 = (t436 * t438 <= 9.094947017729282e-13) & (0.0 < t439)
+    del t436, t438
+    t441 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t440, t439, 0.0)
+    del slope_beta_rear_elbow_up, t439, t440
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t441, 0.0)
+    del t441
+    t442 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del aside_rate_rear_elbow_up
+    t443 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del fore_rate_rear_elbow_up
+    t444 = aside_beta_rear_elbow_up + t442 + t443 - t98 * (t390 * turn_beta_rear_elbow_up)
+    del aside_beta_rear_elbow_up, t390, t442
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t444, 0.0)
+    del t444
+    t445 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t446 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t447 = np.sqrt(1.0 + t446)
+    del t446
+    t448 = 1.0 / t447
+    t449 = _runtime.select(spent_beta_rear_elbow_up, t445 * t448 + t422 * t448, t422)
+    del t445
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t443, 0.0)
+    del t443
+    t450 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t451 = 1.0 / (t447 * np.sqrt(1.0 + t450))
+    del t447, t450
+    t452 = fore_turn_beta_rear_elbow_up * t451 - lean_beta_rear_elbow_up * t451
+    t453 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t454 = t451 + t451 * t453
+    del t451, t453
+    t455 = v_1_alpha_rear_elbow_up * t452 + v_2_alpha_rear_elbow_up * t454
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t455, v_2_alpha_rear_elbow_up)
+    del t455
+    t456 = v_1_alpha_rear_elbow_up * t454 - v_2_alpha_rear_elbow_up * t452
+    del t452, t454, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t456, v_1_alpha_rear_elbow_up)
+    del t456, v_1_alpha_rear_elbow_up
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t457 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t458 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t457 <= _runtime.VANISHING * (64.0 * t458)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t458, -t457)
+    t459 = p_1_alpha_rear_elbow_up * t448 - t448 * (t422 * lean_beta_rear_elbow_up)
+    del t422, t448
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t459, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t459
+    t460 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    del sigma_uv_rear_elbow_up
+    t461 = _runtime.select(parallel_rear_elbow_up, t449 * _runtime.sign(v_2_beta_rear_elbow_up), t460)
+    t462 = whole_y_rear_elbow_up + t461
+    below_beta_0_rear_elbow_up = np.maximum(t462, t162)
+    t463 = whole_y_rear_elbow_up - t461
+    above_beta_0_rear_elbow_up = np.maximum(t463, t162)
+    t464 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t423 = v_2_beta_rear_elbow_up * (t422 / total_beta_0_rear_elbow_up)
-    del t422, total_beta_0_rear_elbow_up
-    t424 = t418 - t423
-    del t423
-    left_along_rear_elbow_up = L1 - np.abs(t424)
-    t425 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t425, left_along_rear_elbow_up) <= t178
-    del t425
-    t426 = _runtime.select(spent_along_rear_elbow_up, t416 / (t179 - t413), 0.0)
-    del t416
-    t427 = -(_runtime.FEASIBILITY * (play * (1.0 + t426)))
-    del t426
-    t428 = t414 & (t149 <= t420) & (t149 <= t421) & (t427 <= left_along_rear_elbow_up)
-    del t414, t420, t421, t427
-    t429 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t430 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t431 = v_2_beta_rear_elbow_up * t429 / (t413 * t413 + t430)
-    del t413, t429, t430
-    t432 = whole_y_rear_elbow_up * (t431 * _runtime.sign(-t424))
-    del t424, t431
-    t433 = _runtime.select(spent_along_rear_elbow_up, t419 + t432, t419)
-    del t419, t432
-    t434 = whole_y_rear_elbow_up + t433
-    t435 = whole_y_rear_elbow_up - t433
-    del t433, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t434, t174)
-    above_beta_rear_elbow_up = np.maximum(t435, t174)
-    t436 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t437 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t438 = t436 * t437
-    del t436
-    t439 = t418 - v_2_beta_rear_elbow_up * t438
-    del t418, v_2_beta_rear_elbow_up
-    t440 = L1 + t439
-    t441 = t428 & (t149 <= t434) & (t149 <= t435) & (t149 <= t440)
-    del t428, t434, t435
-    t442 = L1 - t439
-    unreachable_3 = np.logical_not(t441 & (t149 <= t442))
-    del t441
-    t443 = _runtime.poison(invalid | unreachable_3)
-    t444 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t445 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t446 = t444 + t445
-    del t444
-    below_alpha_rear_elbow_up = np.maximum(t440, t174)
-    del t440
-    above_alpha_rear_elbow_up = np.maximum(t442, t174)
-    del t442
-    t447 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t448 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t449 = t447 * t448
-    del t447
-    t450 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t451 = np.arctan2(t449, t448 * t450)
-    del t448, t450
-    t452 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t453 = t452 + (t337 - t445)
-    del t337, t445, t452
-    t454 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t455 = t451 - np.arctan2(t438, t437 * t454)
-    del t437, t454
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t212)
-    del t212
-    p_1_rear_elbow_down = t213 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t213
-    t456 = t214 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t214
-    t457 = v_2 * p_1_rear_elbow_down + v_1 * t456
-    margin_alpha_rear_elbow_down = t98 - np.abs(t457)
-    del t98
-    t458 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t459 = np.maximum(-t458, margin_alpha_rear_elbow_down)
-    del t458
-    spent_alpha_rear_elbow_down = t459 <= t101
-    del t101, t459
-    t460 = _runtime.sign(-t457) * (v_1 * p_1_rear_elbow_down - v_2 * t456)
-    del t457
-    t461 = t103 - t460
-    del t103, t460
-    t462 = np.abs(t461)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t113, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t462 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t115, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t114 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t463 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t464 = _runtime.select(spent_alpha_rear_elbow_down, t463, 0.0)
-    del t463
-    t465 = -(_runtime.FEASIBILITY * (t77 + t464)) <= margin_alpha_rear_elbow_down
-    del t464
-    t466 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    del gain_1_alpha_rear_elbow_down
-    t467 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    del gain_0_alpha_rear_elbow_down
-    t468 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t466 / (t121 + t466 + t467), 0.0)
-    del t121, t466, t467
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t468, 0.0)
+    t465 = v_2_beta_rear_elbow_up * (t464 / total_beta_0_rear_elbow_up)
+    del t464, total_beta_0_rear_elbow_up
+    t466 = t449 - t465
+    del t465
+    left_along_rear_elbow_up = L1 - np.abs(t466)
+    t467 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t467, left_along_rear_elbow_up) <= t167
+    del t467
+    t468 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t469 = t468 | spent_beta_rear_elbow_up
     del t468
-    t469 = t123 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t123
-    t470 = t77 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t469 / (t114 + t470)), 0.0)
-    del t114, t469, t470
-    t471 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t472 = t77 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t77
-    t473 = 1.0 / (t462 + t472)
-    del t462, t472
-    t474 = -(heavy_0_alpha_rear_elbow_down * t471 * t473)
-    del heavy_0_alpha_rear_elbow_down
-    t475 = -(t471 * t473)
-    del t471, t473
-    t476 = (t474 <= 9.094947017729282e-13) & (0.0 < t475)
-    del t474
-    t477 = _runtime.sign(-t461) * _runtime.select(t476, t475, 0.0)
-    del t461, t475, t476
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t477, 0.0)
-    del t477
-    t478 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
-    del aside_alpha_rear_elbow_down
-    t479 = t478 - t109 * (drawn * turn_alpha_rear_elbow_down)
-    del t478
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t479, 0.0)
-    del t479
-    t480 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t481 = np.sqrt(1.0 + t480)
+    t470 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
+    t471 = np.arctan2(_runtime.select(t469, t337 * t470, 0.0), 1.0)
+    del t337, t470
+    t472 = _runtime.select(nowhere, 0.0, t171 + t172)
+    del t171, t172
+    t473 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
+    t474 = _runtime.select(spent_alpha_rear_elbow_up, t473, 0.0)
+    del spent_alpha_rear_elbow_up, t473
+    t475 = -(_runtime.FEASIBILITY * (t84 + t474)) <= margin_alpha_rear_elbow_up
+    del margin_alpha_rear_elbow_up, t474
+    t476 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
+    t477 = _runtime.select(spent_beta_rear_elbow_up, t476, 0.0)
+    del spent_beta_rear_elbow_up, t476
+    t478 = -(_runtime.FEASIBILITY * (t130 + t477)) <= -t419
+    del t419, t477
+    t479 = t190 & t475 & t478 & (t195 <= t460 - t457) & (t195 <= -(t457 + t460))
+    del t460, t475, t478
+    t480 = _runtime.select(spent_along_rear_elbow_up, t458 / (t197 - t457), 0.0)
+    del t458
+    t481 = -(_runtime.FEASIBILITY * (play * (1.0 + t480)))
     del t480
-    t482 = 1.0 / t481
-    t483 = p_1_rear_elbow_down * t482 - t456 * lean_alpha_rear_elbow_down * t482
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t483, p_1_rear_elbow_down)
-    del t483
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t484 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t485 = 1.0 / (t481 * np.sqrt(1.0 + t484))
-    del t481, t484
-    t486 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t487 = t485 + t485 * t486
-    del t486
-    t488 = lean_alpha_rear_elbow_down * t485 - turn_alpha_rear_elbow_down * t485
-    del t485
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t487 + v_2 * t488, v_1)
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t489 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t490 = np.maximum(t489 * 9.094947017729282e-13, -t489)
-    spent_beta_rear_elbow_down = t490 <= t139
-    del t139, t490
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t487 - v_1 * t488, v_2)
-    del t487, t488, v_1, v_2
-    t491 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
-    del whole_beta_rear_elbow_down
-    t492 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t493 = _runtime.select(spent_alpha_rear_elbow_down, t482 * t492 + t456 * t482, t456)
-    del t456, t482, t492
-    t494 = t493 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    t495 = drawn * t491 - t143 * t494
-    del t143
-    t496 = np.abs(t495)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t113, 1.0)
-    del t113
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t491 + t494)
-    del t491, t494
-    t497 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t115, 1.0)
-    del t115
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t497 / heavy_1_beta_rear_elbow_down, 0.0)
-    t498 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t499 = _runtime.select(spent_beta_rear_elbow_down, t498, 0.0)
+    t482 = t479 & (t195 <= t462) & (t195 <= t463) & (t481 <= left_along_rear_elbow_up)
+    del t462, t463, t479, t481
+    t483 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t484 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t485 = v_2_beta_rear_elbow_up * t483 / (t457 * t457 + t484)
+    del t457, t483, t484
+    t486 = whole_y_rear_elbow_up * (t485 * _runtime.sign(-t466))
+    del t466, t485
+    t487 = _runtime.select(spent_along_rear_elbow_up, t461 + t486, t461)
+    del spent_along_rear_elbow_up, t461, t486
+    t488 = whole_y_rear_elbow_up + t487
+    t489 = whole_y_rear_elbow_up - t487
+    del t487, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t488, t162)
+    above_beta_rear_elbow_up = np.maximum(t489, t162)
+    t490 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t491 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t492 = t490 * t491
+    del t490
+    t493 = t449 - v_2_beta_rear_elbow_up * t492
+    del t449, v_2_beta_rear_elbow_up
+    t494 = L1 + t493
+    t495 = t482 & (t195 <= t488) & (t195 <= t489) & (t195 <= t494)
+    del t482, t488, t489
+    t496 = L1 - t493
+    unreachable_3 = np.logical_not(t495 & (t195 <= t496))
+    del t495
+    t497 = _runtime.poison(invalid | unreachable_3)
+    t498 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t499 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t500 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t501 = np.arctan2(t499, 1.0 - t500)
+    del t499, t500
+    t502 = t498 + t501
     del t498
-    t500 = -(_runtime.FEASIBILITY * (t118 + t499)) <= -t489
-    del t499
-    t501 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    del gain_1_beta_rear_elbow_down
-    t502 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down
-    t503 = _runtime.select(-t489 < 0.0, t501 / (t151 + t501 + t502), 0.0)
-    del t151, t501, t502
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t503, 0.0)
+    below_alpha_rear_elbow_up = np.maximum(t494, t162)
+    del t494
+    above_alpha_rear_elbow_up = np.maximum(t496, t162)
+    del t496
+    t503 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t504 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t505 = t503 * t504
     del t503
-    lack_beta_rear_elbow_down = t489 * (1.0 - share_beta_rear_elbow_down)
-    t504 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t505 = t118 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t506 = 1.0 / (t496 + t505)
-    del t496, t505
-    t507 = lack_beta_rear_elbow_down * t506
-    del lack_beta_rear_elbow_down
-    t508 = (t504 * t506 <= 9.094947017729282e-13) & (0.0 < t507)
+    t506 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t507 = np.arctan2(t505, t504 * t506)
     del t504, t506
-    t509 = _runtime.sign(-t495) * _runtime.select(t508, t507, 0.0)
-    del t495, t507, t508
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t509, 0.0)
-    del t509
-    t510 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t511 = t118 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t118
-    t512 = t489 * share_beta_rear_elbow_down * t510 / (t497 + t511)
-    del share_beta_rear_elbow_down, t489, t497, t510, t511
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t512, 0.0)
-    del t512
-    t513 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
-    del aside_beta_rear_elbow_down
-    t514 = t513 - t109 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t109, t513
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t514, 0.0)
-    del t514
-    t515 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t516 = np.sqrt(1.0 + t515)
+    t508 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t509 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
+    t510 = t374 - (t501 - np.arctan2(t508, 1.0 - t509))
+    del t374, t501, t508, t509
+    t511 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t512 = t507 - np.arctan2(t492, t491 * t511)
+    del t491, t511
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t230)
+    del t230
+    p_1_rear_elbow_down = t231 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t231
+    t513 = t232 - higher * ctheta2A_rear_elbow_down
+    del higher, t232
+    t514 = v_2 * p_1_rear_elbow_down + v_1 * t513
+    margin_alpha_rear_elbow_down = t80 - np.abs(t514)
+    del t80
+    t515 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t516 = np.maximum(-t515, margin_alpha_rear_elbow_down)
     del t515
-    t517 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t518 = 1.0 / (t516 * np.sqrt(1.0 + t517))
-    del t517
-    t519 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t520 = t518 + t518 * t519
-    del t519
-    t521 = lean_beta_rear_elbow_down * t518 - turn_beta_rear_elbow_down * t518
-    del t518
-    t522 = v_1_alpha_rear_elbow_down * t520 + v_2_alpha_rear_elbow_down * t521
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t522, v_1_alpha_rear_elbow_down)
-    del t522
+    spent_alpha_rear_elbow_down = t516 <= t85
+    del t516, t85
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t90, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t517 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    aside_rate_rear_elbow_down = _runtime.select(t97, -(t98 * (tilt * stheta2A_front_elbow_down)), 0.0)
+    del stheta2A_front_elbow_down, tilt
+    t518 = slope_aside_alpha * aside_rate_rear_elbow_down
+    del slope_aside_alpha
+    fore_rate_rear_elbow_down = _runtime.select(t97, ctheta2A_rear_elbow_down, 1.0)
+    del ctheta2A_rear_elbow_down, t97
+    t519 = _runtime.sign(-t514) * (v_1 * p_1_rear_elbow_down - v_2 * t513)
+    del t514
+    slope_alpha_rear_elbow_down = t518 - fore_rate_rear_elbow_down * (t99 - t519)
+    del t518, t519, t99
+    t520 = np.abs(slope_alpha_rear_elbow_down)
+    t521 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t522 = drawn * fore_rate_rear_elbow_down
+    t523 = t521 - t98 * t522
+    del t521
+    t524 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t525 = np.sqrt(t109 + L1 * (t523 * t523) + fore * t524)
+    del fore, t109, t523, t524
+    t526 = t88 * (t105 + t89 * t525 / 2000000.0)
+    del t105, t525, t88, t89
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t526, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t520 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t527 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t528 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t517 / (t93 + t517 + t527), 0.0)
+    del t517, t527, t93
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t528, 0.0)
+    del t528
+    t529 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t113
+    t530 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t529 / (t87 + t530)), 0.0)
+    del t529, t530, t87
+    t531 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del share_alpha_rear_elbow_down
+    t532 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t533 = 1.0 / (t520 + t532)
+    del t520, t532
+    t534 = -(heavy_0_alpha_rear_elbow_down * t531 * t533)
+    del heavy_0_alpha_rear_elbow_down
+    t535 = -(t531 * t533)
+    del t531, t533
+    t536 = (t534 <= 9.094947017729282e-13) & (0.0 < t535)
+    del t534
+    t537 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t536, t535, 0.0)
+    del slope_alpha_rear_elbow_down, t535, t536
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t537, 0.0)
+    del t537
+    t538 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t539 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t540 = aside_alpha_rear_elbow_down + t538 + t539 - t98 * (t522 * turn_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t538
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t540, 0.0)
+    del t540
+    t541 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t542 = np.sqrt(1.0 + t541)
+    del t541
+    t543 = 1.0 / t542
+    t544 = p_1_rear_elbow_down * t543 - t513 * lean_alpha_rear_elbow_down * t543
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t544, p_1_rear_elbow_down)
+    del t544
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t539, 0.0)
+    del t539
+    t545 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t546 = 1.0 / (t542 * np.sqrt(1.0 + t545))
+    del t542, t545
+    t547 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t548 = t546 + t546 * t547
+    del t547
+    t549 = fore_turn_alpha_rear_elbow_down * t546 - lean_alpha_rear_elbow_down * t546
+    del t546
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t548 - v_2 * t549, v_1)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t550 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t551 = np.maximum(t550 * 9.094947017729282e-13, -t550)
+    spent_beta_rear_elbow_down = t551 <= t131
+    del t131, t551
+    t552 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t553 = _runtime.select(spent_alpha_rear_elbow_down, t543 * t552 + t513 * t543, t513)
+    del t513, t543, t552
+    t554 = t553 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t549 + v_2 * t548, v_2)
+    del t548, t549, v_1, v_2
+    t555 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    slope_aside_beta_rear_elbow_down = L1 * (t554 + t555)
+    t556 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t90, 1.0)
+    del t90
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t556 / heavy_1_beta_rear_elbow_down, 0.0)
+    t557 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t558 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t559 = fore_rate_rear_elbow_down * (drawn * t555 - t138 * t554)
+    del drawn, t138, t554, t555
+    slope_beta_rear_elbow_down = t558 - t559
+    del t558, t559
+    t560 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t526, 1.0)
+    del t526
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t560 / heavy_0_beta_rear_elbow_down, 0.0)
+    t561 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t562 = _runtime.select(-t550 < 0.0, t557 / (t137 + t557 + t561), 0.0)
+    del t137, t557, t561
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t562, 0.0)
+    del t562
+    t563 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t564 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down
+    t565 = t550 * share_beta_rear_elbow_down * t563 / (t556 + t564)
+    del t556, t563, t564
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t565, 0.0)
+    del t565
+    lack_beta_rear_elbow_down = t550 * (1.0 - share_beta_rear_elbow_down)
+    del share_beta_rear_elbow_down
+    t566 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t567 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t568 = 1.0 / (t560 + t567)
+    del t560, t567
+    t569 = lack_beta_rear_elbow_down * t568
+    del lack_beta_rear_elbow_down
+    t570 = (t566 * t568 <= 9.094947017729282e-13) & (0.0 < t569)
+    del t566, t568
+    t571 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t570, t569, 0.0)
+    del slope_beta_rear_elbow_down, t569, t570
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t571, 0.0)
+    del t571
+    t572 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del aside_rate_rear_elbow_down
+    t573 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del fore_rate_rear_elbow_down
+    t574 = aside_beta_rear_elbow_down + t572 + t573 - t98 * (t522 * turn_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t522, t572, t98
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t574, 0.0)
+    del t574
+    t575 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t576 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t577 = np.sqrt(1.0 + t576)
+    del t576
+    t578 = 1.0 / t577
+    t579 = _runtime.select(spent_beta_rear_elbow_down, t575 * t578 + t553 * t578, t553)
+    del t575
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t573, 0.0)
+    del t573
+    t580 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t581 = 1.0 / (t577 * np.sqrt(1.0 + t580))
+    del t577, t580
+    t582 = fore_turn_beta_rear_elbow_down * t581 - lean_beta_rear_elbow_down * t581
+    t583 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t584 = t581 + t581 * t583
+    del t581, t583
+    t585 = v_1_alpha_rear_elbow_down * t582 + v_2_alpha_rear_elbow_down * t584
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585, v_2_alpha_rear_elbow_down)
+    del t585
+    t586 = v_1_alpha_rear_elbow_down * t584 - v_2_alpha_rear_elbow_down * t582
+    del t582, t584, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t586, v_1_alpha_rear_elbow_down)
+    del t586, v_1_alpha_rear_elbow_down
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t523 = 1.0 / t516
-    del t516
-    t524 = p_1_alpha_rear_elbow_down * t523 - t493 * lean_beta_rear_elbow_down * t523
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t524, p_1_alpha_rear_elbow_down)
-    del t524
-    t525 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t526 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t587 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t588 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t587 <= _runtime.VANISHING * (64.0 * t588)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t588, -t587)
+    t589 = t579 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t590 = p_1_alpha_rear_elbow_down * t578 - t578 * (t553 * lean_beta_rear_elbow_down)
+    del t553, t578
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t590, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t590
+    t591 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t527 = t75 & t465 & t500 & (t149 <= t525 - t526) & (t149 <= -(t526 + t525))
-    del t465, t500, t75
-    t528 = v_2_alpha_rear_elbow_down * t520 - v_1_alpha_rear_elbow_down * t521
-    del t520, t521, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t528, v_2_alpha_rear_elbow_down)
-    del t528, v_2_alpha_rear_elbow_down
-    t529 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t526 <= _runtime.VANISHING * (64.0 * t529)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t529, -t526)
-    t530 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    del p_1_alpha_rear_elbow_down
-    t531 = _runtime.select(spent_beta_rear_elbow_down, t523 * t530 + t493 * t523, t493)
-    del t493, t523, t530
-    t532 = t531 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t533 = _runtime.select(parallel_rear_elbow_down, t532, t525)
-    del t525, t532
-    t534 = whole_y_rear_elbow_down + t533
-    t535 = whole_y_rear_elbow_down - t533
-    below_beta_0_rear_elbow_down = np.maximum(t534, t174)
-    above_beta_0_rear_elbow_down = np.maximum(t535, t174)
-    t536 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t592 = _runtime.select(parallel_rear_elbow_down, t589, t591)
+    del t589
+    t593 = whole_y_rear_elbow_down + t592
+    below_beta_0_rear_elbow_down = np.maximum(t593, t162)
+    t594 = whole_y_rear_elbow_down - t592
+    above_beta_0_rear_elbow_down = np.maximum(t594, t162)
+    t595 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t537 = v_2_beta_rear_elbow_down * (t536 / total_beta_0_rear_elbow_down)
-    del t536, total_beta_0_rear_elbow_down
-    t538 = t531 - t537
-    del t537
-    left_along_rear_elbow_down = L1 - np.abs(t538)
-    t539 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t540 = np.maximum(-t539, left_along_rear_elbow_down)
-    del t539
-    spent_along_rear_elbow_down = t540 <= t178
-    del t178, t540
-    t541 = _runtime.select(spent_along_rear_elbow_down, t529 / (t179 - t526), 0.0)
-    del t179, t529
-    t542 = -(_runtime.FEASIBILITY * (play * (1.0 + t541)))
-    del play, t541
-    t543 = t527 & (t149 <= t534) & (t149 <= t535) & (t542 <= left_along_rear_elbow_down)
-    del t527, t534, t535, t542
-    t544 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
-    del left_along_rear_elbow_down
-    t545 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t546 = v_2_beta_rear_elbow_down * t544 / (t526 * t526 + t545)
-    del t526, t544, t545
-    t547 = whole_y_rear_elbow_down * (t546 * _runtime.sign(-t538))
-    del t538, t546
-    t548 = _runtime.select(spent_along_rear_elbow_down, t533 + t547, t533)
-    del t533, t547
-    t549 = whole_y_rear_elbow_down + t548
-    t550 = whole_y_rear_elbow_down - t548
-    del t548, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t549, t174)
-    above_beta_rear_elbow_down = np.maximum(t550, t174)
-    t551 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
-    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t552 = 1.0 / total_beta_rear_elbow_down
-    del total_beta_rear_elbow_down
-    t553 = t551 * t552
-    del t551
-    t554 = t531 - v_2_beta_rear_elbow_down * t553
-    del t531, v_2_beta_rear_elbow_down
-    t555 = L1 + t554
-    t556 = t543 & (t149 <= t549) & (t149 <= t550) & (t149 <= t555)
-    del t543, t549, t550
-    t557 = L1 - t554
-    unreachable_4 = np.logical_not(t556 & (t149 <= t557))
-    del t149, t556
-    t558 = _runtime.poison(invalid | unreachable_4)
-    t559 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
-    del out_front_elbow_down, up_front_elbow_down
-    t560 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
-    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t561 = _runtime.select(folded, 0.0, t559) + t560
-    del t559
-    below_alpha_rear_elbow_down = np.maximum(t555, t174)
-    del t555
-    above_alpha_rear_elbow_down = np.maximum(t557, t174)
-    del t174, t557
-    t562 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t563 = 1.0 / total_alpha_rear_elbow_down
-    del total_alpha_rear_elbow_down
-    t564 = t562 * t563
-    del t562
-    t565 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t566 = np.arctan2(t564, t563 * t565)
-    del t563, t565
-    t567 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    t596 = v_2_beta_rear_elbow_down * (t595 / total_beta_0_rear_elbow_down)
+    del t595, total_beta_0_rear_elbow_down
+    t597 = t579 - t596
+    del t596
+    left_along_rear_elbow_down = L1 - np.abs(t597)
+    t598 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t599 = np.maximum(-t598, left_along_rear_elbow_down)
+    del t598
+    spent_along_rear_elbow_down = t599 <= t167
+    del t167, t599
+    t600 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t601 = t600 | spent_beta_rear_elbow_down
+    del t600
+    t602 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t568 = t567 + (t205 - t560)
-    del t205, t560, t567
-    t569 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t603 = np.arctan2(_runtime.select(t601, t170 * t602, 0.0), 1.0)
+    del t170, t602
+    t604 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
+    t605 = _runtime.select(spent_alpha_rear_elbow_down, t604, 0.0)
+    del spent_alpha_rear_elbow_down, t604
+    t606 = -(_runtime.FEASIBILITY * (t84 + t605)) <= margin_alpha_rear_elbow_down
+    del margin_alpha_rear_elbow_down, t605, t84
+    t607 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
+    t608 = _runtime.select(spent_beta_rear_elbow_down, t607, 0.0)
+    del spent_beta_rear_elbow_down, t607
+    t609 = -(_runtime.FEASIBILITY * (t130 + t608)) <= -t550
+    del t130, t550, t608
+    t610 = t190 & t606 & t609 & (t195 <= t591 - t587) & (t195 <= -(t587 + t591))
+    del t190, t591, t606, t609
+    t611 = _runtime.select(spent_along_rear_elbow_down, t588 / (t197 - t587), 0.0)
+    del t197, t588
+    t612 = -(_runtime.FEASIBILITY * (play * (1.0 + t611)))
+    del play, t611
+    t613 = t610 & (t195 <= t593) & (t195 <= t594) & (t612 <= left_along_rear_elbow_down)
+    del t593, t594, t610, t612
+    t614 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    del left_along_rear_elbow_down
+    t615 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t616 = v_2_beta_rear_elbow_down * t614 / (t587 * t587 + t615)
+    del t587, t614, t615
+    t617 = whole_y_rear_elbow_down * (t616 * _runtime.sign(-t597))
+    del t597, t616
+    t618 = _runtime.select(spent_along_rear_elbow_down, t592 + t617, t592)
+    del spent_along_rear_elbow_down, t592, t617
+    t619 = whole_y_rear_elbow_down + t618
+    t620 = whole_y_rear_elbow_down - t618
+    del t618, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t619, t162)
+    above_beta_rear_elbow_down = np.maximum(t620, t162)
+    t621 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
+    t622 = 1.0 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
+    t623 = t621 * t622
+    del t621
+    t624 = t579 - v_2_beta_rear_elbow_down * t623
+    del t579, v_2_beta_rear_elbow_down
+    t625 = L1 + t624
+    t626 = t613 & (t195 <= t619) & (t195 <= t620) & (t195 <= t625)
+    del t613, t619, t620
+    t627 = L1 - t624
+    unreachable_4 = np.logical_not(t626 & (t195 <= t627))
+    del t195, t626
+    t628 = _runtime.poison(invalid | unreachable_4)
+    t629 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    del out_front_elbow_down, up_front_elbow_down
+    t630 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t631 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
+    t632 = np.arctan2(t630, 1.0 - t631)
+    del t630, t631
+    t633 = _runtime.select(folded, 0.0, t629) + t632
+    del t629
+    below_alpha_rear_elbow_down = np.maximum(t625, t162)
+    del t625
+    above_alpha_rear_elbow_down = np.maximum(t627, t162)
+    del t162, t627
+    t634 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t635 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t636 = t634 * t635
+    del t634
+    t637 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
+    t638 = np.arctan2(t636, t635 * t637)
+    del t635, t637
+    t639 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t640 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
+    t641 = t222 - (t632 - np.arctan2(t639, 1.0 - t640))
+    del t222, t632, t639, t640
+    t642 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t570 = t566 - np.arctan2(t553, t552 * t569)
-    del t552, t569
-    t571 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t643 = t638 - np.arctan2(t623, t622 * t642)
+    del t622, t642
+    t644 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t572 = t571 | folded | short
-    del folded, short, t571
-    t573 = spent_along | spent_alpha | spent_beta
-    del spent_along, spent_alpha, spent_beta
-    t574 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t575 = t574 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t574
-    t576 = t575 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t575
-    t577 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t645 = t644 | folded | short
+    del folded, short, t644
+    t646 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t647 = t646 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t646
+    t648 = t647 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t647
+    t649 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t578 = t576 * t577
-    del t576, t577
-    t579 = np.abs(p_1_beta + v_1_beta * t189) + np.abs(t190 - L1 * t199)
-    del p_1_beta, t189, t190, t199, v_1_beta
-    t580 = 1125899906842624.0 * _runtime.select(t573, t579, 0.0)
-    del t579
-    t581 = _runtime.select(t573, t578, 1.0) <= _runtime.DETERMINED * t580
-    del t573, t580
-    t582 = _runtime.status(invalid, unreachable, t572 | parallel | t581)
-    del parallel, t581, unreachable
-    t583 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t584 = t583 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t583
-    t585 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t322
-    del p_1_beta_front_elbow_down, t322, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t584, np.abs(t585) + np.abs(t323 - L1 * t333), 0.0)
-    del t323, t333, t585
-    t586 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t650 = t648 * t649
+    del t648, t649
+    t651 = np.abs(p_1_beta + v_1_beta * t207) + np.abs(t208 - L1 * t217)
+    del p_1_beta, t207, t208, t217, v_1_beta
+    t652 = 1125899906842624.0 * _runtime.select(t168, t651, 0.0)
+    del t651
+    t653 = _runtime.select(t168, t650, 1.0) <= _runtime.DETERMINED * t652
+    del t168, t652
+    t654 = _runtime.status(invalid, unreachable, t645 | parallel | t653)
+    del parallel, t653, unreachable
+    t655 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t358
+    del p_1_beta_front_elbow_down, t358, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t335, np.abs(t655) + np.abs(t359 - L1 * t371), 0.0)
+    del t359, t371, t655
+    t656 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t587 = t572 | parallel_front_elbow_down | (_runtime.select(t584, t578, 1.0) <= t586)
-    del parallel_front_elbow_down, t584, t586
-    t588 = _runtime.status(invalid, unreachable_2, t587)
-    del t587, unreachable_2
-    t589 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t590 = t589 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t589
-    t591 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t438
-    del p_1_beta_rear_elbow_up, t438, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t590, np.abs(t591) + np.abs(t439 - L1 * t449), 0.0)
-    del t439, t449, t591
-    t592 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t657 = t645 | parallel_front_elbow_down | (_runtime.select(t335, t650, 1.0) <= t656)
+    del parallel_front_elbow_down, t335, t656
+    t658 = _runtime.status(invalid, unreachable_2, t657)
+    del t657, unreachable_2
+    t659 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t492
+    del p_1_beta_rear_elbow_up, t492, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t469, np.abs(t659) + np.abs(t493 - L1 * t505), 0.0)
+    del t493, t505, t659
+    t660 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t593 = t572 | parallel_rear_elbow_up | (_runtime.select(t590, t578, 1.0) <= t592)
-    del parallel_rear_elbow_up, t590, t592
-    t594 = _runtime.status(invalid, unreachable_3, t593)
-    del t593, unreachable_3
-    t595 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t596 = t595 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t595
-    t597 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t553
-    del p_1_beta_rear_elbow_down, t553, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t596, np.abs(t597) + np.abs(t554 - L1 * t564), 0.0)
-    del t554, t564, t597
-    t598 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t661 = t645 | parallel_rear_elbow_up | (_runtime.select(t469, t650, 1.0) <= t660)
+    del parallel_rear_elbow_up, t469, t660
+    t662 = _runtime.status(invalid, unreachable_3, t661)
+    del t661, unreachable_3
+    t663 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t623
+    del p_1_beta_rear_elbow_down, t623, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t601, np.abs(t663) + np.abs(t624 - L1 * t636), 0.0)
+    del t624, t636, t663
+    t664 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t599 = t572 | parallel_rear_elbow_down | (_runtime.select(t596, t578, 1.0) <= t598)
-    del parallel_rear_elbow_down, t572, t578, t596, t598
-    t600 = _runtime.status(invalid, unreachable_4, t599)
-    del invalid, t599, unreachable_4
+    t665 = t645 | parallel_rear_elbow_down | (_runtime.select(t601, t650, 1.0) <= t664)
+    del parallel_rear_elbow_down, t601, t645, t650, t664
+    t666 = _runtime.status(invalid, unreachable_4, t665)
+    del invalid, t665, unreachable_4
     return (
-        t57 + t194,
-        _runtime.wrap(t197 - t201) + t194,
-        _runtime.wrap(t206 + t208) + t194,
-        _runtime.wrap(t197 + t201) + t194,
-        _runtime.wrap(t206 - t208) + t194,
-        t209 + t194,
-        t57 + t327,
-        _runtime.wrap(t330 - t335) + t327,
-        _runtime.wrap(t338 + t340) + t327,
-        _runtime.wrap(t330 + t335) + t327,
-        _runtime.wrap(t338 - t340) + t327,
-        t209 + t327,
-        t341 + t443,
-        _runtime.wrap(t446 - t451) + t443,
-        _runtime.wrap(t453 + t455) + t443,
-        _runtime.wrap(t446 + t451) + t443,
-        _runtime.wrap(t453 - t455) + t443,
-        t209 + t443,
-        t341 + t558,
-        _runtime.wrap(t561 - t566) + t558,
-        _runtime.wrap(t568 + t570) + t558,
-        _runtime.wrap(t561 + t566) + t558,
-        _runtime.wrap(t568 - t570) + t558,
-        t209 + t558,
-        t582,
-        t588,
-        t594,
-        t600,
+        t174 + t212,
+        _runtime.wrap(t215 - t219) + t212,
+        _runtime.wrap(t224 + t226) + t212,
+        _runtime.wrap(t215 + t219) + t212,
+        _runtime.wrap(t224 - t226) + t212,
+        t227 + t212,
+        _runtime.wrap(t338 - t173) + t363,
+        _runtime.wrap(t368 - t373) + t363,
+        _runtime.wrap(t377 + t379) + t363,
+        _runtime.wrap(t368 + t373) + t363,
+        _runtime.wrap(t377 - t379) + t363,
+        t227 + t363,
+        _runtime.wrap(t471 - t472) + t497,
+        _runtime.wrap(t502 - t507) + t497,
+        _runtime.wrap(t510 + t512) + t497,
+        _runtime.wrap(t502 + t507) + t497,
+        _runtime.wrap(t510 - t512) + t497,
+        t227 + t497,
+        _runtime.wrap(t603 - t472) + t628,
+        _runtime.wrap(t633 - t638) + t628,
+        _runtime.wrap(t641 + t643) + t628,
+        _runtime.wrap(t633 + t638) + t628,
+        _runtime.wrap(t641 - t643) + t628,
+        t227 + t628,
+        t654,
+        t658,
+        t662,
+        t666,
     )
 
 
@@ -3058,12 +3178,12 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
     t66 = v_1 * sigma_uv
-    p_across_u = sigma_uv * t62
+    part_y = sigma_uv * t62
     del t62
-    t67 = -(t66 + p_across_u)
+    t67 = -(t66 + part_y)
     t68 = t65 <= t67
-    t69 = p_across_u - t66
-    del p_across_u
+    t69 = part_y - t66
+    del part_y
     t70 = t65 <= t69
     t71 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
     below_beta_0 = np.maximum(t67, t71)
@@ -3084,26 +3204,23 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     unreachable = np.logical_not(t77)
     del t77
     t78 = _runtime.poison(invalid | unreachable)
-    t79 = np.arctan2(0.0, 1.0)
-    t80 = t79 + t79
-    del t79
-    t81 = t80 + np.arctan2(up, -out_rear_elbow_up)
+    t79 = np.arctan2(up, -out_rear_elbow_up)
     below_alpha = np.maximum(t75, t71)
     del t75
     above_alpha = np.maximum(t76, t71)
     del t76
-    t82 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    t80 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
     del above_alpha, below_alpha
-    t83 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
+    t81 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
     del above_beta_0, below_beta_0, t72
-    t84 = t82 - t83
-    del t83
-    t85 = np.arctan2(t44, t42)
+    t82 = t80 - t81
+    del t81
+    t83 = np.arctan2(t44, t42)
     del t42, t44
-    t86 = np.arctan2(L_2W, a_3W)
+    t84 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t87 = t85 - t86
-    t88 = _runtime.wrap(principal_pitch)
+    t85 = t83 - t84
+    t86 = _runtime.wrap(principal_pitch)
     del principal_pitch
     c_relative_front_elbow_down = t43 - t45
     del t43, t45
@@ -3111,290 +3228,290 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t46, t47
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t89 = np.abs(whole_alpha_front_elbow_down)
+    t87 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
     out_front_elbow_down = t52 + t53
     del t52, t53
-    t90 = t50 - t51
+    t88 = t50 - t51
     del t50, t51
-    t91 = out_front_elbow_down * out_front_elbow_down + t90 * t90
-    t92 = 1.0 / np.sqrt(t91)
-    del t91
-    ctheta2A_front_elbow_down = out_front_elbow_down * t92
-    t93 = ahead * ctheta2A_front_elbow_down
-    t94 = t90 * t92
-    del t92
-    t95 = higher * t94
-    p_1_front_elbow_down = t93 - t95
-    t96 = ahead * t94
-    del ahead, t94
-    t97 = higher * ctheta2A_front_elbow_down
+    t89 = out_front_elbow_down * out_front_elbow_down + t88 * t88
+    t90 = 1.0 / np.sqrt(t89)
+    del t89
+    ctheta2A_front_elbow_down = out_front_elbow_down * t90
+    t91 = ahead * ctheta2A_front_elbow_down
+    t92 = t88 * t90
+    del t90
+    t93 = higher * t92
+    p_1_front_elbow_down = t91 - t93
+    t94 = ahead * t92
+    del ahead, t92
+    t95 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t98 = t96 + t97
-    t99 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t98
-    margin_alpha_front_elbow_down = t89 - np.abs(t99)
-    del t99
-    margin_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
-    t100 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
+    t96 = t94 + t95
+    t97 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t96
+    margin_alpha_front_elbow_down = t87 - np.abs(t97)
+    del t97
+    margin_beta_front_elbow_down = t87 - np.abs(L1 * p_1_front_elbow_down)
+    t98 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t101 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t99 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t102 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t103 = t101 - t102
+    t100 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t101 = t99 - t100
+    t102 = t65 <= t101
+    t103 = -(t100 + t99)
+    del t99
     t104 = t65 <= t103
-    t105 = -(t102 + t101)
+    below_beta_0_front_elbow_down = np.maximum(t101, t71)
     del t101
-    t106 = t65 <= t105
-    below_beta_0_front_elbow_down = np.maximum(t103, t71)
+    above_beta_0_front_elbow_down = np.maximum(t103, t71)
     del t103
-    above_beta_0_front_elbow_down = np.maximum(t105, t71)
-    del t105
-    t107 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t105 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t108 = v_2_front_elbow_down * (t107 / total_beta_0_front_elbow_down)
+    t106 = v_2_front_elbow_down * (t105 / total_beta_0_front_elbow_down)
     del total_beta_0_front_elbow_down
-    along_u_front_elbow_down = t98 + t108
-    del t108, t98
+    along_u_front_elbow_down = t96 + t106
+    del t106, t96
     left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t109 = t100 & t104 & t106 & t104 & t106 & (t65 <= left_along_front_elbow_down)
-    del t100
-    t110 = L1 - along_u_front_elbow_down
-    t111 = L1 + along_u_front_elbow_down
+    t107 = t98 & t102 & t104 & t102 & t104 & (t65 <= left_along_front_elbow_down)
+    del t98
+    t108 = L1 - along_u_front_elbow_down
+    t109 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t112 = t109 & t104 & t106 & (t65 <= t110) & (t65 <= t111)
-    del t104, t106, t109
-    unreachable_2 = np.logical_not(t112)
-    del t112
-    t113 = _runtime.poison(invalid | unreachable_2)
-    t114 = t80 + np.arctan2(-t90, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t110, t71)
+    t110 = t107 & t102 & t104 & (t65 <= t108) & (t65 <= t109)
+    del t102, t104, t107
+    unreachable_2 = np.logical_not(t110)
     del t110
-    above_alpha_front_elbow_down = np.maximum(t111, t71)
-    del t111
-    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t116 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t111 = _runtime.poison(invalid | unreachable_2)
+    t112 = np.arctan2(-t88, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t108, t71)
+    del t108
+    above_alpha_front_elbow_down = np.maximum(t109, t71)
+    del t109
+    t113 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t114 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t117 = np.arctan2(t115, 2.0 * np.sqrt(t116))
-    del t115, t116
-    t118 = t85 + t86
-    del t85, t86
-    t119 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    t115 = np.arctan2(t113, 2.0 * np.sqrt(t114))
+    del t113, t114
+    t116 = t83 + t84
+    del t83, t84
+    t117 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t120 = t117 - np.arctan2(t107, 2.0 * np.sqrt(t119))
-    del t107, t119
-    t121 = _runtime.wrap(-(t13 + t12))
+    t118 = t115 - np.arctan2(t105, 2.0 * np.sqrt(t117))
+    del t105, t117
+    t119 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t122 = t60 + t61
+    t120 = t60 + t61
     del t60, t61
-    t123 = t56 - t58
+    t121 = t56 - t58
     del t56, t58
-    t124 = v_2_front_elbow_down * t122 + v_1_front_elbow_down * t123
+    t122 = v_2_front_elbow_down * t120 + v_1_front_elbow_down * t121
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t89 - np.abs(t124)
+    margin_alpha_rear_elbow_up = t87 - np.abs(t122)
+    del t122
+    margin_beta_rear_elbow_up = t87 - np.abs(L1 * t120)
+    del t87
+    t123 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
+    t124 = sigma_uv_front_elbow_down * t120
+    del sigma_uv_front_elbow_down, t120
+    t125 = t124 - t100
+    t126 = t65 <= t125
+    t127 = -(t100 + t124)
     del t124
-    margin_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
-    del t89
-    t125 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
-    t126 = sigma_uv_front_elbow_down * t122
-    del sigma_uv_front_elbow_down, t122
-    t127 = t126 - t102
     t128 = t65 <= t127
-    t129 = -(t102 + t126)
-    del t126
-    t130 = t65 <= t129
-    below_beta_0_rear_elbow_up = np.maximum(t127, t71)
-    del t127
-    above_beta_0_rear_elbow_up = np.maximum(t129, t71)
-    del t129
-    t131 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
-    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t132 = v_2_front_elbow_down * (t131 / total_beta_0_rear_elbow_up)
-    del total_beta_0_rear_elbow_up
-    t133 = t123 - t132
-    del t123, t132
-    left_along_rear_elbow_up = L1 - np.abs(t133)
-    t134 = t125 & t128 & t130 & t128 & t130 & (t65 <= left_along_rear_elbow_up)
+    below_beta_0_rear_elbow_up = np.maximum(t125, t71)
     del t125
-    t135 = L1 + t133
-    t136 = L1 - t133
-    del t133
-    t137 = t134 & t128 & t130 & (t65 <= t135) & (t65 <= t136)
-    del t128, t130, t134
-    unreachable_3 = np.logical_not(t137)
-    del t137
-    t138 = _runtime.poison(invalid | unreachable_3)
-    t139 = t80 + np.arctan2(up, out_rear_elbow_up)
-    del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t135, t71)
+    above_beta_0_rear_elbow_up = np.maximum(t127, t71)
+    del t127
+    t129 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t130 = v_2_front_elbow_down * (t129 / total_beta_0_rear_elbow_up)
+    del total_beta_0_rear_elbow_up
+    t131 = t121 - t130
+    del t121, t130
+    left_along_rear_elbow_up = L1 - np.abs(t131)
+    t132 = t123 & t126 & t128 & t126 & t128 & (t65 <= left_along_rear_elbow_up)
+    del t123
+    t133 = L1 + t131
+    t134 = L1 - t131
+    del t131
+    t135 = t132 & t126 & t128 & (t65 <= t133) & (t65 <= t134)
+    del t126, t128, t132
+    unreachable_3 = np.logical_not(t135)
     del t135
-    above_alpha_rear_elbow_up = np.maximum(t136, t71)
-    del t136
-    t140 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t141 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t136 = _runtime.poison(invalid | unreachable_3)
+    t137 = np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t133, t71)
+    del t133
+    above_alpha_rear_elbow_up = np.maximum(t134, t71)
+    del t134
+    t138 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t139 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t142 = np.arctan2(t140, 2.0 * np.sqrt(t141))
-    del t140, t141
-    t143 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
+    t140 = np.arctan2(t138, 2.0 * np.sqrt(t139))
+    del t138, t139
+    t141 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t144 = t142 - np.arctan2(t131, 2.0 * np.sqrt(t143))
-    del t131, t143
-    t145 = t93 + t95
-    del t93, t95
-    t146 = t96 - t97
-    del t96, t97
-    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
+    t142 = t140 - np.arctan2(t129, 2.0 * np.sqrt(t141))
+    del t129, t141
+    t143 = t91 + t93
+    del t91, t93
+    t144 = t94 - t95
+    del t94, t95
+    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t143 + v_1 * t144))
     del v_1
-    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
+    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t143))
     del t48
-    t147 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
+    t145 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
     del t37, t39, t63
-    p_across_u_rear_elbow_down = sigma_uv * t145
-    del sigma_uv, t145
-    t148 = -(t66 + p_across_u_rear_elbow_down)
+    part_y_rear_elbow_down = sigma_uv * t143
+    del sigma_uv, t143
+    t146 = -(t66 + part_y_rear_elbow_down)
+    t147 = t65 <= t146
+    t148 = part_y_rear_elbow_down - t66
+    del part_y_rear_elbow_down
     t149 = t65 <= t148
-    t150 = p_across_u_rear_elbow_down - t66
-    del p_across_u_rear_elbow_down
-    t151 = t65 <= t150
-    below_beta_0_rear_elbow_down = np.maximum(t148, t71)
+    below_beta_0_rear_elbow_down = np.maximum(t146, t71)
+    del t146
+    above_beta_0_rear_elbow_down = np.maximum(t148, t71)
     del t148
-    above_beta_0_rear_elbow_down = np.maximum(t150, t71)
-    del t150
-    t152 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t150 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    along_u_rear_elbow_down = t146 + v_2 * (t152 / total_beta_0_rear_elbow_down)
-    del t146, total_beta_0_rear_elbow_down
+    along_u_rear_elbow_down = t144 + v_2 * (t150 / total_beta_0_rear_elbow_down)
+    del t144, total_beta_0_rear_elbow_down
     left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t153 = t147 & t149 & t151 & t149 & t151 & (t65 <= left_along_rear_elbow_down)
-    del t147
-    t154 = L1 - along_u_rear_elbow_down
-    t155 = L1 + along_u_rear_elbow_down
+    t151 = t145 & t147 & t149 & t147 & t149 & (t65 <= left_along_rear_elbow_down)
+    del t145
+    t152 = L1 - along_u_rear_elbow_down
+    t153 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t156 = t153 & t149 & t151 & (t65 <= t154) & (t65 <= t155)
-    del t149, t151, t153, t65
-    unreachable_4 = np.logical_not(t156)
-    del t156
-    t157 = _runtime.poison(invalid | unreachable_4)
-    t158 = t80 + np.arctan2(-t90, -out_front_elbow_down)
-    del out_front_elbow_down, t80, t90
-    below_alpha_rear_elbow_down = np.maximum(t154, t71)
+    t154 = t151 & t147 & t149 & (t65 <= t152) & (t65 <= t153)
+    del t147, t149, t151, t65
+    unreachable_4 = np.logical_not(t154)
     del t154
-    above_alpha_rear_elbow_down = np.maximum(t155, t71)
-    del t155, t71
-    t159 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t160 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t155 = _runtime.poison(invalid | unreachable_4)
+    t156 = np.arctan2(-t88, -out_front_elbow_down)
+    del out_front_elbow_down, t88
+    below_alpha_rear_elbow_down = np.maximum(t152, t71)
+    del t152
+    above_alpha_rear_elbow_down = np.maximum(t153, t71)
+    del t153, t71
+    t157 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t158 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t161 = np.arctan2(t159, 2.0 * np.sqrt(t160))
-    del t159, t160
-    t162 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
+    t159 = np.arctan2(t157, 2.0 * np.sqrt(t158))
+    del t157, t158
+    t160 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t163 = t161 - np.arctan2(t152, 2.0 * np.sqrt(t162))
-    del t152, t162
-    t164 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
-    t165 = _runtime.status(invalid, unreachable_2, t164)
+    t161 = t159 - np.arctan2(t150, 2.0 * np.sqrt(t160))
+    del t150, t160
+    t162 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
+    t163 = _runtime.status(invalid, unreachable_2, t162)
     del unreachable_2
-    t166 = _runtime.status(invalid, unreachable_3, t164)
+    t164 = _runtime.status(invalid, unreachable_3, t162)
     del unreachable_3
-    t167 = _runtime.status(invalid, unreachable_4, t164)
+    t165 = _runtime.status(invalid, unreachable_4, t162)
     del unreachable_4
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     del wrist
-    t168 = h * slack
+    t166 = h * slack
     del slack
-    tangent = 4.0 * root * t29 - t168 * 0.00390625 <= _runtime.VANISHING * t168
-    del t168
-    t169 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t29 - t166 * 0.00390625 <= _runtime.VANISHING * t166
+    del t166
+    t167 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, stretched, tangent
-    t170 = t169 | (L1 * fore <= _runtime.VANISHING * t30)
-    del t169, t30
-    t171 = _runtime.VANISHING * t29
+    t168 = t167 | (L1 * fore <= _runtime.VANISHING * t30)
+    del t167, t30
+    t169 = _runtime.VANISHING * t29
     del t29
-    t172 = t170 | (np.abs(t31) + np.abs(root) <= t171) | (fore <= t171)
-    del fore, root, t170, t171, t31
-    t173 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    t170 = t168 | (np.abs(t31) + np.abs(root) <= t169) | (fore <= t169)
+    del fore, root, t168, t169, t31
+    t171 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t174 = _runtime.VANISHING * play_alpha
+    t172 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t175 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t173 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t176 = _runtime.VANISHING * play_beta
+    t174 = _runtime.VANISHING * play_beta
     del play_beta
     parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
     del t66, v_2
-    t177 = t172 | (t173 <= t174) | (t175 <= t176) | parallel
-    del parallel, t172, t173, t175
-    t178 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t175 = t170 | (t171 <= t172) | (t173 <= t174) | parallel
+    del parallel, t170, t171, t173
+    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t179 = _runtime.VANISHING * play
+    t177 = _runtime.VANISHING * play
     del play
-    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t180
-    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t182
-    t184 = t177 | (t178 <= t179) | (t181 <= t174) | (t183 <= t176)
-    del t177, t178, t181, t183
-    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t178 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t179 = np.maximum(-t178, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t178
+    t180 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t181 = np.maximum(-t180, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t180
+    t182 = t175 | (t176 <= t177) | (t179 <= t172) | (t181 <= t174)
+    del t175, t176, t179, t181
+    t183 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t186 = left_along_front_elbow_down * 9.094947017729282e-13
-    t187 = np.maximum(-t186, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t186
-    t188 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t189 = np.maximum(-t188, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t188
-    t190 = t184 | (-t102 <= t185) | (t187 <= t179) | (t189 <= t174)
-    del t102, t184, t185, t187, t189
-    t191 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t191, margin_beta_rear_elbow_up) <= t176
-    del margin_beta_rear_elbow_up, t191
-    t192 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t192, left_along_rear_elbow_up) <= t179
-    del left_along_rear_elbow_up, t192
-    t193 = t190 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t190
-    t194 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t195 = np.maximum(-t194, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t194
-    t196 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t197 = np.maximum(-t196, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t196
-    t198 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t199 = np.maximum(-t198, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t198
-    t200 = t193 | (t195 <= t174) | (t197 <= t176) | (t199 <= t179)
-    del t174, t176, t179, t193, t195, t197, t199
+    t184 = left_along_front_elbow_down * 9.094947017729282e-13
+    t185 = np.maximum(-t184, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t184
+    t186 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t187 = np.maximum(-t186, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t186
+    t188 = t182 | (-t100 <= t183) | (t185 <= t177) | (t187 <= t172)
+    del t100, t182, t183, t185, t187
+    t189 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t189, margin_beta_rear_elbow_up) <= t174
+    del margin_beta_rear_elbow_up, t189
+    t190 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t190, left_along_rear_elbow_up) <= t177
+    del left_along_rear_elbow_up, t190
+    t191 = t188 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t188
+    t192 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t193 = np.maximum(-t192, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t192
+    t194 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t195 = np.maximum(-t194, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t194
+    t196 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t197 = np.maximum(-t196, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t196
+    t198 = t191 | (t193 <= t172) | (t195 <= t174) | (t197 <= t177)
+    del t172, t174, t177, t191, t193, t195, t197
     return (
         t14 + t78,
-        _runtime.wrap(t81 - t82) + t78,
-        _runtime.wrap(t84 - t87) + t78,
-        _runtime.wrap(t81 + t82) + t78,
-        _runtime.wrap(-(t87 + t84)) + t78,
-        t88 + t78,
-        t14 + t113,
-        _runtime.wrap(t114 - t117) + t113,
-        _runtime.wrap(t118 + t120) + t113,
-        _runtime.wrap(t114 + t117) + t113,
-        _runtime.wrap(t118 - t120) + t113,
-        t88 + t113,
-        t121 + t138,
-        _runtime.wrap(t139 - t142) + t138,
-        _runtime.wrap(t118 + t144) + t138,
-        _runtime.wrap(t139 + t142) + t138,
-        _runtime.wrap(t118 - t144) + t138,
-        t88 + t138,
-        t121 + t157,
-        _runtime.wrap(t158 - t161) + t157,
-        _runtime.wrap(t163 - t87) + t157,
-        _runtime.wrap(t158 + t161) + t157,
-        _runtime.wrap(-(t87 + t163)) + t157,
-        t88 + t157,
-        _runtime.status(invalid, unreachable, t164),
+        _runtime.wrap(t79 - t80) + t78,
+        _runtime.wrap(t82 - t85) + t78,
+        _runtime.wrap(t79 + t80) + t78,
+        _runtime.wrap(-(t85 + t82)) + t78,
+        t86 + t78,
+        t14 + t111,
+        _runtime.wrap(t112 - t115) + t111,
+        _runtime.wrap(t116 + t118) + t111,
+        _runtime.wrap(t112 + t115) + t111,
+        _runtime.wrap(t116 - t118) + t111,
+        t86 + t111,
+        t119 + t136,
+        _runtime.wrap(t137 - t140) + t136,
+        _runtime.wrap(t116 + t142) + t136,
+        _runtime.wrap(t137 + t140) + t136,
+        _runtime.wrap(t116 - t142) + t136,
+        t86 + t136,
+        t119 + t155,
+        _runtime.wrap(t156 - t159) + t155,
+        _runtime.wrap(t161 - t85) + t155,
+        _runtime.wrap(t156 + t159) + t155,
+        _runtime.wrap(-(t85 + t161)) + t155,
+        t86 + t155,
+        _runtime.status(invalid, unreachable, t162),
+        t163,
+        t164,
         t165,
-        t166,
-        t167,
-        t200,
+        t198,
     )
 
 

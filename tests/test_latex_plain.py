@@ -2,9 +2,10 @@
 
 import sympy as sp
 
-from closedform.emit.backends.latex.plain import is_rounding, plain
+from closedform.emit.backends.latex.plain import angles_of_readers, is_rounding, plain
 from closedform.lemmas.two_link import two_link_arm
-from closedform.model.functions import Array, Function, Let, Program, Vanishes, choose, real
+from closedform.lemmas.two_sines import two_sines
+from closedform.model.functions import Array, Bound, Function, Let, Program, Vanishes, choose, real
 
 a, b, x, y = (real(name) for name in "abxy")
 sigma = real("sigma")
@@ -92,3 +93,45 @@ def test_a_result_has_its_own_name() -> None:
     g = plain(f, [], results=(rho, z)).function
     assert g.outputs[0].entries == (rho, rho + x)
     assert [s.symbol for s in g.body if isinstance(s, Let)] == [rho]
+
+
+def test_two_sines_are_told_by_arcsines() -> None:
+    program, unknowns = Program(), (real("delta_2"), real("delta_3"))
+    earlier = program.bound("earlier", 1 - a**2, 1, "a sine is at most 1")
+    vectors = ((sp.S.Zero, sp.Integer(2)), (sp.Rational(3, 2), b))
+    lemma = two_sines(program, unknowns, vectors, (a, y / 8), scale=sp.S.One).implying([earlier])
+    f = function(program, *lemma.solution.values())
+    g = plain(f, [lemma]).function
+    values = {s.symbol: s.value for s in g.body if isinstance(s, Let)}
+    assert isinstance(values[unknowns[1]], sp.asin) and g.outputs[0].entries == unknowns
+    same(f, g, {})
+    bounds = {s.symbol: s.value for s in g.body if isinstance(s, Bound)}
+    assert bounds[earlier] == 1 and sum(not e.is_number for e in bounds.values()) == 2
+    too_far = next(e for e in bounds.values() if e.has(sp.Abs(a))).xreplace({a: sp.Integer(2)})
+    assert sp.fraction(sp.together(too_far))[0] < 0  # the sine would be 4/3
+
+
+def test_the_triangle_of_an_arm_is_told_by_its_angle() -> None:
+    program, unknowns = Program(), (real("theta"), real("theta_fore"))
+    lemma = two_link_arm(program, (sp.Integer(1), a, b), (x, y), unknowns, sigma)
+    f = function(program, *lemma.solution.values())
+    g = plain(f, [lemma]).function
+    (bend,) = angles_of_readers(lemma)
+    values = {s.symbol: s.value for s in g.body if isinstance(s, Let)}
+    assert values[bend].has(sigma)
+    for angle in unknowns:
+        assert bend in values[angle].free_symbols and sigma not in values[angle].free_symbols
+
+
+def test_a_joint_is_told_in_the_angles_of_the_lemmas() -> None:
+    program, unknowns = Program(), (real("theta"), real("theta_fore"))
+    lengths = (sp.Integer(1), sp.Rational(3, 5), sp.Rational(1, 5))
+    lemma = two_link_arm(program, lengths, (a, b), unknowns, sigma)
+    first, absolute = lemma.solution.values()
+    f = function(program, first, absolute - first)
+    results = (real("q_1"), real("q_2"))
+    joints = {results[0]: unknowns[0], results[1]: unknowns[1] - unknowns[0]}
+    g = plain(f, [lemma], results=results, joints=joints).function
+    assert g.outputs[0].entries == (results[0], unknowns[1] - results[0])
+    for sign in (1, -1):
+        same(f, g, {sigma: sp.Integer(sign)})

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.lemmas.triangle import FARTHER, NEARER, Triangle
-from closedform.model.functions import Program, choose
+from closedform.model.functions import Program, choose, real
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 
@@ -224,7 +224,21 @@ class _Arm:
             roles=tuple(
                 zip("xylabrh", (x, y, upper, *self.lengths[1:], r, h), strict=True),
             ),
+            plainly=self._plainly(folded, rest, elbow),
         )
+
+    def _plainly(self, folded: sp.Symbol, rest: Pair, elbow: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
+        """The angles of the triangle, and those of the links."""
+        (r, h), (x, y) = self.target, self.unknowns
+        _, along, across = self.lengths
+        upper, second = self.triangle.first, self.triangle.second
+        bend = real(f"bend_angle{self.suffix}")
+        base = sp.atan2(second * sp.sin(bend), upper + second * sp.cos(bend))
+        return {
+            bend: elbow,
+            x: choose(folded, rest.angle, sp.atan2(h, r) - base),
+            y: x + bend + sp.atan2(along, across),
+        }
 
     def _elbow(self, short: sp.Symbol) -> tuple[Pair, sp.Expr, sp.Expr]:
         """The pair and the angle of the elbow, and half of one plus its cosine."""

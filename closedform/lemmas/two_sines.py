@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from closedform.lemmas.registry import theorem
-from closedform.model.functions import Program, choose, sign_of, used_up
+from closedform.model.functions import Bound, Program, choose, sign_of, used_up
 from closedform.model.lemma import Lemma
 
 Vector = tuple[sp.Expr, sp.Expr]
@@ -93,6 +93,7 @@ def two_sines(
     cy, sy = _from_sine(program, str(y), part, whole, scale)
     along = program.let("along_u", ahead - sy * lean)
     cx, sx = _from_sine(program, str(x), along, size, scale)
+    bounds = [s.symbol for s in program.body[start:] if isinstance(s, Bound)]
     return Lemma(
         "two sines",
         r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
@@ -106,7 +107,31 @@ def two_sines(
         body=tuple(program.body[start:]),
         signs=(sigma,),
         roles=tuple((n, sp.Matrix(e)) for n, e in (("u", u), ("v", v), ("p", p))),
+        plainly={
+            **dict.fromkeys(bounds, sp.S.One),
+            **_plainly((x, y), (u, v), p, size, (aside, *bounds[-3:-1])),
+        },
     )
+
+
+def _plainly(
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    vectors: tuple[Vector, Vector],
+    p: Vector,
+    size: sp.Expr,
+    names: Sequence[sp.Symbol],
+) -> dict[sp.Symbol, sp.Expr]:
+    """The angles by arcsines; the names are of v across u, and of a bound for each sine."""
+    (x, y), (u, v), (across, for_y, for_x) = unknowns, vectors, names
+    whole, part = v[0] * u[1] - v[1] * u[0], p[0] * u[1] - p[1] * u[0]
+    along = sum(a * (b - c * sp.sin(y)) for a, b, c in zip(u, p, v, strict=True))
+    return {
+        across: whole / size,
+        for_y: sp.Abs(whole) / size - sp.Abs(part) / size,
+        y: sp.asin(part / whole),
+        for_x: size - sp.Abs(along) / size,
+        x: sp.asin(along / size**2),
+    }
 
 
 def _from_sine(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
@@ -43,6 +43,10 @@ class Lemma(Shown):
     coordinates are left to the algorithm; ``vectors`` says how that computes them, and ``written``
     how the vectors of the program are written, by their names there.  ``matrix`` is the letter of
     the matrix that holds all unknowns, if there is one.
+
+    ``plainly`` says what a reader computes in place of what serves the rounding: closed forms of
+    the unknowns, values of names of the program, and angles that only a reader has, each before it
+    is needed.  A bound that says what another one says has the value 1.
     """
 
     name: str
@@ -62,9 +66,14 @@ class Lemma(Shown):
     vectors: str = ""
     written: Mapping[str, str] = field(default_factory=dict)
     matrix: str = ""
+    plainly: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
+
+    def implying(self, bounds: Sequence[sp.Symbol]) -> Lemma:
+        """The lemma, whose own bounds say but for rounding what earlier ones say."""
+        return replace(self, plainly={**dict.fromkeys(bounds, sp.S.One), **self.plainly})
 
     def known(self, value: sp.Expr) -> sp.Symbol:
         """The name of a value in the unknowns, such as ``cos(x)``."""

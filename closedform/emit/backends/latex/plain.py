@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
 
 from closedform.model.functions import (
+    Array,
     Bound,
     Function,
     Let,
@@ -38,28 +40,31 @@ def plain(
     lemmas: Sequence[Lemma],
     letters: Sequence[str] = (),
     results: Sequence[sp.Symbol] = (),
+    joints: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Plain:
     """The function in the angles that its lemmas give, without what differs within rounding.
 
-    ``letters`` are for parts of sums of angles, and ``results`` the symbols of the outputs.
+    ``letters`` are for parts of sums of angles, and ``results`` the symbols of the outputs, some of
+    which ``joints`` gives in the angles.
     """
-    body, same = _exact(function.body)
+    body, same, numbers = _exact(function.body)
     body = _known_directly(body, lemmas)
     angles = _angles(body, lemmas)
     pairs = _pairs(body, lemmas, angles)
     names: dict[sp.Basic, sp.Basic] = {**same, **pairs}
     places = {s.symbol: k for k, s in enumerate(body) if isinstance(s, Let | Bound)}
     found = {
-        max(places[n] for n, e in pairs.items() if e in (sp.sin(angle), sp.cos(angle))): Let(
-            angle, value
-        )
+        max(places[n] for n, e in pairs.items() if e in (sp.sin(angle), sp.cos(angle))): [
+            *(Let(part, e) for part, e in _angles_before(angle, lemmas).items()),
+            Let(angle, value),
+        ]
         for angle, value in angles.items()
     }
     usual = _usual(body)
     done: list[Statement] = []
     for place, statement in enumerate(body):
         if place in found:
-            done.append(_with_names(found[place], names))
+            done += [_with_names(angle, names) for angle in found[place]]
         if isinstance(statement, Let | Bound) and statement.symbol in pairs:
             continue
         statement = _with_names(statement, names)
@@ -72,12 +77,30 @@ def plain(
         replace(a, entries=tuple(substitute(e.xreplace(solved), names) for e in a.entries))
         for a in function.outputs
     )
+    exact = {j: substitute(substitute(e, numbers), usual) for j, e in joints.items()}
+    outputs = _by_angles(outputs, results, exact, angles)
     told = replace(function, body=tuple(done), outputs=outputs)
     told, turned = _with_angles_of_results(told, results)
     names = {n: substitute(e, turned) for n, e in names.items()} | turned
     own = _own_names(told, results)
     told = _renamed(_with_half_sums(_without_pairs(told), letters), own)
     return Plain(told, {**{n: substitute(e, own) for n, e in names.items()}, **own})
+
+
+def _by_angles(
+    outputs: tuple[Array, ...],
+    results: Sequence[sp.Symbol],
+    joints: Mapping[sp.Symbol, sp.Expr],
+    angles: Mapping[sp.Symbol, sp.Expr],
+) -> tuple[Array, ...]:
+    """The outputs, with the joints in the angles wherever these are known."""
+    if sum(len(a.entries) for a in outputs) != len(results):
+        return outputs
+    known = {j: e for j, e in joints.items() if e != j and e.free_symbols <= angles.keys()}
+    symbols = iter(results)
+    return tuple(
+        replace(a, entries=tuple(known.get(next(symbols), e) for e in a.entries)) for a in outputs
+    )
 
 
 def _with_angles_of_results(
@@ -275,10 +298,13 @@ def is_rounding(flag: Vanishes) -> bool:
     return tiny and not flag.free
 
 
-def _exact(body: Sequence[Statement]) -> tuple[list[Statement], dict[sp.Basic, sp.Basic]]:
+def _exact(
+    body: Sequence[Statement],
+) -> tuple[list[Statement], dict[sp.Basic, sp.Basic], dict[sp.Basic, Any]]:
     """The statements without names that differ from others within rounding, and those others.
 
-    The later name is kept: lemmas speak of it.
+    The later name is kept: lemmas speak of it.  The last are the names that are numbers, and the
+    flags that only serve the rounding.
     """
     usual: dict[sp.Basic, Any] = {
         s.symbol: sp.false for s in body if isinstance(s, Vanishes) and is_rounding(s)
@@ -310,12 +336,12 @@ def _exact(body: Sequence[Statement]) -> tuple[list[Statement], dict[sp.Basic, s
         for s in body
         if not isinstance(s, Let | Bound) or s.symbol in made
     ]
-    return [_with_names(s, names) for s in kept], names
+    return [_with_names(s, names) for s in kept], names, usual
 
 
 def _known_directly(body: Sequence[Statement], lemmas: Sequence[Lemma]) -> list[Statement]:
     """The statements with the values that lemmas prove of their names."""
-    known = {name: e for lemma in lemmas for name, e in lemma.premises.items()}
+    known = {n: e for lemma in lemmas for n, e in {**lemma.premises, **lemma.plainly}.items()}
     names = _made(body)
     before: set[sp.Basic] = set()
     done: list[Statement] = []
@@ -342,9 +368,31 @@ def _angles(body: Sequence[Statement], lemmas: Sequence[Lemma]) -> dict[sp.Symbo
     for lemma in lemmas:
         for angle, value in lemma.solution.items():
             names = [n for n, e in lemma.means.items() if e in (sp.sin(angle), sp.cos(angle))]
+            if len(names) == 2 and angle in lemma.plainly:
+                found[angle] = lemma.plainly[angle]
+                continue
             if len(names) == 2 and {*names} <= made and not value.free_symbols & {*names}:
                 solved = {e: a for a, e in _solutions([lemma], found).items()}
                 found[angle] = value.xreplace(solved)
+    return found
+
+
+def angles_of_readers(lemma: Lemma) -> list[sp.Symbol]:
+    """The angles that no program has."""
+    made = _made(lemma.body) | lemma.solution.keys()
+    return [n for n, e in lemma.plainly.items() if n not in made and e != 1]
+
+
+def _angles_before(angle: sp.Symbol, lemmas: Sequence[Lemma]) -> dict[sp.Symbol, sp.Expr]:
+    """The angles that no program has and that this angle is the first to need."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for lemma in lemmas:
+        if angle in lemma.plainly:
+            order = list(lemma.plainly)
+            before = [lemma.plainly[n] for n in order[: order.index(angle)] if n in lemma.solution]
+            for part in angles_of_readers(lemma):
+                if lemma.plainly[angle].has(part) and not any(e.has(part) for e in before):
+                    found[part] = lemma.plainly[part]
     return found
 
 
@@ -362,4 +410,4 @@ def _pairs(
     }
 
 
-__all__ = ["Plain", "is_rounding", "plain"]
+__all__ = ["Plain", "angles_of_readers", "is_rounding", "plain"]

@@ -310,6 +310,7 @@ d.step(
     "entry of B is less than 2^-10.",
     {},
     uses=[stated],
+    solves={"ik": ()},
 )
 d.function(
     "ik",

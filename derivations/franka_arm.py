@@ -111,6 +111,7 @@ d.step(
         "s": ik.R.T * (sp.Matrix([0, 0, d1]) - ik.p) + sp.Matrix([0, 0, d7]),
         "u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0])),
     },
+    solves={"ik": [real("elbow")]},
 )
 upper = ik.program.let("upper", sqrt(a4**2 + d3**2), nonnegative=True)
 fore = ik.program.let("fore", sqrt(a5**2 + d5**2), nonnegative=True)
@@ -147,6 +148,7 @@ d.step(
         + d5**2
         + 2 * sqrt(a4**2 + d3**2) * sqrt(a5**2 + d5**2) * cos(real("elbow")),
     },
+    solves={"ik": [real("elbow")]},
 )
 v = ik.vector("v", shoulder_from_wrist(bent))
 tilt = ik.solve(
@@ -174,6 +176,7 @@ d.step(
         "w": rotation("x", pi / 2) * (rotation("z", theta6) * u),
         r"R_z(\theta_5)\,w": sp.Matrix([real("v_x"), 0, real("v_z")]),
     },
+    solves={"ik": [theta5, theta6]},
 )
 R = ik.matrix("R1", ik.R * turned(given).T * rotation("x", -pi / 2))
 R = ik.matrix("R2", R * turned(tilt).T * rotation("x", -pi / 2))
@@ -190,6 +193,7 @@ d.step(
     },
     proves="The rotation of the pose is R_03 R_37.",
     equal=[(arm.pose[:3, :3], R03 * R37)],
+    solves={"ik": [theta1, theta2, theta3]},
 )
 ik.finish(
     "All eight postures of a pose at a given theta7.",

@@ -119,6 +119,7 @@ d.step(
     "angles of the turret put it there: facing (X >= 0) and backward (X <= 0).  If it is on the "
     "base axis, theta1 is free and we return 0.",
     {"w": centre, r"w_x \sin\theta_1 - w_y \cos\theta_1": sp.S.Zero},
+    solves={"ik": [theta1]},
 )
 angle = ik.angle("elbow", theta3 + atan2(d4, a3))
 lower = ik.angle("lower", theta2 - pi / 2)
@@ -132,6 +133,7 @@ d.step(
     "The upper arm a2, the forearm f and the line from the shoulder to the wrist form a triangle. "
     "Its angle at the elbow is theta3 plus the constant angle between the forearm and its frame.",
     {"f": sqrt(a3**2 + d4**2), r"\theta_3": angle - atan2(d4, a3)},
+    solves={"ik": [angle]},
 )
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))

@@ -90,6 +90,7 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
             r"u": r"\rho - l_1 - l_6",
             r"h": pz - l2 + l5,
         },
+        solves={"ik": [theta1]},
     )
     d.step(
         "Inverse: the elbow and the shoulder",
@@ -107,11 +108,13 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
             r"\alpha": triangle[alpha],
             r"\theta_2": shoulder[theta2] - alpha,
         },
+        solves={"ik": [theta2, theta3]},
     )
     d.step(
         "Inverse: the hand",
         "theta5 is the yaw minus the turn of the turret, computed by sine and cosine.",
         {r"\theta_5": r"\psi - \theta_1"},
+        solves={"ik": [theta5]},
     )
     d.function(
         "ik",

@@ -132,6 +132,7 @@ d.step(
     "solution if it is nearer to the first axis than b.  If it is on the axis, with b = 0, theta1 "
     "is free and we return 0.",
     {"w": centre, r"w_x \sin\theta_1 - w_y \cos\theta_1": -b},
+    solves={"ik": [theta1]},
 )
 angle = ik.angle("elbow", theta3 + atan2(a2, c3))
 lower = ik.angle("lower", theta2 - pi / 2)
@@ -145,6 +146,7 @@ d.step(
     "The upper arm c2, the forearm f and the line from the shoulder to the wrist form a triangle. "
     "Its angle at the elbow is theta3 plus the constant angle between the forearm and its frame.",
     {"f": sqrt(a2**2 + c3**2), r"\theta_3": angle - atan2(a2, c3)},
+    solves={"ik": [angle]},
 )
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))

@@ -227,6 +227,7 @@ by_the_law_of_cosines = d.step(
         (cosine.xreplace({r: sqrt(position.dot(position))}), cos(theta2)),
     ],
     uses=[by_geometry],
+    solves={"ik": [theta2]},
 )
 N, M = real("N", nonnegative=True), real("M", nonnegative=True)
 outer, inner = (l1 + l2) ** 2 - r**2, r**2 - (l1 - l2) ** 2
@@ -242,6 +243,7 @@ d.step(
     proves="N and M are 1 - D and 1 + D, each times twice the product of the lengths.",
     equal=[(outer, 2 * l1 * l2 * (1 - cosine)), (inner, 2 * l1 * l2 * (1 + cosine))],
     uses=[by_the_law_of_cosines],
+    solves={"ik": [theta2]},
 )
 d.step(
     "Inverse: the shoulder",
@@ -251,6 +253,7 @@ d.step(
     "0.",
     {r"\theta_1": atan2(py, px) - alpha},
     published=("(4)",),
+    solves={"ik": [theta1]},
 )
 d.function(
     "ik",
@@ -312,6 +315,7 @@ d.step(
     },
     published=("(9)", "(10)"),
     uses=[by_frames],
+    solves={"ik_pose": ()},
 )
 d.function(
     "ik_pose",

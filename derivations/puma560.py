@@ -128,6 +128,7 @@ d.step(
         r"p_x \sin\theta_1 - p_y \cos\theta_1": d3,
         "X": -shoulder.side * sqrt(px**2 + py**2 - d3**2),
     },
+    solves={"ik": [theta1]},
 )
 angle = ik.angle("elbow", theta3 + atan2(d4, a3))
 forearm = ik.direction("forearm", a3, d4)
@@ -150,6 +151,7 @@ d.step(
         r"\theta_3": angle - atan2(d4, a3),
         r"\theta_2": atan2(pz, real("X")) - real("alpha"),
     },
+    solves={"ik": [theta2]},
 )
 in_plane = ik.matrix("R1", rotation("x", -pi / 2) * turned(shoulder).T * ik.R)
 both = turned(lift + (bend - forearm).known_as(ik.program, "3"))

@@ -35,5 +35,6 @@ d.step(
     "theta2 <= 0 (right).  Then the height gives the slide of the spindle, and the yaw gives its "
     "turn.",
     {r"d_3": h - z, r"\theta_4": theta1 + theta2 - yaw},
+    solves={"ik": ()},
 )
 ik.finish("Both elbow configurations for a position and a yaw.")

@@ -181,6 +181,7 @@ d.step(
         (undone[0, 2], sin(theta5)),
         (undone[1, :], sp.Matrix([[sin(theta6), cos(theta6), 0]])),
     ],
+    solves={"ik": ()},
 )
 d.function(
     "ik",

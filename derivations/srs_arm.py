@@ -188,6 +188,7 @@ d.step(
     "Inverse: the elbow",
     "The upper arm, the forearm and the line from the shoulder to the wrist form a triangle.",
     {"w": ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]), "L": sqrt(p.dot(p))},
+    solves={"ik": [theta4]},
 )
 bent = ik.vector("v", sp.Matrix([0, d_se, 0]) + turned(elbow) * sp.Matrix([0, d_ew, 0]))
 M = ik.solve(arm_plane, psi, to_elbow, bent[:2, 0], p, because={theta4: 1}, sense=-1)
@@ -197,6 +198,7 @@ d.step(
     "to w, and the axis of the elbow to the direction given by the arm angle.  The front branches "
     "have sin(theta2) >= 0.",
     {"R_{03}": rotation("z", theta1) * rotation("y", theta2) * rotation("z", theta3)},
+    solves={"ik": [theta1, theta2, theta3]},
 )
 left = ik.matrix("R1", M * rotation("x", -pi / 2))
 ik.solve(zyz, left, (theta1, theta2, theta3), {+1: "front", -1: "back"}, name="shoulder")
@@ -213,6 +215,7 @@ d.step(
     {"M": R03 * rotation("x", pi / 2), "R_{34}": R34, "R_{47}": R47},
     proves="The rotation of the pose is M R_34 R_47.",
     equal=[(arm.pose[:3, :3], R03 * rotation("x", pi / 2) * R34 * R47)],
+    solves={"ik": [theta5, theta6, theta7]},
 )
 d.explain(
     {

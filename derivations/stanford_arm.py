@@ -88,6 +88,7 @@ d.step(
         "d_3": real("sigma_boom") * sqrt(real("X") ** 2 + pz**2),
         r"\theta_2": sp.atan2(real("sigma_boom") * real("X"), real("sigma_boom") * pz),
     },
+    solves={"ik": [theta1, theta2]},
 )
 R03 = rotation("z", theta1) * rotation("y", theta2)
 R36 = rotation("z", theta4) * rotation("y", theta5) * rotation("z", theta6)

@@ -81,6 +81,7 @@ d.step(
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulder "
     "angles put it there.  There is no solution if the wrist is nearer to the first axis than d4.",
     {"w": ik.p - d6 * ik.R[:, 2], r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
+    solves={"ik": [theta1]},
 )
 first = in_plane(shoulder)
 M = ik.matrix("M", first * ik.R)
@@ -100,6 +101,7 @@ d.step(
     "of the elbow.  We return the phi that puts the wrist in the middle of this reach, so that no "
     "pose is lost.",
     {"R_z(\\phi) R_y(-\\theta_5) R_z(\\theta_6)": first * ik.R},
+    solves={"ik": [lift]},
 )
 ex = ik.let("ex", d5 * lifted.s - across)
 ey = ik.let("ey", -d5 * lifted.c - upward)
@@ -113,5 +115,6 @@ d.step(
         "e_y": L2 * sin(theta2) + L3 * sin(theta2 + theta3),
         r"\theta_4": lift - theta2 - theta3,
     },
+    solves={"ik": [theta2, theta3]},
 )
 ik.finish("The joint angles of a pose, all eight postures.")

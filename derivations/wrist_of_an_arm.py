@@ -27,6 +27,7 @@ def wrist_step(
             (pose[:3, :3], R03 * R36),
             (R36.subs(turned_back, simultaneous=True), R36),
         ],
+        solves={"ik": wrist},
     )
     d.explain({"R_{03}": "rotation of the arm", "R_{36}": "rotation of the wrist"})
 

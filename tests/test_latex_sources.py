@@ -56,6 +56,25 @@ def test_each_step_says_where_its_equations_come_from(tex: Path) -> None:
     assert len(known) == len(told) or (tex.stem.startswith("h6ar") and len(known) == len(told) - 1)
 
 
+@pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
+def test_an_inverse_refers_to_the_sections_that_give_its_reasons(tex: Path) -> None:
+    text, d = tex.read_text("utf-8"), derivation(tex.stem)
+    reasons = [(s, name) for s in d.steps for name, _ in s.solves]
+    titled = [s for s in d.steps if s.title.startswith("Inverse")]
+    assert {id(s) for s in titled} <= {id(s) for s, _ in reasons}
+    for step, function in reasons:
+        label = rf"\label{{inverse:{d.name}:{function.replace('_', '-')}}}"
+        told = text.partition(label)[2].partition(r"\begin{algorithm}")[0]
+        section = rf"\ref{{step:{d.name}:{d.steps.index(step) + 1}}}"
+        assert section in told, (step.title, function)
+
+
+def test_a_section_explains_the_unknowns_that_it_names() -> None:
+    found = {s["unknowns"]: s["from"] for s in stages("ur_arm", "ik")}
+    assert r"(see Section~\ref{step:ur_arm:5})" in found[r"$\theta_{1}$"]
+    assert r"(see Section~\ref{step:ur_arm:7})" in found[r"$\theta_{2}$ and $\theta_{3}$"]
+
+
 @pytest.mark.parametrize("name", ["planar_2r", "irb260", "spherical_wrist"])
 def test_what_the_lemmas_give_is_what_the_function_returns(name: str) -> None:
     d = derivation(name)
@@ -144,6 +163,7 @@ def computed(algorithm: Algorithm, known: dict) -> list[sp.Expr]:
     for symbol in algorithm.values:
         if symbol in algorithm.printed and symbol not in known:
             known[symbol] = sp.N(algorithm.value(symbol).xreplace(known), 40)
+            known[algorithm.known.get(symbol, symbol)] = known[symbol]
     return [sp.N(algorithm.shown(e).xreplace(known), 30) for e in algorithm.outputs]
 
 

@@ -265,6 +265,7 @@ def _inverse(loop: _Loop) -> None:
         f"SINGULAR if A is less than 2^-10 of {least}.  {MISSED}",
         {},
         uses=[loop.stated],
+        solves={"ik": ()},
     )
     d.function(
         "ik",

@@ -278,6 +278,7 @@ class _Reverse:
             f"product of the lengths of their bars.  {MISSED}",
             {},
             uses=[self.loop],
+            solves={"ik": ()},
         )
         passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
         chosen = [(sigma, SIGN) for sigma in self.signs]

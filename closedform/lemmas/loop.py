@@ -484,6 +484,7 @@ def _inverse(m: Hand, loop: Step) -> None:
         f"status is SINGULAR if the determinant is less than 2^-10 of the product.  {MISSED}",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     off_sphere = ", or the target is not on the sphere" * bool(straight)
     solved.export(

@@ -374,6 +374,7 @@ def _inverse(m: OnRails, loop: Step) -> None:
         "the determinant of A is less than 2^-10 of the sum of all lengths.",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     solved.export({"x": m.target}, {"x": m.target}, "", [f"SINGULAR: {MEET}."])
     zeros, links = (sp.S.Zero,) * 3, tuple(s.link for s in solved.found)

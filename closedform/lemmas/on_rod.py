@@ -443,6 +443,7 @@ def _inverse(m: OnRod, loop: Step) -> None:
         f"radii of both circles.  {MISSED}",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     solved.export(
         {"x": tuple(m.hand)},

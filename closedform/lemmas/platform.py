@@ -489,6 +489,7 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
         f"of the ends of the rods on the hand from their centre.  {MISSED}",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     solved.export(
         m.target,

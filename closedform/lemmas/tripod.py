@@ -422,6 +422,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
         f"corners.  {MISSED}",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     solved.export(
         {"x": m.target},

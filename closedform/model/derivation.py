@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from types import MappingProxyType
 from typing import Any, Literal
 
 import sympy as sp
@@ -87,6 +88,8 @@ class Written:
 
     latex: str
     meaning: str
+    same: str = ""
+    """A symbol of the same quantity, which may be written alike."""
 
 
 @dataclass(frozen=True)
@@ -156,6 +159,8 @@ class Derivation(Shown):
     """The step that states the equations of the loop, which the inverses solve."""
     given_by: dict[str, Step] = field(default_factory=dict)
     """The step with the equations for a coordinate of the task, if none has it on its left side."""
+    means: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Names of programs that are the sine or the cosine of an angle that no lemma finds."""
     alike: Alike | None = None
     """The legs, if they differ in the names of their symbols alone."""
     without_inverse: str = ""
@@ -240,13 +245,18 @@ class Derivation(Shown):
             raise ValueError(f"{self.name}: the limits of {name} are in the wrong order")
         return least, most
 
-    def write(self, symbol: sp.Symbol | str, latex: str = "", meaning: str = "") -> None:
-        """Say how formulas write a symbol, as in ``write("rS", r"\\varrho_S")``, and what it is."""
+    def write(
+        self, symbol: sp.Symbol | str, latex: str = "", meaning: str = "", *, same: str = ""
+    ) -> None:
+        """Say how formulas write a symbol, as in ``write("rS", r"\\varrho_S")``, and what it is.
+
+        ``same`` names a symbol of the same quantity, which is written in the same way.
+        """
         name = str(symbol)
         check_text(f"{self.name}: {name}", latex, meaning)
         if name in self.written:
             raise ValueError(f"{self.name}: the symbol {name} is described twice")
-        self.written[name] = Written(latex, meaning)
+        self.written[name] = Written(latex, meaning, same)
 
     def explain(self, meanings: Mapping[str, str]) -> None:
         """Say what names mean that equations define, as in ``explain({"R_{03}": "..."})``."""
@@ -297,6 +307,7 @@ class Derivation(Shown):
         rows: Sequence[Sequence[Any]] = (),
         proves: str = "",
         uses: Sequence[Step] = (),
+        solves: Mapping[str, Sequence[sp.Symbol]] = MappingProxyType({}),
     ) -> Step:
         """Record a step.
 
@@ -319,6 +330,9 @@ class Derivation(Shown):
             what the equalities mean, in sentences
         uses
             the steps, as ``step`` returned them, to whose equations the text refers
+        solves
+            for each inverse of which this step gives reasons, the unknowns that it explains; none
+            if it explains the inverse as a whole.  The inverse refers to the step
         """
         where = f"{self.name}, step {title!r}"
         check_exact([*shown.values()], where)
@@ -338,6 +352,7 @@ class Derivation(Shown):
             rows=tuple(map(tuple, rows)),
             proves=proves,
             uses=tuple(uses),
+            solves=tuple((name, tuple(unknowns)) for name, unknowns in solves.items()),
         )
         self.steps.append(step)
         return step

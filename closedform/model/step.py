@@ -36,6 +36,9 @@ class Step(Shown):
     """What the vanishing differences mean, in sentences."""
     uses: tuple[Step, ...] = ()
     """Earlier steps whose equations this one rests on."""
+    solves: tuple[tuple[str, tuple[sp.Symbol, ...]], ...] = ()
+    """The inverses that this step gives reasons for, and the unknowns whose solution it explains;
+    without unknowns, it explains the inverse as a whole."""
 
     @cached_property
     def vanishes(self) -> tuple[Any, ...]:

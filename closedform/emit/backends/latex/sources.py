@@ -42,6 +42,39 @@ def of_the_target(
     return f" {reference(labels)}" if labels else ""
 
 
+def _sections(page: Sheet, steps: Sequence[Step]) -> str:
+    """The sections of steps: ``Sections 3.1 and 3.2``."""
+    every = page.derivation.steps
+    places = [rf"\ref{{step:{page.derivation.name}:{every.index(s) + 1}}}" for s in steps]
+    if len(places) < 2:
+        return "".join(f"Section~{place}" for place in places)
+    return f"Sections~{', '.join(places[:-1])} and {places[-1]}"
+
+
+def explained(page: Sheet, function: Function, unknowns: Iterable[sp.Symbol]) -> str:
+    """The sections of the derivation that explain how some unknowns are found."""
+    steps = [s for s, found in _reasons(page, function) if found & {*unknowns}]
+    return f" (see {_sections(page, steps)})" if steps else ""
+
+
+def explained_as_a_whole(page: Sheet, function: Function, unknowns: Iterable[sp.Symbol]) -> str:
+    """The sections that give reasons for an inverse, but for none of its unknowns."""
+    steps = [s for s, found in _reasons(page, function) if not found & {*unknowns}]
+    if not steps:
+        return ""
+    return f"{_sections(page, steps)} {'give' if len(steps) > 1 else 'gives'} the reasons."
+
+
+def _reasons(page: Sheet, function: Function) -> list[tuple[Step, frozenset[sp.Symbol]]]:
+    """The steps that give reasons for an inverse, and the unknowns that they explain."""
+    return [
+        (step, frozenset(unknowns))
+        for step in page.derivation.steps
+        for name, unknowns in step.solves
+        if name == function.name
+    ]
+
+
 def _numbers(page: Sheet, step: Step) -> list[str]:
     """The numbers of the equations of a step."""
     return [label for left, _ in step.shown if (label := page.numbers.of(upright(left)))]
@@ -105,4 +138,4 @@ def _entries(value: Any) -> Iterable[Any]:
     return value if isinstance(value, sp.MatrixBase | list | tuple) else [value]
 
 
-__all__ = ["Stated", "of_the_loop", "of_the_target"]
+__all__ = ["Stated", "explained", "explained_as_a_whole", "of_the_loop", "of_the_target"]

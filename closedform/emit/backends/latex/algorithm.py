@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations, groupby
@@ -18,12 +19,14 @@ import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
-from closedform.emit.backends.latex.listing import Line, merged, unless
+from closedform.emit.backends.latex.listing import Line, merged, parts_first, unless, whole
 from closedform.emit.backends.latex.names import is_word, program_name
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
+from closedform.emit.backends.latex.twins import twins
 from closedform.emit.backends.latex.vectors import InVectors, is_vector
+from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
     Bound,
     Let,
@@ -87,6 +90,8 @@ class Algorithm:
     pairs: dict[sp.Expr, sp.Expr] = field(default_factory=dict)
     """Values that are the sine or the cosine of an angle."""
     found: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    borrowed: set[str] = field(default_factory=set)
+    """Names that steps of the derivation define, and no line."""
 
     def __post_init__(self) -> None:
         self.function, self.inverse = self.subject.function, self.subject.inverse
@@ -101,6 +106,9 @@ class Algorithm:
         self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
         self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
         self.needed = self._needed()
+        lemmas = [k.lemma for k in links if k.lemma]
+        self.twins = twins(lemmas, self.values, self.flags) if not self.subject.each else None
+        self.letters = {**self.letters, **(self.twins.letters if self.twins else {})}
         if self.vectors:
             self.names |= self.vectors.letters
         self.uses = self._uses()
@@ -128,13 +136,14 @@ class Algorithm:
         """The names that the answers and the conditions of existence depend on."""
         needed: set[Any] = {s for e in self.outputs for s in e.free_symbols}
         needed |= self.vectors.values.keys() if self.vectors else set()
+        told = self.model.replaced if self.model else {}
         for statement in reversed(self.function.body):
             if isinstance(statement, Match):
                 needed |= self._generic(statement.value).free_symbols
             elif isinstance(statement, Bound) or (
                 isinstance(statement, Let) and statement.symbol in needed
             ):
-                needed |= self.values[statement.symbol].free_symbols
+                needed |= told.get(statement.symbol, self.values[statement.symbol]).free_symbols
         return needed
 
     def _uses(self) -> dict[sp.Basic, int]:
@@ -182,7 +191,8 @@ class Algorithm:
         # an italic s_1 or c_1 beside the sine and the cosine of the joint would be read as these
         letter = self._free_letter(symbol)
         word = is_word(name) or (name[0] in "sc" and name[1:] in joints)
-        word = word and not letter
+        own = name in self.page.derivation.written and self.uses.get(symbol, 0) > 1
+        word = word and not letter and not own
         width = self.page.lines.width(value)
         once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
         is_root = bare.is_Pow and bare.exp == sp.S.Half
@@ -210,7 +220,7 @@ class Algorithm:
 
     def _free_letter(self, symbol: sp.Symbol) -> str:
         """What a step calls it, or the letter of the lemma unless something else is written so."""
-        known = self.page.quantities.known.items()
+        known = {**self.page.quantities.narrow, **self.page.quantities.known}.items()
         if stated := next((n for n, (e, _) in known if e == self.value(symbol)), ""):
             return stated
         letter = self.letters.get(symbol, "")
@@ -251,7 +261,18 @@ class Algorithm:
         if not isinstance(value, sp.MatrixBase):
             value = value.xreplace(self.pairs)
         value = substitute(value, self.known)
-        return self.short(value) if isinstance(value, sp.Expr) else value
+        return self.short(self.in_names_of_steps(value)) if isinstance(value, sp.Expr) else value
+
+    def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
+        """A value of the joints in names that the steps of the derivation have defined."""
+        if self.function.has_status:
+            return value
+        own = {str(s): s for s in value.free_symbols}
+        named = self.page.quantities.of_a_function(value, (), own)
+        if named.is_Symbol and value in self.values.values():
+            return value  # which has a name in the algorithm
+        self.borrowed |= self.page.quantities.in_value(named)
+        return named
 
     def short(self, value: sp.Expr) -> sp.Expr:
         """The same with the names of quantities that occur in it; signs have the square 1."""
@@ -275,6 +296,10 @@ class Algorithm:
         value = value.xreplace(squares)
         found = {}
         for angle in value.atoms(sp.atan2):
+            y, x = angle.args
+            if isinstance(y, sp.sin) and isinstance(x, sp.cos) and y.args == x.args:
+                found[angle] = y.args[0]
+                continue
             sides = [sp.Mul.make_args(sp.together(side)) for side in angle.args]
             shared = [p for p in sides[0] if p in sides[1] and _is_below(p, roots)]
             if shared:
@@ -325,11 +350,20 @@ class Algorithm:
         self.page.lines.clear()
         self.page.lines.line_width = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
-        common, each = list[Part](), list[Part]()
+        common, each, once = list[Part](), list[Part](), list[Part]()
+        alike = self.twins.alike if self.twins else frozenset()
+        second = self.twins.second if self.twins else frozenset()
         body = self.function.body
         told = self.model.function.body if self.model else ()
         for statement in body:
-            parts = list(self._statement(statement))
+            symbol = getattr(statement, "symbol", None)
+            if symbol in second:  # told with those of the first part
+                self.printed.add(symbol)
+                if not second & self._made_after(statement):
+                    each.append(("twins", once, ""))
+                continue
+            with self.as_one(symbol in alike):
+                parts = list(self._statement(statement))
             if statement in told:  # with its conditions
                 parts = [part for part in parts if part[0] == "let"]
             used = {s for e in self._expressions(statement) for s in e.free_symbols}
@@ -339,7 +373,7 @@ class Algorithm:
                     branched |= self.means[statement.symbol].free_symbols
                 if self.model and statement.symbol in self.model.replaced:
                     branched |= self.model.replaced[statement.symbol].free_symbols
-            (each if used & branched else common).extend(parts)
+            (once if symbol in alike else each if used & branched else common).extend(parts)
         kind = "return" if sp.true in self.outputs else "let"
         answer = [(kind, text, "") for text in self._answers()]
         self.page.lines.line_width = FITS
@@ -470,16 +504,12 @@ class Algorithm:
 
     def texts(self, left: Any, value: Any) -> list[str]:
         """Equations as formulas in the text, each in one piece."""
-        return self.parts_first(whole(self.page.equations(left, value)))
+        return self.parts_first(self.page.equations(left, value))
 
-    def parts_first(self, texts: Sequence[str]) -> list[str]:
-        """What has a name before what it is used in: the part of a part first, a matrix last."""
-        names = tuple(
-            rf"$\displaystyle {self.page.math(s)} =" for s in self.page.lines.parts.values()
-        )
-        parts = [t for t in texts if names and t.startswith(names)]
-        rest = (t for t in texts if t not in parts)
-        return [*reversed(parts), *sorted(rest, key=lambda t: r"\begin{bmatrix}" in t)]
+    def parts_first(self, equations: Sequence[Equation]) -> list[str]:
+        """Equations as formulas in the text, the parts of wide ones first."""
+        names = [self.page.math(s) for s in self.page.lines.parts.values()]
+        return parts_first(names, whole(equations))
 
     def _answers(self) -> list[str]:
         entries = iter(self.outputs)
@@ -493,7 +523,7 @@ class Algorithm:
                 continue
             if array.name == FACTORS:  # the section on the singular set lists them
                 continue
-            rows += self.parts_first(whole(self.page.array(array, shown, self.function.entries)))
+            rows += self.parts_first(self.page.array(array, shown, self.function.entries))
         return rows
 
     def joined(self, lines: Sequence[Part], depth: int) -> list[Line]:
@@ -512,10 +542,16 @@ class Algorithm:
                     done.append(Line(unless(text, self.otherwise("unreachable")), depth, remark))
                 continue
             for kind, text, remark in group:
+                if kind == "twins" and self.twins:
+                    done.append(Line(rf"\textbf{{for each}} {self.twins.each}:", depth))
+                    with self.as_one():
+                        done += self.joined(text, depth + 1)
+                    continue
                 if kind == "return":
                     done.append(Line(text, depth))
                     continue
                 wide = measure(done[-1].text + text) > FITS - 14 - 2 * depth if done else True
+                wide |= bool(done) and done[-1].depth != depth
                 if kind == "let" and done and done[-1].kind == "let" and not wide:
                     done[-1] = Line(rf"{done[-1].text},\quad {text}", depth, "", "let")
                 elif kind == "let":
@@ -523,6 +559,21 @@ class Algorithm:
                 else:
                     done.append(Line(unless(text, self.otherwise(STATUS[kind])), depth, remark))
         return done
+
+    def as_one(self, holds: bool = True) -> AbstractContextManager[None]:
+        """Print what is told once of twins with the index of any of them."""
+        return self.twins.as_one(self.page.printer) if self.twins and holds else nullcontext()
+
+    def as_two(self, holds: bool = True) -> AbstractContextManager[None]:
+        """Print what differs in twins with the index of each."""
+        letters = self.twins.letters if self.twins and holds else {}
+        names = {s: self.names[s] for s in letters if s in self.names}
+        return self.page.printer.written_as(names) if names else nullcontext()
+
+    def _made_after(self, statement: Statement) -> set[Any]:
+        """The names that statements after this one define."""
+        body = self.function.body
+        return {getattr(s, "symbol", None) for s in body[body.index(statement) + 1 :]}
 
     def otherwise(self, status: str) -> str:
         """What a function answers where a condition fails: a status, no number, or no."""
@@ -543,17 +594,6 @@ def _simplest_first(term: sp.Expr) -> tuple[Any, ...]:
     return bool(number.is_negative), len(term.free_symbols), abs(number) != 1, str(term)
 
 
-def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
-    """Equations as formulas in the text; what was broken into lines is one formula again."""
-    texts: list[str] = []
-    for left, right in equations:
-        if left:
-            texts.append(f"{left} = {right}")
-        else:
-            texts[-1] += f" {right}"
-    return [rf"$\displaystyle {t}$" for t in texts]
-
-
 STATUS = {"unless": "unreachable", "invalid": "invalid"}
 
-__all__ = ["ONCE", "Algorithm", "whole"]
+__all__ = ["ONCE", "Algorithm"]

@@ -32,7 +32,7 @@ from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.names import is_word
-from closedform.emit.backends.latex.plain import plain
+from closedform.emit.backends.latex.plain import angles_of_readers, plain
 from closedform.emit.backends.latex.prose import (
     escape,
     mixed,
@@ -46,7 +46,7 @@ from closedform.emit.backends.latex.vectors import in_vectors
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
-from closedform.model.inverse import Inverse, Rank
+from closedform.model.inverse import Combination, Inverse, Rank
 from closedform.model.lemma import Lemma
 from closedform.model.step import Step
 from closedform.proof.prove import Proof
@@ -57,13 +57,14 @@ BARE: Mapping[str, Any] = {
     "blocks": [],
     "lines": [],
     "lines_kept": 0,
+    "borrowed": "",
     "cases": [],
     "roundings": [],
     "after": "",
 }
 """A function without a listing."""
-ROOM = 26
-"""A table that needs no more lines than that is kept on one page."""
+ROOM = 14
+"""A table that needs no more lines than that is kept on one page; a longer one may be broken."""
 HEADING = 6
 """The lines of a heading and a short reason, which stay with the table below them."""
 SENTENCE = 60
@@ -93,7 +94,8 @@ class Page(Sheet):
         """The algorithm of a function, which goes on where that of an earlier one ends."""
         if function.name not in self.algorithms:
             model, subject = self.model(function), Subject.of(self.derivation, function)
-            means = {n: m for s in self.derivation.solved for n, m in s.lemma.means.items()}
+            means = dict(self.derivation.means)
+            means |= {n: m for s in self.derivation.solved for n, m in s.lemma.means.items()}
             if inverse := subject.inverse:
                 means |= inverse.rank.meaning
             lemmas = subject.lemmas
@@ -114,7 +116,15 @@ class Page(Sheet):
                 subject = replace(subject, function=turned.function)
                 letters |= turned.letters
             returned = results or self.coordinates_of(subject.function)
-            read = plain(subject.function, lemmas, self.free_angles, returned)
+            free = list(self.free_angles)
+            letters |= {
+                angle: self.written(free.pop(0))
+                for lemma in lemmas
+                for angle in angles_of_readers(lemma)
+            }
+            glue = inverse.glue if inverse else None
+            joints = glue.joints if isinstance(glue, Combination) else {}
+            read = plain(subject.function, lemmas, free, returned, joints)
             written = {n: w for lemma in lemmas for n, w in lemma.written.items()}
             vectors = in_vectors(read.function, written) if written else None
             if vectors:
@@ -261,8 +271,18 @@ class Page(Sheet):
             "blocks": [],
             "lines": lines,
             "lines_kept": lines_kept(lines),
+            "borrowed": self.borrowed(algorithm),
             "cases": cases.told(),
         }
+
+    def borrowed(self, algorithm: Algorithm) -> str:
+        """The names in an algorithm that steps define, and the numbers of their equations."""
+        numbers = self.numbers.defined
+        labels = {n: numbers[c] for n in algorithm.borrowed if (c := canonical(n)) in numbers}
+        if not labels:
+            return ""
+        names = sorted(labels, key=lambda n: int(labels[n].rpartition(":")[2]))
+        return f"See {reference(list(labels.values()))} for {listed([f'${n}$' for n in names])}."
 
     def after(self, function: Function, algorithm: Algorithm) -> str:
         """The function with whose statements this one starts, and whether their cases matter."""

@@ -36,12 +36,16 @@ class Cases:
     def told(self) -> list[Case]:
         """Where the lines above do not apply, and what holds there that the model does not say."""
         found = []
+        twins = self.algorithm.twins
         for flag in self.algorithm.flags.values():
-            told = self._told(flag)
-            effect = [e for e in self._effect(flag) if told is None or e not in told]
-            free = flag.free if told is None else ()
-            if not is_rounding(flag) and (effect or free):
-                found.append(self._case(flag, effect, free))
+            if twins and flag.symbol in twins.second:
+                continue
+            with self.algorithm.as_one(twins is not None and flag.symbol in twins.alike):
+                told = self._told(flag)
+                effect = [e for e in self._effect(flag) if told is None or e not in told]
+                free = flag.free if told is None else ()
+                if not is_rounding(flag) and (effect or free):
+                    found.append(self._case(flag, effect, free))
         for statement in self.algorithm.function.body:
             if isinstance(statement, Determined):
                 found.append(self._determined(statement))

@@ -8,7 +8,8 @@ not write ``\\left(``, because TeX never breaks inside it.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from itertools import chain
 from typing import Any
@@ -52,6 +53,17 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         if changed & self._printed:
             self._texts.clear()
             self._printed.clear()
+
+    @contextmanager
+    def written_as(self, names: Mapping[sp.Symbol, str]) -> Iterator[None]:
+        """Print symbols by these names meanwhile, in whatever way they are declared."""
+        before = self.written, self.joints
+        self.written = {**self.written, **{str(s.name): name for s, name in names.items()}}
+        self.joints = self.joints - names.keys()
+        self._texts.clear()
+        yield
+        self.written, self.joints = before
+        self._texts.clear()
 
     def _print(self, expr: Any, **kwargs: Any) -> str:
         """A part of an expression; the same parts are printed again and again."""
@@ -110,6 +122,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def _fraction(self, expr: sp.Mul) -> str:
         number, factors = _number(expr)
+        if number.is_negative and (turned := _turned(factors)):
+            number, factors = -number, turned
         over, under, radicands = [], [], ([], [])  # type: ignore[var-annotated]
         for factor in factors:
             base, power = factor.as_base_exp()
@@ -228,6 +242,12 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             return short + power
         return rf"\{function}{power} {full}"
 
+    def _print_asin(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return rf"\arcsin\left({self._print(expr.args[0])}\right)"
+
+    def _print_acos(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return rf"\arccos\left({self._print(expr.args[0])}\right)"
+
     def _print_atan(self, expr: sp.Expr, exp: str | None = None) -> str:
         y, x = sp.fraction(sp.together(expr.args[0]))
         if x != 1:  # SymPy makes it of an atan2 whose second argument is positive
@@ -285,6 +305,18 @@ def _over_under(angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 
 def _negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
+
+
+def _turned(factors: Sequence[sp.Expr]) -> list[sp.Expr] | None:
+    """The factors with the opposite sign: the sine of b - a for that of a - b."""
+    for k, factor in enumerate(factors):
+        sine, power = factor.as_base_exp()
+        if isinstance(sine, sp.sin | sp.tan) and power in (1, -1) and sine.args[0].is_Add:
+            signs = {_negative(term) for term in sine.args[0].args}
+            if signs == {True, False} and len(sine.args[0].args) == 2:
+                turned = sine.func(-sine.args[0], evaluate=False) ** power
+                return [*factors[:k], turned, *factors[k + 1 :]]
+    return None
 
 
 def _factors(expr: sp.Expr) -> list[sp.Expr]:

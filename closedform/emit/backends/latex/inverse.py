@@ -9,13 +9,15 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.formulas import PRINTED, formula
-from closedform.emit.backends.latex.algorithm import Algorithm, whole
+from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.cases import Cases
+from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.formulas import FITS, measure
-from closedform.emit.backends.latex.listing import lines_kept
+from closedform.emit.backends.latex.listing import lines_kept, whole
 from closedform.emit.backends.latex.prose import escape, upright
 from closedform.emit.backends.latex.sheet import Sheet, blocks
-from closedform.emit.backends.latex.stages import Stages, block, enumeration
+from closedform.emit.backends.latex.sources import explained_as_a_whole
+from closedform.emit.backends.latex.stages import Stages, block
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
     Array,
@@ -49,6 +51,9 @@ class Told:
             "after": self.after,
             "stages": self.stages.context(),
             "order": self.order(),
+            "reasons": explained_as_a_whole(
+                page, self.function, [u for s in self.stages.solvings for u in s.unknowns]
+            ),
             "each": self.subject.each,
             "several": sum(len(self.stages.sought(s)) for s in self.stages.solvings) > 1,
             "joints": blocks(self.joints()),
@@ -98,9 +103,14 @@ class Told:
         """The unknowns, in the order in which they are solved for."""
         groups = []
         for step in self.stages.steps:
+            if self.stages.are_twins(step) and (twins := self.algorithm.twins):
+                with self.algorithm.as_one():
+                    names = self.stages.sought(step[0])
+                groups.append(f"({', '.join(names)}) for {twins.each}")
+                continue
             names = [u for s in step for u in self.stages.sought(s)]
             together = len(step) == 1 and len(names) > 1
-            groups.append(f"({', '.join(names)})" if together else enumeration(names))
+            groups.append(f"({', '.join(names)})" if together else listed(names))
         return ", then ".join(groups)
 
     def joints(self) -> list[tuple[str, str]]:

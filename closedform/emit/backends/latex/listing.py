@@ -46,4 +46,37 @@ def merged(lines: Sequence[tuple[str, Any, str]]) -> list[tuple[str, Any, str]]:
     return done
 
 
-__all__ = ["Line", "lines_kept", "merged", "unless"]
+def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
+    """Equations as formulas in the text; what was broken into lines is one formula again."""
+    texts: list[str] = []
+    for left, right in equations:
+        if left:
+            texts.append(f"{left} = {right}")
+        else:
+            texts[-1] += f" {right}"
+    return [rf"$\displaystyle {t}$" for t in texts]
+
+
+def parts_first(names: Sequence[str], texts: Sequence[str]) -> list[str]:
+    """Equations in an order in which each of the names is defined before it is used.
+
+    A matrix stands last.
+    """
+    parts = {n: t for n in names for t in texts if t.startswith(rf"$\displaystyle {n} =")}
+    done = list[str]()
+
+    def add(name: str) -> None:
+        text = parts.pop(name)
+        for other in list(parts):
+            if other in parts and other in text:
+                add(other)
+        done.append(text)
+
+    for name in reversed(list(parts)):
+        if name in parts:
+            add(name)
+    rest = (t for t in texts if t not in done)
+    return [*done, *sorted(rest, key=lambda t: r"\begin{bmatrix}" in t)]
+
+
+__all__ = ["Line", "lines_kept", "merged", "parts_first", "unless", "whole"]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -13,7 +14,7 @@ from closedform.emit.backends.latex.prose import GREEK, symbol_name, written_nam
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 
-NAME = re.compile(r"\\?[A-Za-z]+(?:_(?:\w|\{(?:[^{}]|\{[^{}]*\})+\}))?")
+NAME = re.compile(r"\\?[A-Za-z]+(?:_(?:\w|\\[A-Za-z]+|\{(?:[^{}]|\{[^{}]*\})+\}))?")
 """The left side of an equation that defines a quantity."""
 LARGEST = 400
 """The largest number of operations of an expression in which quantities are looked for."""
@@ -47,6 +48,8 @@ class Quantities:
         self.printer, self.inputs = printer, frozenset(inputs)
         self.known: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         self.former: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
+        self.narrow: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
+        """Short sums, which serve in algorithms alone."""
 
     def define(self, left: str, value: Any) -> None:
         if not NAME.fullmatch(left) or left in self.inputs:
@@ -54,16 +57,44 @@ class Quantities:
         if left in self.known:
             self.former[left] = self.known.pop(left)
         named = isinstance(value, sp.Add) or (isinstance(value, sp.Pow) and value.base.is_Add)
-        if named and measure(self.printer.math(value)) >= NARROWEST:
+        self.narrow.pop(left, None)
+        if named:
             symbol = real(f"{left} ")  # a space: it is nobody else's name
             self.printer.rename({symbol: left})
-            self.known[left] = value, symbol
-            self.former.pop(left, None)
+            wide = measure(self.printer.math(value)) >= NARROWEST
+            (self.known if wide else self.narrow)[left] = value, symbol
+            if wide:
+                self.former.pop(left, None)
 
-    def of_a_function(self, value: sp.Expr, without: Iterable[str]) -> Any:
-        """A result in names that the steps have defined, ``without`` its own."""
-        known = {**self.former, **self.known}
-        return self._named(value, [k for left, k in known.items() if left not in without])
+    def of_a_function(
+        self,
+        value: sp.Expr,
+        without: Iterable[str],
+        names: Mapping[str, sp.Symbol] = MappingProxyType({}),
+    ) -> Any:
+        """A result in names that the steps have defined, ``without`` its own.
+
+        ``names`` are the symbols of the function, of which more may be assumed.
+        """
+        every = {**self.former, **(self.narrow if names else {}), **self.known}
+        found = {left: k for left, k in every.items() if left not in without}
+        if not names:
+            return self._named(value, found.values())
+        symbols = {s for e, _ in found.values() for s in e.free_symbols}
+        own = {s: names[str(s)] for s in symbols if str(s) in names}
+        written = {re.sub(r"[{}]", "", left): symbol for left, (_, symbol) in found.items()}
+        for s in symbols - own.keys():  # a quantity in the definition of another one
+            if quantity := written.get(re.sub(r"[{}]", "", self.printer.math(s))):
+                own[s] = quantity
+        known = [(e.xreplace(own), s) for e, s in found.values()]
+        while (whole := self._named(value, known)) != value:
+            value = whole
+        return value
+
+    def in_value(self, value: sp.Expr) -> set[str]:
+        """The names of quantities of steps in a value."""
+        every = {**self.former, **self.narrow, **self.known}
+        return {left for left, (_, symbol) in every.items() if symbol in value.free_symbols}
 
     def __call__(self, value: Any) -> Any:
         """A value with the names of the quantities that occur in it."""

@@ -324,7 +324,8 @@ class Prose:
 
     def _name(self, name: str) -> str:
         """A symbol; a vector is bold as in the formulas."""
-        free = name not in self.names and name not in self.derivation.written
+        spelled = {name, name.replace("_", "")}  # a parameter gs is also called g_s
+        free = not spelled & self.names and name not in self.derivation.written
         if free and name in self.vectors:
             return rf"\mathbf {name}"
         if (

@@ -57,7 +57,8 @@ class Sheet:
         """The letters for angles that mean nothing else."""
         used = {*self.prose.names}
         written = self.derivation.written
-        used |= {*written, *(w.latex.removeprefix("\\") for w in written.values())}
+        letters = (w.latex.removeprefix("\\").partition("_")[0] for w in written.values())
+        used |= {*written, *letters}
         return [g for g in ANGLES if g not in used]
 
     def model(self, function: Function) -> Function | None:

@@ -17,6 +17,7 @@ from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.equations import (
     Numbered,
     canonical,
+    listed,
     reference,
     runs,
     skeleton,
@@ -27,7 +28,12 @@ from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import mixed
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, blocks
-from closedform.emit.backends.latex.sources import Stated, of_the_loop, of_the_target
+from closedform.emit.backends.latex.sources import (
+    Stated,
+    explained,
+    of_the_loop,
+    of_the_target,
+)
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
@@ -87,7 +93,9 @@ class Stages:
         for solving in self.solvings:
             if all(self.named(e) == 0 for e in solving.equations):
                 continue  # a joint that is given
-            if self.steps and self.is_like(solving, self.steps[-1]):
+            twins = algorithm.twins
+            is_second = twins is not None and solving.lemma is twins.lemmas[1]
+            if self.steps and (is_second or self.is_like(solving, self.steps[-1])):
                 self.steps[-1].append(solving)
             else:
                 self.steps.append([solving])
@@ -98,7 +106,21 @@ class Stages:
         """The numbers of the equations of the derivation that define names in a step."""
 
     def context(self) -> list[dict[str, Any]]:
-        return [self.stage(k, step) for k, step in enumerate(self.steps, 1)]
+        return [self.told_stage(k, step) for k, step in enumerate(self.steps, 1)]
+
+    def are_twins(self, step: Sequence[Solving]) -> bool:
+        """Whether a step is told once of two parts that differ in names alone."""
+        twins = self.algorithm.twins
+        return twins is not None and [s.lemma for s in step] == [*twins.lemmas]
+
+    def told_stage(self, number: int, step: Sequence[Solving]) -> dict[str, Any]:
+        if not self.are_twins(step) or not (twins := self.algorithm.twins):
+            return self.stage(number, step)
+        with self.algorithm.as_one():
+            told = self.stage(number, step[:1])
+        told["unknowns"] += f" for {twins.each}"
+        self.told |= twins.second
+        return told
 
     def is_like(self, solving: Solving, step: Sequence[Solving]) -> bool:
         """Whether the lemma of a step solves another equation too, which needs none of its joints.
@@ -137,8 +159,9 @@ class Stages:
         if self.algorithm.vectors or lemma.vectors:  # the lemma has the equations, in vectors
             solved, definitions = [], []
         rows, labels = self.numbered(solved)
-        if not rows and not definitions:
-            origin = origin.removesuffix(":") + "."
+        end = ":" if rows or definitions else "."
+        found = [u for s in step for u in s.unknowns]
+        origin = f"{origin.removesuffix(':')}{explained(page, self.function, found)}{end}"
         if lemma.matrix:
             solution = self.matrix_of(step[0])
         else:
@@ -146,7 +169,7 @@ class Stages:
         return {
             "number": number,
             "solves": "each of " * (len(step) > 1) + (reference(labels) or "them"),
-            "unknowns": enumeration([u for s in step for u in self.sought(s)]),
+            "unknowns": listed([u for s in step for u in self.sought(s)]),
             "from": origin,
             "blocks": blocks(rows),
             "definitions": blocks(definitions),
@@ -261,7 +284,7 @@ class Stages:
             return f"Here ${letter}$ is a rotation."
         if not found:
             return ""
-        names = enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
+        names = listed([f"${n[0]}^{{({n[1]})}}$" for n in found])
         told = f"The entries of {names} follow from $R$ and the joints before"
         return f"{told}, as in the algorithm below."
 
@@ -293,20 +316,20 @@ class Stages:
             source = f"From the equations of the loop{of_the_loop(page)}"
         verb = "follow equations" if len(equations) > 1 else "follows an equation"
         sought = [u for s in step for u in self.sought(s)]
-        unknowns = enumeration(sought + [f"${page.math(u)}$" for u in later])
+        unknowns = listed(sought + [f"${page.math(u)}$" for u in later])
         found = [f"step {k} finds ${page.math(u)}$" for u, k in later.items()]
         told = f"{source} {verb} in {unknowns}"
         if len(step) > 1:
             told = f"{source} follows one equation in each of {unknowns}"
         if later:
-            told += f", of which {enumeration(found)}"
+            told += f", of which {listed(found)}"
         matrices = [j for j in before if j.strip("$") in letters.values()]
         if not where and matrices == before and len(before) == 1:  # the target is in the matrix
             label = self.page.numbers.of(before[0].strip("$"))
             return f"{told.replace(source, f'From {before[0]} in {reference([label])}', 1)} alone:"
         if before:
             verb = "is" if len(before) == 1 else "are"
-            return f"{told}, where {enumeration(before)} {verb} known:"
+            return f"{told}, where {listed(before)} {verb} known:"
         return f"{told}:" if later or len(step) > 1 else f"{told} alone:"
 
     def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
@@ -347,9 +370,9 @@ class Stages:
             names.append(
                 "the rotation $R$"
                 if len(turned) > FEW
-                else enumeration([f"${self.page.math(s)}$" for s in turned])
+                else listed([f"${self.page.math(s)}$" for s in turned])
             )
-        return enumeration(names)
+        return listed(names)
 
     def count(self, step: Sequence[Solving]) -> str:
         """How many solutions there are, and the signs that tell them apart."""
@@ -359,7 +382,7 @@ class Stages:
         used = {s for other in before for s in self.own_symbols(other)}
         own = {s for e in step for s in self.own_symbols(e) | set(e.lemma.signs)} - used
         signs = [s for s in self.algorithm.signs if s in own]
-        told = enumeration([rf"${self.page.math(s)} = \pm 1$" for s in signs])
+        told = listed([rf"${self.page.math(s)} = \pm 1$" for s in signs])
         start = "Each has" if several else f"There {'are' if n != 1 else 'is'}"
         text = f"{start} {number} solution{'s' * (n != 1)}"
         if told and n > 1:
@@ -380,6 +403,7 @@ class Stages:
         }
         used = {s for e in solving.lemma.solution.values() for s in e.free_symbols}
         used |= {s for e in solving.lemma.means for s in e.free_symbols}
+        used |= solving.lemma.plainly.keys()
         for symbol in reversed(list(body)):
             if symbol in used:
                 used |= body[symbol].free_symbols
@@ -414,7 +438,7 @@ class Stages:
             else:
                 rows.append((letter, text))
         return {
-            "roles": enumeration(inline) + turns if inline else "",
+            "roles": listed(inline) + turns if inline else "",
             "role_blocks": blocks([*rows, *self.made_before(values)]),
         }
 
@@ -424,7 +448,10 @@ class Stages:
         rows: list[tuple[str, str]] = []
         values: list[sp.Expr] = []
         means = solving.link.means if solving.link else solving.lemma.means
-        for unknown in solving.unknowns:
+        order = list(algorithm.values)
+        for unknown in sorted(
+            solving.unknowns, key=lambda u: order.index(u) if u in order else len(order)
+        ):
             pair = [s for s in means if isinstance(means[s], sp.sin | sp.cos)]
             pair = [s for s in pair if means[s].args[0] == unknown and s in algorithm.needed]
             if pair:
@@ -493,12 +520,13 @@ class Stages:
         shown |= {s: s for s in printed if s not in algorithm.known}  # also if another one is it
         pending = [s for v in values for s in self.atoms(v) if s in shown]
         found: set[sp.Symbol] = set()
+        apart = algorithm.twins.apart if algorithm.twins else {}
         while pending:
             symbol = shown[pending.pop()]
             if symbol not in found and symbol not in self.told:
                 found.add(symbol)
                 value = algorithm.value(symbol)
-                pending += [s for s in self.atoms(value) if s in shown]
+                pending += [s for s in (*self.atoms(value), apart.get(symbol)) if s in shown]
         self.told |= found
         rows = list[Equation]()
         for s in algorithm.values:
@@ -507,7 +535,8 @@ class Stages:
             value = algorithm.value(s)
             if algorithm.known.get(s) == value:
                 continue
-            own = self.page.equations(algorithm.known.get(s, s), value)
+            with algorithm.as_two(s in apart or s in apart.values()):
+                own = self.page.equations(algorithm.known.get(s, s), value)
             if label := self.stated.of(own, value):
                 self.seen.append(label)
             else:
@@ -531,7 +560,7 @@ class Stages:
         """Where an unknown of the lemma is free."""
         texts = []
         for flag in self.freeing(solving):
-            free = enumeration([f"${self.page.math(s)}$" for s in flag.free])
+            free = listed([f"${self.page.math(s)}$" for s in flag.free])
             where = Cases(self.algorithm).vanishing(self.vanishing(flag))
             texts.append(
                 f"{self.page.prose(flag.meaning)} ({where}): "
@@ -567,10 +596,4 @@ def block(array: Array) -> list[sp.Expr]:
     return [array.entries[columns * i + j] for i in range(3) for j in range(3)]
 
 
-def enumeration(texts: Sequence[str]) -> str:
-    """``a, b and c``."""
-    *first, last = texts or [""]
-    return f"{', '.join(first)} and {last}" if first else last
-
-
-__all__ = ["Solving", "Stages", "block", "enumeration", "same_angle"]
+__all__ = ["Solving", "Stages", "block", "same_angle"]

@@ -81,7 +81,9 @@ def forms_of(
     for symbol in _symbols_in(derivation, local):
         form = canonical(math(symbol))
         # one coordinate may be part of the targets of two functions, under two names
-        forms.add(form, f"a target {form}" if symbol in targets else symbol.name)
+        known = derivation.written.get(symbol.name)
+        name = known.same if known and known.same else symbol.name
+        forms.add(form, f"a target {form}" if symbol in targets else name)
     return forms
 
 

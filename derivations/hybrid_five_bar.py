@@ -182,11 +182,10 @@ for name, meaning in (
     ("CP_r", "component of CP away from AB"),
     ("DP_y", "component of DP along AB"),
     ("DP_r", "component of DP away from AB"),
-    ("P_r", "distance of P from AB, with a sign"),
     ("CD_y", "component of CD along AB"),
     ("CD_r", "component of CD away from AB"),
-    ("n_1", "component of n away from AB"),
-    ("n_2", "component of n along AB"),
+    ("n_1", "component of n along AB"),
+    ("n_2", "component of n away from AB"),
     ("L3", "length of the driven bar BD, if it differs from AC"),
     ("L4", "length of the passive bar DP, if it differs from CP"),
     ("psi", "angle from CP to DP"),
@@ -228,7 +227,12 @@ d.explain(
         "M_b": "measure of how far leg BD is from being folded",
     }
 )
+d.write("P_r", r"\rho", same="rho")
 d.write("side", r"\Delta", "cross product of CP and DP, in an assembly mode")
+d.write("apart", r"\mathit{CD}", "distance of C and D")
+d.write(height, "e", same="e")
+d.write("along_c", "B_{22}")
+d.write("along_d", "B_{33}")
 d.write("volume", "V", "volume of the workspace")
 
 skeleton(
@@ -345,7 +349,7 @@ d.step(
     {
         r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) A^{-1}": (
             A_inverse * product
-        ).applyfunc(normal),
+        ).applyfunc(lambda entry: sp.factor(normal(entry))),
         r"\det A": det_a,
         r"\det B": det_b,
         r"\det J": det_j,
@@ -369,6 +373,7 @@ for symbol, value in driven.items():
 
 
 J_named = J.xreplace({-sp.expand(product): -sideways})
+shown_as = {"jacobian_parallel": "A", "jacobian_serial": "B"}
 for name, summary, outputs, notes in (
     ("jacobian_parallel", "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.", {"A": A_p}, ()),
     (
@@ -414,6 +419,7 @@ for name, summary, outputs, notes in (
         outputs,
         program=v,
         branches=modes,
+        equation=shown_as.get(name, ""),
         notes=("NaN for an assembly mode that does not exist.", *notes),
     )
 

@@ -186,6 +186,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
             **spelled("b", (y - L0) ** 2 + real("r_P") ** 2, y - L0, sigma3),
         },
         uses=[loop.step],
+        solves={"ik": ()},
     )
     ap, bp = sp.Matrix([y, off_axis]), sp.Matrix([y - L0, off_axis])
     cp, dp = (L2 * sp.Matrix([cos(t), sin(t)]) for t in (theta4, theta5))
@@ -221,6 +222,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
                 4 * ap.dot(ap) * cp.dot(cp) - (2 * products(ap, cp)[0]) ** 2,
             ),
         ],
+        solves={"ik": ()},
     )
 
 

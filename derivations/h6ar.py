@@ -9,7 +9,7 @@ from closedform.derivations.h6ar_free_turn import (
     turned_by,
     with_waist,
 )
-from closedform.derivations.h6ar_jacobian import factors_shown
+from closedform.derivations.h6ar_jacobian import TIP_RATES, factors_shown
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
@@ -49,16 +49,17 @@ from closedform.derivations.h6ar_mechanism import (
     tip,
     tip_system,
     turned,
-    wrist_frames,
     wrist_given,
     wrist_let,
     wrist_squared,
 )
 from closedform.derivations.h6ar_skeleton import draw
+from closedform.derivations.h6ar_tip import tip_step
 from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Bound,
     Combination,
     Derivation,
     Inverse,
@@ -68,7 +69,6 @@ from closedform import (
     choose,
     homogeneous,
     real,
-    rotation,
     sign_of,
     two_sines,
 )
@@ -139,24 +139,26 @@ leaning = d.step(
     "ahead of the left one, and d tan(phi) half the distance by which it is above.  In terms of "
     "the averages and half differences of the angles, both are linear in the sines of the half "
     "differences.",
-    {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
+    {r"\Delta_a = d \tan\psi": mean[0], r"\Delta_h = d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
     proves=(
         "Half the difference of the tips is as stated, in terms of the averages and half "
         "differences of the angles."
     ),
     equal=[(apart.xreplace(halves), mean)],
+    solves={"ik": [alpha, beta]},
 )
 d.step(
     "Invariant point",
     "The paper gives this point twice: as the middle of the tips in (6), and by the averages of "
     "the angles in (7).  This model uses (7).  In (6) the links are shortened by the cosines of "
     "the half differences.  The line between the two points is one side of a triangle, and the "
-    "other sides are e_1 and e_2 (f is the length of a fore-arm).  So the points are at most e_1 "
-    "+ e_2 apart, which is of second order in the half differences.",
+    "other sides are e_1 and e_2.  So the points are at most e_1 + e_2 apart, which is of second "
+    "order in the half differences.",
     {
         "(r, h)_I": invariant,
-        "(r, h)_6": ((right + left) / 2).xreplace(halves),
+        "(r, h)_6": midpoint(m),
+        "f": fore,
         "e_1": short_upper,
         "e_2": real("f") * (1 - cos(beta)),
     },
@@ -173,34 +175,9 @@ d.step(
     ],
 )
 
-# The tip
+# The wrist and the tip
 
 wrist = real("wrist", positive=True)
-posture = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), wrist, m.d / cos(psi))
-T = tip(m, posture)
-serial = product(
-    [
-        *arm_frames(m, theta1, theta2A, theta23A - theta2A, sp.S.Zero),
-        *wrist_frames(m, wrist + m.loff, psi, phi, theta),
-    ]
-)
-orientation = (
-    product(arm_frames(m, theta1, theta2A, theta23A - theta2A, sp.S.Zero))[:3, :3]
-    * rotation("z", phi)
-    * rotation("x", psi)
-    * rotation("y", theta)
-)
-placed = d.step(
-    "Tip",
-    "The wrist is a serial chain on the virtual fore-arm: roll about the fore-arm, yaw about the "
-    "rolled x axis, the wrist, pitch about the y axis, and the last link.  So the rotation of the "
-    "tip in (9) is that of the fore-arm, then phi about z, psi about x and theta about y.",
-    {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
-    published=("(9)",),
-    proves="Position and rotation of the tip are those of the serial chain with the virtual arm.",
-    equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
-)
-d.given_by = {**dict.fromkeys(("x", "y", "z"), placed), "psi": leaning, "phi": leaning}
 d.step(
     "Length of the wrist",
     "The wrist and a wrist link form a right triangle; its third side is half the base line minus "
@@ -216,6 +193,10 @@ d.step(
         )
     ],
 )
+posture = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), wrist, m.d / cos(psi))
+T = tip(m, posture)
+tip_step(d, m, q, wrist, m.d / cos(psi))
+d.given_by |= {"psi": leaning, "phi": leaning}
 
 
 a = real("ahead")
@@ -278,6 +259,8 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     ), sp.Matrix([ahead, above])
 
 
+for n, angle in (("2A", theta2A), ("23A", theta23A)):
+    d.means |= {real(f"c{n}"): cos(angle), real(f"s{n}"): sin(angle)}
 p = Program()
 here, gap = stand(p)
 fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
@@ -299,6 +282,7 @@ d.function(
     {"q": q},
     {"T": pose_matrix(m, p, stand(p)[0])},
     program=p,
+    equation="T",
     source="eq. (9) and its frames",
     notes=(too_wide,),
 )
@@ -350,6 +334,10 @@ inner[0, 0] = inner[5, 5] = sp.S.One
 inner[1:3, :] = by_half[:2, :]
 for k in (0, 1):
     inner[3 + k, :] = atan2(gap[k], m.d).diff(gap[k]) * apart[k, :].jacobian(q)
+by_right = arm(m, theta2R, theta2R + theta3R).jacobian([theta2R, theta3R])
+by_left = arm(m, theta2L, theta2L + theta3L).jacobian([theta2L, theta3L])
+d.explain(TIP_RATES)
+slopes = sp.diag(*(1 / (m.d**2 + e**2) for e in gap))
 aside, along, across = extended(m, posture)
 outward = reach(m, posture.upper, posture.fore, along, across)[0]
 
@@ -366,15 +354,20 @@ d.step(
     {
         **factors_of,
         "V": by_half[:2, 1:5],
-        "W": inner[3:5, 1:5],
+        "W": r"\frac{d}{2} \begin{bmatrix} \frac{1}{d^2 + \Delta_a^2} & 0 \\[6pt] "
+        r"0 & \frac{1}{d^2 + \Delta_h^2} \end{bmatrix} "
+        r"\begin{bmatrix} A_R & -A_L \end{bmatrix}",
+        "A_R": by_right,
+        "A_L": by_left,
     },
     proves=(
-        "The first three rows of the outer factor are as stated.  The determinant of the Jacobian "
+        "The first three rows of the outer factor and W are as stated.  The determinant of J "
         "is the product of three: that of the virtual arm with the wrist, that of the rates of "
         "yaw and roll, and 1/4 for the averages and half differences."
     ),
     equal=[
         (outer[:3, :], position),
+        (inner[3:5, 1:5], m.d / 2 * slopes * sp.Matrix.hstack(by_right, -by_left)),
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (area, -m.L1 * without * cos(alpha) * cos(beta)),
         (by_half[:, 1:5].det(), Rational(1, 4)),
@@ -459,7 +452,7 @@ v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s +
 free, waist_rate = with_waist(free_turn(p, m, elbow, slack), upper, middle.outward)
 fore_size = p.let("fore_size", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
 # in exact arithmetic all these turns are zero
-turns, fore_turns, upper_turns = [], [], []
+turns, fore_turns, upper_turns, before = [], [], [], len(p.body)
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
     aligned = v[0] * seen[0] + v[1] * seen[1]
@@ -494,9 +487,17 @@ for sine in ("alpha", "beta"):
     turns.append(turn)
     fore_turns.append(fore_turn)
     upper_turns.append(upper_turn)
+for k in (1, 2):
+    d.write(f"p_{k}_beta", rf"\hat p_{k}", "gap of the tips, in the axes of the virtual upper arm")
+    d.write(f"v_{k}_beta", rf"\hat v_{k}", "virtual fore-arm, in the axes of the virtual upper arm")
 half = two_sines(
-    p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
-)
+    p,
+    (alpha, beta),
+    ((sp.S.Zero, m.L1), v),
+    seen,
+    scale=beside,
+    free=(theta3R, theta3L),
+).implying([s.symbol for s in p.body[before:] if isinstance(s, Bound)])
 # near a right angle, sines at their limits may miss the gap by more than yaw and roll allow
 at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
 sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]

@@ -252,4 +252,5 @@ def as_published(d: Derivation, m: Dimensions) -> None:
                 cosines.xreplace({elbow: theta23A - theta2A}),
             )
         ],
+        solves={"ik": [theta2A, theta23A]},
     )

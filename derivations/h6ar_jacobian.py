@@ -38,7 +38,6 @@ MEANINGS = {
     "H_0": "the same for a wrist of constant length",
     r"\mathbf w": "derivative of these lengths with respect to that of the wrist",
     r"\mathbf g": "derivative of the length of the wrist with respect to yaw, roll and pitch",
-    r"L_\theta": "distance of the tip from the mid-plane",
     "V": "derivative of the virtual arm with respect to the joints of the arms",
     "W": "derivative of yaw and roll with respect to the joints of the arms",
 }
@@ -52,7 +51,6 @@ def factors_shown(
     ``base`` is half the base line as a function of yaw and roll, ``wrist`` the symbol for l_W.
     """
     d.explain(MEANINGS)
-    d.write("l_H", "l_{H}", "distance of the hand along the wrist")
     turns = (psi, phi, q.theta)
     whole = wrist + m.loff + m.lp * cos(q.theta)
     posture = Posture(*map(pair, (q.theta1, theta2A, theta23A, *turns)), wrist, base)
@@ -70,10 +68,6 @@ def factors_shown(
         "J": r"J_o\,J_i",
         "J_o": r"\begin{bmatrix} P & N\,H \\ 0 & I \end{bmatrix}",
         "J_i": r"\begin{bmatrix} 1 & 0 & 0 \\ 0 & V & 0 \\ 0 & W & 0 \\ 0 & 0 & 1 \end{bmatrix}",
-        "l_H": whole,
-        r"L_\theta": aside,
-        "L_{2W}": along,
-        "a_{3W}": across,
         "P": P,
         "N": N,
         "H": r"H_0 + \mathbf w\,\mathbf g^T",
@@ -89,10 +83,12 @@ def _with_hand(length: sp.Expr, whole: sp.Expr) -> sp.Expr:
     return sp.sympify(length).subs(whole, l_H)
 
 
-LOOP_MEANINGS = {
-    "K": "derivative of the end of the virtual arm with respect to its angles",
+TIP_RATES = {
     "A_R": "derivative of the right tip with respect to the joints of its arm, in the mid-plane",
     "A_L": "derivative of the left tip with respect to the joints of its arm, in the mid-plane",
+}
+LOOP_MEANINGS = TIP_RATES | {
+    "K": "derivative of the end of the virtual arm with respect to its angles",
     "E": "derivative of yaw and roll with respect to the base line",
     "S": "derivative of the base line, seen from the virtual fore-arm, with respect to the tips",
 }
@@ -120,4 +116,4 @@ def loop_factors(
     }
 
 
-__all__ = ["factors_shown", "loop_factors"]
+__all__ = ["TIP_RATES", "factors_shown", "loop_factors"]

@@ -44,10 +44,12 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_let,
 )
 from closedform.derivations.h6ar_skeleton import draw
+from closedform.derivations.h6ar_tip import bent_step, tip_step
 from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Bound,
     Combination,
     Derivation,
     Inverse,
@@ -107,7 +109,12 @@ d.step(
     "Both are written in half sums A and half differences of the angles of both arms (alpha for "
     "the upper arms, beta for the fore-arms).  In this form no digits of the distance of the tips "
     "cancel if the tips are close together.",
-    {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
+    {
+        "(r, h)_R": right,
+        "(r, h)_L": left,
+        "(r, h)_I": midpoint(m),
+        r"(\Delta_a, \Delta_h)": half_gap(m),
+    },
     published=("(6)",),
     proves="The middle and half the difference of the tips are as stated, in terms of the half "
     "sums and half differences of the angles.",
@@ -137,66 +144,46 @@ leaning = d.step(
     "component d across the mid-plane, so its length is d / (cos(psi) cos(phi)), which replaces d "
     "/ cos(psi) in (8).  The other components give tan(phi) = -x / d and tan(psi) = cos(phi) z / "
     "d.",
-    {r"b\,R_z R_x e_y": wrist_line},
+    {r"b\,R_z R_x e_y": sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)])},
     published=("(3)", "(4)", "(8)"),
     proves="The turned y axis times half the base line has the components -d tan(phi), d and d "
     "tan(psi)/cos(phi).",
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
 )
-d.given_by = {"psi": leaning, "phi": leaning}
+d.given_by |= {"psi": leaning, "phi": leaning}
 axis = rotation("z", phi) * rotation("x", psi)
 length = real("wrist", positive=True)
 link = axis * sp.Matrix([0, m.gs, length]) - wrist_line
+other = axis * sp.Matrix([0, -m.gs, length]) + wrist_line
 d.step(
     "The four-bar of the wrist closes",
-    "The gears are at the distance g_s beside the axis of the wrist and l_W along it.  A wrist "
+    "The gears are at the distance gs beside the axis of the wrist and l_W along it.  A wrist "
     "link joins each gear to its tip.  The length of both links is al if l_W^2 = al^2 - (b - "
-    "g_s)^2.",
-    {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
+    "gs)^2.",
+    {"b": base, "l_W^2": m.al**2 - (real("b") - m.gs) ** 2},
     published=("(8)",),
-    proves="Both wrist links have the square of their length l_W^2 + (b - g_s)^2.",
+    proves="Both wrist links have the square of their length l_W^2 + (b - gs)^2.",
     equal=[
         (link.dot(link), length**2 + (base - m.gs) ** 2),
-        (
-            (axis * sp.Matrix([0, -m.gs, length]) + wrist_line).dot(
-                axis * sp.Matrix([0, -m.gs, length]) + wrist_line
-            ),
-            link.dot(link),
-        ),
+        (other.dot(other), link.dot(link)),
     ],
 )
+tip_step(d, m, q, length, base)
 given_ahead = m.d * (s23 * tan(psi) / cos(phi) - c23 * tan(phi))
 given_higher = -m.d * (c23 * tan(psi) / cos(phi) + s23 * tan(phi))
 d.step(
     "Tips from yaw and roll",
     "Conversely, yaw, roll and the direction of the virtual fore-arm give the distance of the "
-    "tips.",
-    {"(r_R - r_L) / 2": given_ahead, "(h_R - h_L) / 2": given_higher},
+    "tips.  So each arm has to reach a known point as a two-link arm.  Both are solved alike but "
+    "for the bend: the right arm is bent as the virtual one, and the left one to either side.",
+    {r"\Delta_a": given_ahead, r"\Delta_h": given_higher},
     proves="With these distances the base line is the one that yaw and roll give.",
     equal=[
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
     ],
+    solves={"ik": [theta2R, theta2L]},
 )
-reaches = [e.dot(e) for e in (right, left, middle)]
-d.step(
-    "How far the virtual arm is bent",
-    "The square of the reach R of the virtual arm is the mean of the squares for both arms, minus "
-    "the square of half the distance of the tips.  So N = (L1 + f)^2 - R^2 of the virtual arm, "
-    "where f is the length of a fore-arm, is a sum of terms that are not negative.  No digits "
-    "cancel if the arms are straight.",
-    {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
-    proves="The square of the reach is the stated mean, and N of each real arm is the stated sum.",
-    equal=[
-        (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
-        *(
-            (
-                (m.L1 + forearm_length) ** 2 - R,
-                2 * m.L1 * (forearm_length - m.L2 * sin(elbow) - m.a3 * cos(elbow)),
-            )
-            for R, elbow in zip(reaches[:2], (theta3R, theta3L), strict=True)
-        ),
-    ],
-)
+bent_step(d, m, q, (right, left))
 beyond, width = real("beyond"), real("width")
 half_line = sqrt(m.d**2 + width**2 + beyond**2)
 cosine_roll = m.d / sqrt(m.d**2 + width**2)
@@ -286,6 +273,7 @@ d.function(
     {"q": q},
     {"T": pose_matrix(m, p, stand(p, "pose"))},
     program=p,
+    equation="T",
     source="eq. (9) and its frames",
     notes=notes,
 )
@@ -432,6 +420,11 @@ d.function(
 
 turn_step(d, m)
 sigma_left = real("sigma_left")
+d.write(sigma_left, r"\sigma_{\mathrm{alike}}")
+d.write("point_11", "r_I", "distance of the middle of the tips from the waist axis")
+d.write("point_21", "h_I", "height of the middle of the tips above the shoulders")
+d.write("shift_11", r"\Delta_a", same="ahead")
+d.write("shift_21", r"\Delta_h", same="higher")
 LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
@@ -459,7 +452,7 @@ p.determined(M * square * over**2, 4096 * gap * size**4, "the virtual arm is fol
 p.determined(square, size**2, "the virtual arm has no length", squares=True)
 p.determined(wrist, m.al, "the wrist links are stretched")
 free = free_turn(p, m, mid.elbow, slack)
-ends, squares, corrections = {}, {}, []
+ends, squares, corrections, before = {}, {}, [], len(p.body)
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     ends[name] = r, h
@@ -495,6 +488,7 @@ side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
 elbow = p.matrix("elbow", m.L1 * upper.unit)
 swing = p.matrix("swing", moved_by(lean, elbow))
+limits = [s.symbol for s in p.body[before:] if isinstance(s, Bound)]
 arms = []
 for name, sigma, unknowns in (
     ("right", side, (theta2R, theta23R)),
@@ -533,7 +527,7 @@ p.determined(
     p.let("astray", choose(spent, aside * 2**50, 0)),
     "arms at their limits do not bend as the virtual arm",
 )
-lemmas = (*mid.lemmas, *arms)
+lemmas = (*mid.lemmas, arms[0].implying(limits), arms[1])
 joints = {s: s for s in q} | {theta3R: theta23R - theta2R, theta3L: theta23L - theta2L}
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 sides = branches(WAIST, ELBOW, LEFT)

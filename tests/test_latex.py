@@ -425,7 +425,7 @@ def test_statements_that_functions_share_are_printed_once() -> None:
     tex = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
     place, cases = r"Section~\ref{inverse:hybrid_five_bar:fk}", "with its special cases"
     assert rf"Continue after the lines of \texttt{{fk}}, {place}, {cases}." in tex
-    assert rf"Continue after the lines of \texttt{{jacobian\_parallel}}, {cases}." in tex
+    assert rf"Continue after the lines of \texttt{{jacobian}}, {cases}." in tex
 
 
 def test_special_characters() -> None:

@@ -52,6 +52,7 @@ from closedform.lemmas.root import root as root
 from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
+from closedform.lemmas.sine_cosine import turned_back as turned_back
 from closedform.lemmas.slotted import Lever as Lever
 from closedform.lemmas.slotted import slotted as slotted
 from closedform.lemmas.spheres import three_spheres as three_spheres

@@ -21,6 +21,7 @@ from closedform import (
     choose,
     linear_pair,
     real,
+    turned_back,
 )
 
 SIGN = {+1: "plus", -1: "minus"}
@@ -93,8 +94,11 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
     w.vanishes("no_bar", L1, L1 + L2, "the driven bars have no length", free=(theta2, theta3))
     turn = linear_pair(theta1, tau * z, -tau * x)
     bearing_c, bearing_d = (
-        linear_pair(theta, tau * r * ahead - along * beyond, along * ahead + tau * r * beyond)
-        for theta, along, (ahead, beyond) in ((theta2, y, arm_c), (theta3, y - L0, arm_d))
+        turned_back(theta, (tau * r, along), base, (beyond, ahead))
+        for theta, along, base, (ahead, beyond) in (
+            (theta2, y, base2, arm_c),
+            (theta3, y - L0, base3, arm_d),
+        )
     )
 
     legs = [

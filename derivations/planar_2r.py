@@ -25,6 +25,7 @@ from closedform import (
     require_pose,
     rotation,
     skeleton,
+    turned_back,
 )
 
 d = Derivation(
@@ -194,7 +195,7 @@ triangle, (ahead, beyond) = sides.stretched_without_link(
 at_base = p.vanishes(
     "at_base", sp.Abs(px) + sp.Abs(py), l1 + l2, "the hand is on the base axis", free=(theta1,)
 )
-bearing = linear_pair(theta1, py * ahead - px * beyond, px * ahead + py * beyond)
+bearing = turned_back(theta1, (py, px), alpha, (beyond, ahead))
 solution = {
     theta1: choose(at_base, 0, bearing[theta1]),
     theta2: triangle[theta2],

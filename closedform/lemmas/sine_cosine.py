@@ -61,6 +61,24 @@ def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     )
 
 
+def turned_back(
+    x: sp.Symbol,
+    direction: tuple[sp.Expr, sp.Expr],
+    angle: sp.Symbol,
+    of: tuple[sp.Expr, sp.Expr],
+) -> Lemma:
+    """The angle of a direction minus another ``angle``, each given by its sine and its cosine.
+
+    Both pairs are known up to a positive factor.  The difference is computed by one arctangent; a
+    reader takes two.
+    """
+    (up, out), (beyond, ahead) = direction, of
+    lemma = linear_pair(x, up * ahead - out * beyond, out * ahead + up * beyond)
+    other = sp.atan2(beyond, ahead, evaluate=False)
+    plainly = {angle: other, x: sp.atan2(up, out, evaluate=False) - angle}
+    return replace(lemma, roles=(("x", x),), plainly=plainly)
+
+
 def sine_cosine(
     program: Program,
     x: sp.Symbol,

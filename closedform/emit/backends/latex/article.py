@@ -43,7 +43,7 @@ from closedform.emit.backends.latex.prose import (
 from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.vectors import in_vectors
-from closedform.emit.backends.latex.wide import Equation
+from closedform.emit.backends.latex.wide import Equation, with_sums_of_angles
 from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
 from closedform.model.inverse import Combination, Inverse, Rank
@@ -121,6 +121,7 @@ class Page(Sheet):
                 angle: self.written(free.pop(0))
                 for lemma in lemmas
                 for angle in angles_of_readers(lemma)
+                if angle not in self.symbols
             }
             glue = inverse.glue if inverse else None
             joints = glue.joints if isinstance(glue, Combination) else {}
@@ -231,7 +232,10 @@ class Page(Sheet):
         if isinstance(value, str):  # after \\ a star or a bracket would be an argument
             return "{}" * value.startswith(("*", "[")) + self.prose(value)
         chain = value if isinstance(value, tuple) else (value,)
-        text = r" \le ".join(map(self.math, chain))
+        sums = [
+            e.replace(lambda part: part.is_Add, with_sums_of_angles) for e in map(sp.sympify, chain)
+        ]
+        text = r" \le ".join(map(self.math, sums))
         text = text if "(" in text else flat(text)  # 1/2 (a + b) would be misread
         return rf"$\displaystyle {text}$"
 

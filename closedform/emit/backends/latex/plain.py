@@ -73,6 +73,11 @@ def plain(
             continue
         done.append(statement)
     solved = {function_value: angle for angle, function_value in _solutions(lemmas, angles).items()}
+    for lemma in lemmas:
+        alone = lemma.plainly.keys() & lemma.solution.keys() - angles.keys()
+        solved |= {lemma.solution[a]: lemma.plainly[a] for a in alone}
+        parts = angles_of_readers(lemma) if alone else []
+        done += [_with_names(Let(part, lemma.plainly[part]), names) for part in parts]
     outputs = tuple(
         replace(a, entries=tuple(substitute(e.xreplace(solved), names) for e in a.entries))
         for a in function.outputs

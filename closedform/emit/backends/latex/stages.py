@@ -464,7 +464,8 @@ class Stages:
                 for s in pair:
                     rows += page.equations(means[s], algorithm.value(s))
                 continue
-            value = self.algorithm.values.get(unknown, solving.lemma.solution.get(unknown))
+            plain = {**solving.lemma.solution, **solving.lemma.plainly}
+            value = self.algorithm.values.get(unknown, plain.get(unknown))
             if value is None:
                 continue
             left, value = self.found_before(unknown, self.named(value), solving)

@@ -12,6 +12,7 @@ from closedform.emit.backends.latex.formulas import Printer
 from closedform.emit.backends.latex.listing import parts_first
 from closedform.emit.backends.latex.names import Quantities
 from closedform.emit.backends.latex.twins import twins
+from closedform.emit.backends.latex.wide import unit_circles
 from closedform.lemmas.two_link import two_link_arm
 from closedform.model.functions import Bound, Let, Program, Vanishes, real, substitute
 from closedform.proof.prove import Proof
@@ -37,6 +38,9 @@ def test_names_are_defined_before_they_are_used_and_used_at_all(tex: Path) -> No
     for box in boxes:
         items = [i for line in STEP.findall(box[2]) for i in line.split(r",\quad ")]
         made = [m[1] if (m := re.match(r"\$\\displaystyle (.*?) = ", i)) else "" for i in items]
+        for name, item in zip(made, items, strict=True):
+            left, right = (re.sub("[{}$]", "", s) for s in (name, item.rpartition(" = ")[2]))
+            assert left != right, (box[1], item)
         for k, name in enumerate(made):
             if "_{" not in name:
                 continue
@@ -123,3 +127,33 @@ def test_lemmas_with_other_lengths_are_no_twins() -> None:
     usual = dict.fromkeys(flags, sp.false)
     values = {s.symbol: substitute(s.value, usual) for s in p.body if isinstance(s, Let | Bound)}
     assert twins(arms, values, flags) is None
+
+
+def test_squares_of_a_sine_and_a_cosine_are_added() -> None:
+    a, b, c, x = map(real, "abcx")
+    circle = (a * c - b * sp.cos(x)) * sp.cos(x) + (a * b - b * sp.sin(x)) * sp.sin(x)
+    shorter = list(unit_circles(circle))
+    assert any(sp.expand(e + b - a * c * sp.cos(x) - a * b * sp.sin(x)) == 0 for e in shorter)
+    assert not list(unit_circles(a * sp.cos(x) + b * sp.sin(x)))
+    value = (a * sp.sin(x) + b) * sp.sin(x) + (a * sp.cos(x) + c) * sp.cos(x)
+    assert page("delta").lines.tidy(value) == a + b * sp.sin(x) + c * sp.cos(x)
+
+
+def test_a_distance_in_a_table_has_the_difference_of_its_angles() -> None:
+    a, b = map(real, "ab")
+    distance = sp.sqrt(2 * (1 - sp.sin(a) * sp.sin(b) - sp.cos(a) * sp.cos(b)))
+    assert r"\cos (a - b)" in page("delta").cell(distance)
+
+
+def test_a_product_of_sums_is_not_multiplied_out() -> None:
+    a, b, m, n = map(real, "abmn")
+    value = m * (a + b) + n * (a - b)
+    assert page("planar_2r").lines.tidy(value) == value
+
+
+def test_a_direction_less_an_angle_is_told_as_such() -> None:
+    context = document(page("planar_2r").derivation, Proof("planar_2r", "", (), 0, ()))
+    ik = next(f for f in context["inverses"] if f["name"] == "ik")
+    text = " ".join(line.text for line in ik["lines"])
+    assert r"\theta_{1} = \operatorname{atan2}(p_{y},\ p_{x}) - \alpha" in text
+    assert any("eq:planar_2r:17" in s["seen"] for s in ik["stages"])  # which defines alpha

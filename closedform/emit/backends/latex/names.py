@@ -45,14 +45,14 @@ class Quantities:
     """
 
     def __init__(self, printer: Printer, inputs: Iterable[str]):
-        self.printer, self.inputs = printer, frozenset(inputs)
+        self.printer, self.inputs = printer, frozenset(map(_without_braces, inputs))
         self.known: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         self.former: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         self.narrow: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         """Short sums, which serve in algorithms alone."""
 
     def define(self, left: str, value: Any) -> None:
-        if not NAME.fullmatch(left) or left in self.inputs:
+        if not NAME.fullmatch(left) or _without_braces(left) in self.inputs:
             return
         if left in self.known:
             self.former[left] = self.known.pop(left)
@@ -82,9 +82,9 @@ class Quantities:
             return self._named(value, found.values())
         symbols = {s for e, _ in found.values() for s in e.free_symbols}
         own = {s: names[str(s)] for s in symbols if str(s) in names}
-        written = {re.sub(r"[{}]", "", left): symbol for left, (_, symbol) in found.items()}
+        written = {_without_braces(left): symbol for left, (_, symbol) in found.items()}
         for s in symbols - own.keys():  # a quantity in the definition of another one
-            if quantity := written.get(re.sub(r"[{}]", "", self.printer.math(s))):
+            if quantity := written.get(_without_braces(self.printer.math(s))):
                 own[s] = quantity
         known = [(e.xreplace(own), s) for e, s in found.values()]
         while (whole := self._named(value, known)) != value:
@@ -124,6 +124,11 @@ class Quantities:
             elif opposite < held:
                 changed[total] = sp.Add(*(held - opposite), -symbol)
         return value.xreplace(changed) if changed else value
+
+
+def _without_braces(name: str) -> str:
+    """The LaTeX of a name as another one may spell it: ``\\theta_4`` for ``\\theta_{4}``."""
+    return re.sub("[{}]", "", name)
 
 
 def is_word(name: str) -> bool:

@@ -113,7 +113,14 @@ class Lines:
                 grouped = form.is_Add and len(form.args) == 2 < len(value.args) == 4
                 return self.width(form) - (PRODUCT if form.is_Mul or grouped else 0)
 
-            best = min(self._forms(value), key=cost)
+            # no product of sums is multiplied out unless terms cancel
+            terms, size = len(sp.Add.make_args(value)), sp.count_ops(value)
+            forms = (
+                f
+                for f in self._forms(value)
+                if len(sp.Add.make_args(f)) <= terms or sp.count_ops(f) < size
+            )
+            best = min(forms, key=cost)
             narrower = cost(best) < cost(value) - GAIN
             self._tidied[value] = without_minus(best if narrower else value)
         return self._tidied[value]
@@ -126,6 +133,7 @@ class Lines:
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)
+        yield from unit_circles(value)
         if (together := with_sums_of_angles(value)) != value:
             yield together
             yield sp.factor_terms(together)
@@ -335,7 +343,24 @@ def _angles_in(term: sp.Expr) -> list[sp.Symbol]:
     return sorted({f.args[0] for f in factors if f.args[0].is_Symbol}, key=str)
 
 
-__all__ = ["Equation", "Lines"]
+def unit_circles(value: sp.Expr) -> Iterator[sp.Expr]:
+    """A sum where the squares of the sine and the cosine of an angle add to 1, if they do."""
+    angles = sorted(
+        {f.args[0] for f in value.atoms(sp.sin) if value.has(sp.cos(f.args[0]))}, key=str
+    )
+    if not value.is_Add or not angles:
+        return
+    whole = sp.expand(value)
+    for angle in angles:
+        squares = {sp.cos(angle) ** 2: 1 - sp.sin(angle) ** 2}
+        if {sp.sin(angle) ** 2, *squares} <= whole.atoms(sp.Pow):
+            shorter = sp.expand(whole.xreplace(squares))
+            if len(sp.Add.make_args(shorter)) < len(sp.Add.make_args(whole)):
+                yield shorter
+                yield from (sp.collect(shorter, s) for s in sorted(shorter.free_symbols, key=str))
+
+
+__all__ = ["Equation", "Lines", "unit_circles", "with_sums_of_angles"]
 
 
 def _of_squares(value: sp.Expr) -> bool:

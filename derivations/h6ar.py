@@ -12,6 +12,7 @@ from closedform.derivations.h6ar_free_turn import (
 from closedform.derivations.h6ar_jacobian import TIP_RATES, factors_shown
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
+    BOTH_TIPS,
     ELBOW,
     MID_PLANE_ROWS,
     STEEP,
@@ -119,7 +120,7 @@ d.step(
     "Tips of the fore-arms",
     "The product of the frames of Fig. 2 gives the tips.  The offset d from the mid-plane is along "
     "the axes of the shoulders, to the right for one arm and to the left for the other.",
-    {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1]},
+    {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1], "T_{RL}": BOTH_TIPS},
     published=("(1)", "(2)"),
     proves="The published coordinates of both tips are those of the product of the frames.",
     equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
@@ -291,6 +292,7 @@ d.function(
     "Tips of the right and of the left fore-arm.",
     {"q": q},
     {"tips": sp.Matrix.hstack(*tips).T},
+    equation="T_{RL}",
     source="eqs. (1) and (2)",
 )
 p = Program()

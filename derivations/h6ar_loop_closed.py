@@ -5,6 +5,7 @@ from closedform.derivations.h6ar_free_turn import free_turn, moved_by, turn_step
 from closedform.derivations.h6ar_jacobian import factors_shown, loop_factors
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
+    BOTH_TIPS,
     ELBOW,
     L_2W,
     MID_PLANE_ROWS,
@@ -104,14 +105,18 @@ right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + thet
 middle, apart = (right + left) / 2, (right - left) / 2
 means, halves = half_sums(q), by_half_sums(q)
 midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
+tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
 d.step(
     "Middle and distance of the tips",
-    "Both are written in half sums A and half differences of the angles of both arms (alpha for "
-    "the upper arms, beta for the fore-arms).  In this form no digits of the distance of the tips "
-    "cancel if the tips are close together.",
+    "The middle of the tips and half their difference are written in half sums A and half "
+    "differences of the angles of both arms (alpha for the upper arms, beta for the fore-arms).  "
+    "In this form no digits of the difference cancel if the tips are close together.",
     {
         "(r, h)_R": right,
         "(r, h)_L": left,
+        "(x, y, z)_R": tips[0],
+        "(x, y, z)_L": tips[1],
+        "T_{RL}": BOTH_TIPS,
         "(r, h)_I": midpoint(m),
         r"(\Delta_a, \Delta_h)": half_gap(m),
     },
@@ -292,12 +297,12 @@ draw(
     closed=True,
     notes=notes,
 )
-tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
 d.function(
     "arm_tips",
     "Tips of the right and of the left fore-arm.",
     {"q": q},
     {"tips": sp.Matrix.hstack(*tips).T},
+    equation="T_{RL}",
     source="eqs. (1) and (2)",
 )
 d.function(

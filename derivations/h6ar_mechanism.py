@@ -128,6 +128,7 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
     d.explain(
         {
             r"a_{l,\min}": "shortest wrist link for a separation angle",
+            "T_{RL}": "tips of the right and of the left fore-arm, a row for each",
             r"R_\parallel": "component of the reach of the virtual arm along its upper arm",
             r"R_\perp": "component of the reach of the virtual arm across its upper arm",
         }
@@ -294,6 +295,8 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
     wrist = program.let("wrist", sqrt(near) * sqrt(far) / level)
     return wrist, program.let("base", m.d / level)
 
+
+BOTH_TIPS = r"\begin{bmatrix} (x, y, z)_R & (x, y, z)_L \end{bmatrix}^T"
 
 STEEP = "Unbounded where the wrist links are nearly stretched: the slope of l_W is infinite there."
 

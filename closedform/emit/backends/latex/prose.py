@@ -68,7 +68,7 @@ ENGLISH = re.compile(rf"(?!(?:{'|'.join(sorted(GREEK))})$)[a-z]{{3,}}")
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
 WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 """A symbol that is a word; as a factor it needs a space."""
-ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|vanishes)\b)[a-z]")
+ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|to|vanishes)\b)[a-z]")
 """What follows an article at the start of a sentence, and not the matrix A."""
 STATUS = re.compile(r"\b(?:OK|UNREACHABLE|SINGULAR|INVALID|BRANCHES)\b")
 INDEXED = re.compile(

@@ -67,6 +67,11 @@ def test_the_examples_of_the_home_page_run(tmp_path: Path) -> None:
             r"Section~\ref{step:arm:2}",
             '<a class="reference internal" href="#step-arm-2">The elbow</a>',
         ),
+        (
+            r"see Sections~\ref{step:arm:2} and \ref{step:arm:2}",
+            'see <a class="reference internal" href="#step-arm-2">The elbow</a> and '
+            '<a class="reference internal" href="#step-arm-2">The elbow</a>',
+        ),
         (r"a \textsc{singular} one", 'a <span class="status">SINGULAR</span> one'),
         (r"50\,\% of \{1, 2\}", "50\N{THIN SPACE}% of {1, 2}"),
         (r"2 * 3 < 4 [a](b)", r"2 \* 3 \< 4 \[a\](b)"),

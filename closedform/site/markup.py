@@ -29,7 +29,7 @@ CHARACTERS = {
     r"\\": " ",
 }
 TOKEN = re.compile(r"\\[A-Za-z]+\*?|\\.|``|''|---?|[~`${}]|[^\\~`$'{}-]+|.", re.DOTALL)
-SECTION = re.compile(r"Section~(?=\\ref)")
+SECTION = re.compile(r"Sections?~(?=\\ref)")
 
 
 class MarkupError(ValueError):

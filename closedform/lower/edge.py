@@ -44,3 +44,6 @@ def _looser(scale: sp.Expr) -> sp.Expr:
     """The scale times the factor; a sum is not multiplied term by term."""
     number, rest = scale.as_coeff_Mul()
     return sp.Mul(number * LOOSER, rest, evaluate=False)
+
+
+__all__ = ["within_edge"]

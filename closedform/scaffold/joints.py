@@ -165,8 +165,7 @@ class Mimic:
         if not near:
             return (
                 f"its axis is not that of a neighbour, so that the motor of {mimicked} turns the "
-                f"arm about two axes at once, and the equations of an inverse contain the sines "
-                f"both of an angle and of {self.joint.factor} times this angle"
+                f"arm about two axes at once, and no lemma solves for such an angle"
             )
         if not alone:
             return (

@@ -402,6 +402,21 @@ def test_half_sums_are_one_fraction() -> None:
     assert Printer({a, b}).math(sp.sin((a - b) / 2)) == (r"\sin \frac{\theta_{1} - \theta_{2}}{2}")
 
 
+def test_a_joint_is_not_subtracted_from_another_angle() -> None:
+    theta, gamma = sp.symbols("theta2 gamma1", real=True)
+    math, difference = Printer({theta}).math, r" (\theta_{2} - \gamma_{1})"
+    for angle in (gamma - theta, theta - gamma):
+        assert math(sp.cos(angle)) == rf"\cos{difference}"
+        assert math(sp.sin(angle) ** 2) == rf"\sin^{{2}}{difference}"
+
+
+def test_a_direction_comes_before_an_angle_to_either_side_of_it() -> None:
+    x, y, sigma, a, b = sp.symbols("x y sigma_waist a b", real=True)
+    text = Printer(set()).math(2 * sigma * sp.atan2(a, b) + sp.atan2(-x, y))
+    assert text.startswith(r"\operatorname{atan2}(- x,\ y) + 2 \sigma")
+    assert Printer(set()).math(sp.atan2(sigma * a, b) - x).endswith("- x")
+
+
 def test_words_are_factors_with_a_space() -> None:
     assert spaced(r"\mathrm{side} n_{1}") == r"\mathrm{side}\, n_{1}"
     assert spaced(r"2 \mathrm{side}_{c} \mathrm{gap}") == r"2\, \mathrm{side}_{c}\, \mathrm{gap}"

@@ -94,7 +94,10 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     # Sums
 
     def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
-        """The terms in SymPy's order, but if that starts with a minus, the positive ones first."""
+        """The terms in SymPy's order, but if that starts with a minus, the positive ones first.
+
+        A direction comes before an angle to either side of it.
+        """
         renamed = {s: self._by_letter(s) for s in expr.free_symbols & self.names.keys()}
         if renamed:
             former = {new: old for old, new in renamed.items()}
@@ -104,6 +107,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             terms = list(_ordered_terms(expr, order or self.order))
         if _negative(terms[0]):
             terms.sort(key=_negative)
+        if any(e.is_Symbol and SIGN.match(e.name) for e in terms[0].args):
+            terms.sort(key=lambda term: not isinstance(term, sp.atan2))
         return terms
 
     def _by_letter(self, symbol: sp.Symbol) -> sp.Symbol:
@@ -214,10 +219,17 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     # Functions
 
     def _print_sin(self, expr: sp.Expr, exp: str | None = None) -> str:
-        return self._circular("sin", expr.args[0], exp)
+        angle = expr.args[0]
+        return self._circular("sin", self._from_joint(angle) if exp == "2" else angle, exp)
 
     def _print_cos(self, expr: sp.Expr, exp: str | None = None) -> str:
-        return self._circular("cos", expr.args[0], exp)
+        return self._circular("cos", self._from_joint(expr.args[0]), exp)
+
+    def _from_joint(self, angle: sp.Expr) -> sp.Expr:
+        """The angle or its negative, so that a joint is not subtracted from another angle."""
+        terms = {_negative(t): t in self.joints or -t in self.joints for t in angle.args}
+        turned = angle.is_Add and len(angle.args) == 2 and terms == {False: False, True: True}
+        return -angle if turned else angle
 
     def _print_tan(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._circular("tan", expr.args[0], exp)

@@ -93,3 +93,35 @@ def test_a_slide_takes_no_offset() -> None:
     d1 = d.joint("d1", "prismatic")
     with pytest.raises(RowError, match="d1 slides; put 2 into the points after it"):
         from_screws(d, [(d1 + 2, (0, 0, 1), (0, 0, 0))], sp.eye(4))
+
+
+OFFSETS = """# beta = 0.3 rad: offset of the shoulder
+# gamma = 0.2 rad: offset of the wrist
+theta,d,a,alpha
+theta1,0.1,0,pi/2
+theta2 + beta,0,-0.4,0
+theta3,0,-0.39,0
+theta4 + gamma,0.1,0,pi/2
+theta5,0.1,0,-pi/2
+theta6,0.08,0,0
+"""
+
+
+def test_offsets_of_parallel_joints_may_be_any_parameters(tmp_path: Path) -> None:
+    """The last of the parallel joints is a sum, whose size is not known with an offset in it."""
+    table = tmp_path / "offsets.csv"
+    table.write_text(OFFSETS, "utf-8")
+    script = new("offsets", "dh", table, search=InverseSearch(fault=fault))
+    path = tmp_path / "offsets.py"
+    path.write_text(script.text, "utf-8")
+    (source,) = scripts.find([str(path)])
+    module = printed(scripts.load(source), tmp_path / "printed")
+    rng = np.random.default_rng(2)
+    q, params = rng.uniform(-3, 3, (500, 6)), module.Parameters(*rng.uniform(-9, 9, (2, 500)))
+    T = module.pose(q, params)
+    answers, status = module.ik(T, params)
+    away, turned = misses(module.pose(answers, params._replace(
+        **{n: getattr(params, n)[:, None] for n in params._fields})), T, status)  # fmt: skip
+    assert away < 1e-12 and turned < 1e-12 and (np.abs(answers[status == OK]) <= np.pi).all()
+    same = np.abs(np.exp(1j * answers) - np.exp(1j * q[:, None])).max(axis=-1)
+    assert np.nanmin(same, axis=-1).max() < 1e-8

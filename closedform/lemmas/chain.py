@@ -394,16 +394,15 @@ class Chain:
             result += Pair(factor * s, c)
         return result
 
-    def by_angles(self, total: sp.Expr) -> sp.Expr:
-        """A sum in solved unknowns: a joint is replaced by the auxiliary angle that contains it."""
+    def by_angles(self, total: sp.Expr, *, solved: bool = False) -> sp.Expr:
+        """A sum in which auxiliary angles take the place of their joints, also of ``solved`` ones."""
         found = {}
         for symbol, value in self.defined.items():
             held = [j for j in self.joints if value.has(j)]
-            if symbol in self.values and len(held) == 1 and held[0] not in self.values:
-                (joint,) = held
-                sense = value.diff(joint)
+            if symbol in self.values and len(held) == 1 and (solved or held[0] not in self.values):
+                sense, rest = value.diff(held[0]), value.xreplace({held[0]: sp.S.Zero})
                 if abs(sense) == 1:
-                    found[joint] = sense * (symbol - value.xreplace({joint: sp.S.Zero}))
+                    found[held[0]] = sense * (symbol - rest)
         return sp.expand(total.xreplace(found))
 
     # The end
@@ -429,8 +428,19 @@ class Chain:
         half = [self.halves[s] for s in total.free_symbols if s in self.halves]
         pair = self.pair_of(total, {s: found for s, (found, _) in self.halves.items()})
         if pair is None:
-            return substitute(total, self.values)
+            return self._less_offset(total)
         return pair.angle + sp.Add(*(flip for _, flip in half))
+
+    def _less_offset(self, total: sp.Expr) -> sp.Expr:
+        """A sum of solved angles; a parameter in it, whose size is not known, turns one of them."""
+        parameters = {p.symbol for p in self.d.parameters}
+        if total.free_symbols & parameters:
+            total = self.by_angles(total, solved=True)  # in which the same offset cancels
+        offset = sp.Add(*(t for t in total.as_ordered_terms() if t.free_symbols & parameters))
+        for angle in (total - offset).as_ordered_terms() if offset != 0 else ():
+            if pair := self.pair_of(angle + offset, {}):
+                return pair.angle + substitute(total - offset - angle, self.values)
+        return substitute(total, self.values)
 
     def _answers(self) -> list[sp.Expr]:
         """The values of the joints, corrected where the lemmas miss a part of the target."""

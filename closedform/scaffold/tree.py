@@ -70,7 +70,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     found = [_Placed.of(chain, table, Displacement.of(as_written), file)]
-    if found[0].angles:  # where joints have turned back what their origins turn them
+    if len(found[0].angles) > 1:  # sines of several angles are slow: joints may turn them back
         found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
     table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
     if not table.axes:

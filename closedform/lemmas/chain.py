@@ -395,7 +395,7 @@ class Chain:
         return result
 
     def by_angles(self, total: sp.Expr, *, solved: bool = False) -> sp.Expr:
-        """A sum in which auxiliary angles take the place of their joints, also of ``solved`` ones."""
+        """A sum in which auxiliary angles replace their joints, also those that are ``solved``."""
         found = {}
         for symbol, value in self.defined.items():
             held = [j for j in self.joints if value.has(j)]

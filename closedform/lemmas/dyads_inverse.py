@@ -306,8 +306,7 @@ class _Reverse:
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
             ),
         )
-        inside = bounds_of_any(g, self.signs)
-        if inside.body and not on_curve:
+        if not on_curve and (inside := bounds_of_any(g, self.signs)).body:
             d.function(
                 "workspace_contains",
                 f"Whether {m.follower or 'the hand'} can reach the target.",

@@ -99,7 +99,7 @@ def slotted(
     check_plain(d, cranks)
     m = _Slotted(d, driver, follower, cranks[0], lines[0])
     d.singularities = ("driver", "follower")
-    d.poles = () if m.is_linear(follower) else ("follower",)
+    d.poles = () if isinstance(follower, Rail) else ("follower",)
     if isinstance(m.line, Lever):
         where, carrier, distance = "pivot", "lever.  The lever turns about", m.line.rod
     else:
@@ -146,10 +146,6 @@ class _Slotted:
     @property
     def equation(self) -> sp.Expr:
         return self.normal.dot(self.crank.end()) - self.level
-
-    def is_linear(self, leg: Crank | Lever | Rail) -> bool:
-        """Whether the equation is linear in the joint of this body, with one solution."""
-        return isinstance(leg, Rail)
 
     def names(self, program: Program, known: Crank | Lever | Rail, share: sp.Rational) -> Naming:
         """Names for what follows from the joint of one body."""
@@ -238,7 +234,7 @@ class _Posture:
 
 def _forward(m: _Slotted, choice: Choice, loop: Step) -> _Posture:
     d, f, sigma, x = m.d, m.d.program(), real("sigma_assembly"), m.follower.joint
-    linear = m.is_linear(m.follower)
+    linear = isinstance(m.follower, Rail)
     modes = SINGLE if linear else branches((sigma, choice))
     d.assembly_modes = modes.labels
     names = m.names(f, m.driver, MOVED if isinstance(m.driver, Rail) else SHARE)
@@ -302,7 +298,7 @@ def _draw(m: _Slotted, at: _Posture) -> None:
         lengths=lengths,
         program=at.program,
         branches=at.modes,
-        notes=(NO_MODE,) * (not m.is_linear(m.follower)),
+        notes=(NO_MODE,) * (not isinstance(m.follower, Rail)),
         at_posture=[exact],
     )
 
@@ -337,7 +333,7 @@ def _velocity(m: _Slotted, at: _Posture, loop: Step) -> None:
             "jacobian_serial",
             "B of A*dx = B*dq.",
             {"B": [B_at]},
-            ("Its sign distinguishes the working modes.",) * (not m.is_linear(m.driver)),
+            ("Its sign distinguishes the working modes.",) * (not isinstance(m.driver, Rail)),
         ),
         ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, pole),
         ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, pole),
@@ -348,7 +344,7 @@ def _velocity(m: _Slotted, at: _Posture, loop: Step) -> None:
 
 def _inverse(m: _Slotted, loop: Step) -> None:
     d, g, sigma = m.d, m.d.program(), real("sigma_driver")
-    q, x, linear = m.driver.joint, m.follower.joint, m.is_linear(m.driver)
+    q, x, linear = m.driver.joint, m.follower.joint, isinstance(m.driver, Rail)
     names = m.names(g, m.follower, sp.S.Half)
     solved, inside = m.solve(m.driver, names, sigma, 1), bounds_of(g)
     A = velocity_matrices([m.equation], (x,), (q,))[0][0]

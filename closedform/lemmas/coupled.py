@@ -23,7 +23,7 @@ from closedform.lemmas.leg_by_leg import (
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
-from closedform.lemmas.reached import bounds_of
+from closedform.lemmas.reached import bounds_of, export_reach
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -220,20 +220,27 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
     v = Program(list(rod.program.body), rod.program.taken)
     placed = follower.rate_at(driver.end() + rod.vector)
     A_at, B_at = v.let("A", rod.vector.dot(placed)), v.let("B", rate_of(loop.driven, rod.vector))
-    pole = "Not finite at a parallel singularity."
+    export_rates(d, v, rod.modes, (A_at, B_at), two_modes=loop.driven.signs == 2)
+
+
+def export_rates(
+    d: Derivation, v: Program, modes: Branches, rates: tuple[sp.Expr, sp.Expr], *, two_modes: bool
+) -> None:
+    """Export the Jacobians and the singular set of a single loop, from A and B of A*dx = B*dq.
+
+    With ``two_modes``, the sign of B tells the working modes apart.
+    """
+    A, B = rates
+    pole = ("Not finite at a parallel singularity.",) * bool(d.poles)
+    signed = ("Its sign distinguishes the working modes.",) * two_modes
     functions: list[Exported] = [
-        ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
-        (
-            "jacobian_serial",
-            "B of A*dx = B*dq.",
-            {"B": [B_at]},
-            ("Its sign distinguishes the working modes.",) * (loop.driven.signs == 2),
-        ),
-        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, (pole,)),
-        ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, (pole,)),
-        ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
+        ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A]]}, ()),
+        ("jacobian_serial", "B of A*dx = B*dq.", {"B": [B]}, signed),
+        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B / A]]}, pole),
+        ("determinant", "The Jacobian as a number: B/A.", {"det": B / A}, pole),
+        ("singularities", "B (serial) and A (parallel).", {"factors": [B, A]}, ()),
     ]
-    export(d, v, rod.modes, functions, {**EQUATIONS, "det": "J", "factors": "A"})
+    export(d, v, modes, functions, {**EQUATIONS, "det": "J", "factors": "A"})
 
 
 def _inverse(loop: _Loop) -> None:
@@ -283,15 +290,7 @@ def _inverse(loop: _Loop) -> None:
             "by more than 1e-12.",
         ),
     )
-    if inside.body:
-        d.function(
-            "workspace_contains",
-            "Whether the follower can reach the target.",
-            {"p": (x,)},
-            {"inside": sp.true},
-            program=inside,
-            boolean=True,
-        )
+    export_reach(d, inside, {"p": (x,)}, "the follower")
     record_lemma(d, "ik", found.link)
     d.inverses.append(
         Inverse(
@@ -306,4 +305,4 @@ def _inverse(loop: _Loop) -> None:
     )
 
 
-__all__ = ["coupled"]
+__all__ = ["POSITION", "coupled", "export_rates"]

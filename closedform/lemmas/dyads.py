@@ -227,7 +227,7 @@ def _carry(m: Linkage, p: Program, step: Solved, points: dict[str, sp.Matrix]) -
 
 
 def _again(m: Linkage, found: Posture) -> Posture:
-    """The posture with the looser tolerances of functions of the hand."""
+    """The posture in a program for functions of the joints, with all points under names."""
     v = Program(list(found.program.body), found.program.taken)
     if m.follower:
         step, points = m.solved[-1], found.points

@@ -23,7 +23,7 @@ from closedform.lemmas.leg_by_leg import (
 )
 from closedform.lemmas.legs import Naming, Solution
 from closedform.lemmas.linkage import GROUND, Linkage
-from closedform.lemmas.reached import bounds_of_any
+from closedform.lemmas.reached import bounds_of_any, export_reach
 from closedform.mechanics.assur import Dyad, Held, Order, order
 from closedform.model.functions import SINGLE, Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
@@ -306,15 +306,9 @@ class _Reverse:
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
             ),
         )
-        if not on_curve and (inside := bounds_of_any(g, self.signs)).body:
-            d.function(
-                "workspace_contains",
-                f"Whether {m.follower or 'the hand'} can reach the target.",
-                {"p": tuple(m.hand)},
-                {"inside": sp.true},
-                program=inside,
-                boolean=True,
-            )
+        if not on_curve:
+            what = m.follower or "the hand"
+            export_reach(d, bounds_of_any(g, self.signs), {"p": tuple(m.hand)}, what)
         for link in self.links:
             record_lemma(d, "ik", link)
         d.inverses.append(

@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.lemmas.chain import lengths_in_numbers
 from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
 from closedform.lemmas.rails import Rail
-from closedform.lemmas.reached import bounds_of_any, signs_of
+from closedform.lemmas.reached import bounds_of_any, export_reach, signs_of
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
@@ -124,15 +124,7 @@ class LegByLeg:
                 *notes,
             ),
         )
-        if inside.body:
-            d.function(
-                "workspace_contains",
-                "Whether the hand can reach the target.",
-                contained,
-                {"inside": sp.true},
-                program=inside,
-                boolean=True,
-            )
+        export_reach(d, inside, contained)
         for s in self.found:
             record_lemma(d, "ik", s.link)
 

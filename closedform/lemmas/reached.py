@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let, Match, Program, Statement, Vanishes, substitute
 
 Kept = Let | Bound | Vanishes
@@ -59,6 +60,21 @@ def bounds_of_any(program: Program, signs: Sequence[sp.Symbol]) -> Program:
     return p
 
 
+def export_reach(
+    d: Derivation, inside: Program, target: Mapping[str, Any], what: str = "the hand"
+) -> None:
+    """Export ``workspace_contains``, if anything bounds how far ``what`` can reach."""
+    if inside.body:
+        d.function(
+            "workspace_contains",
+            f"Whether {what} can reach the target.",
+            target,
+            {"inside": sp.true},
+            program=inside,
+            boolean=True,
+        )
+
+
 def _used(statement: Kept | Match) -> set[sp.Basic]:
     """The symbols on which a statement depends."""
     found = set(statement.value.free_symbols)
@@ -86,4 +102,4 @@ def _write(p: Program, s: Kept, name: str, values: Mapping[sp.Basic, Any]) -> sp
     return p.let(name, value, **nonnegative)
 
 
-__all__ = ["bounds_of", "bounds_of_any", "signs_of"]
+__all__ = ["bounds_of", "bounds_of_any", "export_reach", "signs_of"]

@@ -15,14 +15,14 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
-from closedform.lemmas.coupled import POSITION
+from closedform.lemmas.coupled import POSITION, export_rates
 from closedform.lemmas.hand import check_plain, in_space
 from closedform.lemmas.leg_by_leg import MISSED, SIGN, Choice, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Naming, Solution, vector
 from closedform.lemmas.missed import MOVED, SHARE
-from closedform.lemmas.modes import EQUATIONS, NO_MODE, Exported, export
+from closedform.lemmas.modes import NO_MODE
 from closedform.lemmas.rails import Rail
-from closedform.lemmas.reached import bounds_of
+from closedform.lemmas.reached import bounds_of, export_reach
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -326,20 +326,7 @@ def _velocity(m: _Slotted, at: _Posture, loop: Step) -> None:
     )
     v = Program(list(at.program.body), at.program.taken)
     A_at, B_at = v.let("A", a.xreplace(at.known)), v.let("B", b.xreplace(at.known))
-    pole = ("Not finite at a parallel singularity.",) * bool(d.poles)
-    functions: list[Exported] = [
-        ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
-        (
-            "jacobian_serial",
-            "B of A*dx = B*dq.",
-            {"B": [B_at]},
-            ("Its sign distinguishes the working modes.",) * (not isinstance(m.driver, Rail)),
-        ),
-        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, pole),
-        ("determinant", "The Jacobian as a number: B/A.", {"det": B_at / A_at}, pole),
-        ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
-    ]
-    export(d, v, at.modes, functions, {**EQUATIONS, "det": "J", "factors": "A"})
+    export_rates(d, v, at.modes, (A_at, B_at), two_modes=not isinstance(m.driver, Rail))
 
 
 def _inverse(m: _Slotted, loop: Step) -> None:
@@ -366,6 +353,7 @@ def _inverse(m: _Slotted, loop: Step) -> None:
         f"The same equation is solved for the driver.  {solutions}.{why}",
         {},
         uses=[loop],
+        solves={"ik": ()},
     )
     d.function(
         "ik",
@@ -381,15 +369,7 @@ def _inverse(m: _Slotted, loop: Step) -> None:
             *[f"SINGULAR also near the parallel singularity, where {alone}."] * bool(d.poles),
         ),
     )
-    if inside.body:
-        d.function(
-            "workspace_contains",
-            "Whether the follower can reach the target.",
-            {"p": (x,)},
-            {"inside": sp.true},
-            program=inside,
-            boolean=True,
-        )
+    export_reach(d, inside, {"p": (x,)}, "the follower")
     link = solved.found.link
     record_lemma(d, "ik", link)
     d.inverses.append(

@@ -425,12 +425,7 @@ class Legs:
         place = self.place_on_hand(rod, near)
         end = self.point(body, near)
         length, tail = self.bar(rod, loop.rods[rod]), self.tail(place)
-        start = self.point(GROUND, joint)
-        if any(sp.simplify(e) != 0 for e in loop.bodies[body].get(joint.at, start) - start):
-            raise loop.error(
-                f"{joint.at}, where {name} is, has different coordinates on the ground and on "
-                f"{body}; the points of {body} are where they are when {name} is zero"
-            )
+        start = self.pivot(joint)
         arm = end - start
         if loop.dimensions == 3:
             if joint.axis is None:
@@ -500,6 +495,16 @@ class Legs:
         if joint.at not in points:
             raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is")
         return points[joint.at]
+
+    def pivot(self, joint: Joint) -> sp.Matrix:
+        """Where a body turns about the ground, which is the same point of both at the angle 0."""
+        name, body, at = joint.name, joint.other(GROUND), self.point(GROUND, joint)
+        if any(sp.simplify(e) != 0 for e in self.loop.bodies[body].get(joint.at, at) - at):
+            raise self.loop.error(
+                f"{joint.at}, where {name} is, has different coordinates on the ground and on "
+                f"{body}; the points of {body} are where they are when {name} is zero"
+            )
+        return at
 
     def stretch(self, joint: Joint) -> LoopLeg:
         """A leg of two bodies that slide along each other."""

@@ -36,20 +36,8 @@ def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
     return [first, second] if crank.driven else [second, first]
 
 
-def _pivot(found: Legs, joint: Joint) -> sp.Matrix:
-    """Where a body turns about the ground, which is the same point of both at the angle 0."""
-    body = joint.other(GROUND)
-    at = found.point(GROUND, joint)
-    if any(sp.simplify(e) for e in found.loop.bodies[body].get(joint.at, at) - at):
-        raise found.loop.error(
-            f"{joint.at} has different coordinates on the ground and on {body}; the points of "
-            f"{body} are where they are when {joint.name} is zero"
-        )
-    return at
-
-
 def _crank(found: Legs, joint: Joint, pin: Joint) -> LoopLeg:
-    body, pivot = joint.other(GROUND), _pivot(found, joint)
+    body, pivot = joint.other(GROUND), found.pivot(joint)
     arm = found.point(body, pin) - pivot
     length = found.length(arm)
     if length == 0:
@@ -74,7 +62,7 @@ def _beside(found: Legs, slide: Joint, held: tuple[str, Joint]) -> sp.Matrix:
 
 
 def _lever(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> LoopLeg:
-    body, pivot = joint.other(GROUND), _pivot(found, joint)
+    body, pivot = joint.other(GROUND), found.pivot(joint)
     assert slide.axis is not None
     across = sp.Matrix([-slide.axis[1], slide.axis[0]])
     start = pivot if slide.at == joint.at else found.point(body, slide)

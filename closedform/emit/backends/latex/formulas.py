@@ -61,9 +61,11 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         self.written = {**self.written, **{str(s.name): name for s, name in names.items()}}
         self.joints = self.joints - names.keys()
         self._texts.clear()
-        yield
-        self.written, self.joints = before
-        self._texts.clear()
+        try:
+            yield
+        finally:
+            self.written, self.joints = before
+            self._texts.clear()
 
     def _print(self, expr: Any, **kwargs: Any) -> str:
         """A part of an expression; the same parts are printed again and again."""

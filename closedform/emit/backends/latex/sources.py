@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.emit.backends.latex.equations import canonical, reference, skeleton
+from closedform.emit.backends.latex.equations import canonical, listed, reference, skeleton
 from closedform.emit.backends.latex.prose import upright
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.wide import Equation
@@ -19,12 +19,12 @@ from closedform.model.step import Step
 
 def of_the_loop(page: Sheet) -> str:
     """Where the equations of the loop stand: their numbers, or the section with their table."""
-    steps, step = page.derivation.steps, page.derivation.loop
+    step = page.derivation.loop
     if step is None:
         return ""
     if labels := _numbers(page, step):
         return f" {reference(labels)}"
-    return rf" (Section~\ref{{step:{page.derivation.name}:{steps.index(step) + 1}}})"
+    return f" ({_sections(page, [step])})"
 
 
 def of_the_target(
@@ -48,7 +48,7 @@ def _sections(page: Sheet, steps: Sequence[Step]) -> str:
     places = [rf"\ref{{step:{page.derivation.name}:{every.index(s) + 1}}}" for s in steps]
     if len(places) < 2:
         return "".join(f"Section~{place}" for place in places)
-    return f"Sections~{', '.join(places[:-1])} and {places[-1]}"
+    return f"Sections~{listed(places)}"
 
 
 def explained(page: Sheet, function: Function, unknowns: Iterable[sp.Symbol]) -> str:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.mechanics.assur import Dyad, Order, freedoms, order
-from closedform.scaffold.loops import GROUND, Joint, Loop, listed
+from closedform.scaffold.graph import GROUND, Joint, Loop
+from closedform.scaffold.loops import listed
 from closedform.scaffold.source import literal, source
 
 FEW = {1: 3, 2: 4}

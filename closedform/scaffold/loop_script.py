@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.algebra.formulas import number
+from closedform.scaffold.graph import AXES, GROUND, Joint, Loop
 from closedform.scaffold.linkages import LinkageLines, linkage
-from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg, listed
+from closedform.scaffold.loops import TURNING, Legs, LoopLeg, listed
 from closedform.scaffold.on_rod import on_rod
 from closedform.scaffold.slotted import slotted
 from closedform.scaffold.source import file_name, literal

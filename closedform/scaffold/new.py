@@ -24,8 +24,8 @@ from closedform.model.functions import real
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, bounded
+from closedform.scaffold.loop_file import read_loop
 from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.loops import read_loop
 from closedform.scaffold.mjcf import read_mjcf
 from closedform.scaffold.motors import motors_of
 from closedform.scaffold.proposal import Tried

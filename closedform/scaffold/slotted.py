@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from closedform.scaffold.loops import GROUND, Joint, Legs, LoopLeg
+from closedform.scaffold.graph import GROUND, Joint
+from closedform.scaffold.loops import Legs, LoopLeg
 from closedform.scaffold.source import source
 
 BODIES = 3

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from closedform.scaffold.loops import GROUND, Joint, Legs, LoopLeg
+from closedform.scaffold.graph import GROUND, Joint
+from closedform.scaffold.loops import Legs, LoopLeg
 from closedform.scaffold.source import source
 
 LEGS = 3

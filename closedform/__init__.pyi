@@ -71,6 +71,7 @@ from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines as two_sines
+from closedform.lemmas.universal import Universal as Universal
 from closedform.lemmas.wrist import spin as spin
 from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.zyz import Reaching as Reaching

@@ -102,6 +102,21 @@ def scotch_yoke(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return [v.r * (2 * np.cos(p[0]) - np.sin(p[0])) - 2 * q[0]]
 
 
+def around(distance: float) -> np.ndarray:
+    """Three points around the z axis."""
+    angles = 2 * np.pi / 3 * np.arange(3)
+    return distance * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+
+
+def tsai(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    return list(np.linalg.norm(p + around(v.c) - around(v.b), axis=1) - q)
+
+
+def puu(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    ends = around(v.b) + np.outer(q, [0, 0, 1]) / np.sqrt(2) - q[:, None] * around(1 / np.sqrt(2))
+    return list(np.linalg.norm(p + around(v.c) - ends, axis=1) - v.r)
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "cylinder": (cylinder, 1),
@@ -110,6 +125,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "minitaur": (minitaur, 4),
     "oblique_rails": (oblique_rails, 4),
     "prrrp": (prrrp, 4),
+    "puu": (puu, 8),
     "quick_return": (quick_return, 2),
     "rssr": (rssr, 2),
     "scotch_yoke": (scotch_yoke, 1),
@@ -117,6 +133,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "slotted_crank": (slotted_crank, 2),
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
+    "tsai": (tsai, 1),
 }
 TRAVEL = {"cylinder": 0.8, "loader": 2.0, "scotch_yoke": 0.1, "slotted_crank": 3.0}
 """How far joints are tried, if it is not half a metre or half a radian."""

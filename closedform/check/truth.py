@@ -180,10 +180,13 @@ class Solutions:
         explicit = tuple(inverse.targets) == function.symbols
         self.has_images = explicit or bool(inverse.images)
         maps = [inverse.forward] if explicit else []
+        posture = (*inverse.unknowns, *parameters)
+        self._reaches: list[RowEvaluator] = []
         if inverse.images:
             forward = derivation[inverse.images]
-            maps = [forward.values(mode) for _, mode in forward.cases()]
-        posture = (*inverse.unknowns, *parameters)
+            modes = [mode for _, mode in forward.cases()]
+            maps = [forward.values(mode) for mode in modes]
+            self._reaches = [_margins(forward, posture, mode) for mode in modes]
         self._maps = [RowEvaluator(posture, m) for m in maps]
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
@@ -211,11 +214,15 @@ class Solutions:
     def images(self, sample: Sample) -> tuple[Array, Array]:
         """The images of postures in each assembly mode that they have, and the postures.
 
-        Postures at which a flag of the forward map leaves the target free have no image.
+        Postures at which a flag of the forward map leaves the target free have no image, nor have
+        those at which one of its bounds is negative.
         """
         rows, postures = [], []
-        for forward in self._maps:
-            for row, posture in zip(sample.rows, sample.values, strict=True):
+        reached = self._reached(with_parameters(sample.values, sample.parameters))
+        for forward, exists in zip(self._maps, reached, strict=True):
+            for row, posture, there in zip(sample.rows, sample.values, exists, strict=True):
+                if not there:
+                    continue
                 try:
                     image = forward.exactly(row)
                 except Undetermined:
@@ -229,7 +236,17 @@ class Solutions:
     def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
         """The images of postures in each assembly mode; NaN where the mode does not exist."""
         rows = with_parameters(postures, parameters)
-        return np.stack([forward.values(rows) for forward in self._maps])
+        images = np.stack([forward.values(rows) for forward in self._maps])
+        images[~self._reached(rows)] = np.nan
+        return images
+
+    def _reached(self, rows: Array) -> Array:
+        """For each map, the rows at which none of its bounds is certainly negative."""
+        found = np.ones((len(self._maps), len(rows)), bool)
+        for k, reach in enumerate(self._reaches):
+            middle, radius = reach.balls(rows)
+            found[k] = ~(middle + radius < 0).any(axis=1)
+        return found
 
     def missed(
         self,

@@ -13,6 +13,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_leg, vector
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.universal import Universal
 from closedform.model.alike import INDEX, Alike, alike, renamed
 from closedform.model.derivation import Derivation
 from closedform.model.step import Step
@@ -70,8 +71,9 @@ class Hand:
 
     @property
     def held(self) -> list[tuple[int, Leg]]:
-        """The legs whose rods are parallelograms."""
-        return [(k, leg) for k, leg in self.numbered if isinstance(leg.rod, Parallelogram)]
+        """The legs whose rods keep the hand from turning."""
+        kinds = Parallelogram | Universal
+        return [(k, leg) for k, leg in self.numbered if isinstance(leg.rod, kinds)]
 
     @property
     def _singular(self) -> tuple[str, str, str]:
@@ -227,13 +229,14 @@ def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
 
 
 def check_plain(d: Derivation, legs: Sequence[Leg | Crank | Slide | Stretch]) -> None:
-    """Refuse parallelograms in a mechanism whose hand can turn."""
-    parts = [part for leg in legs for part in (leg.rod, getattr(leg, "length", None))]
-    if any(isinstance(part, Parallelogram) for part in parts):
-        raise ShapeError(
-            f"{d.name}: a Parallelogram keeps the hand from turning, which only parallel "
-            "supports; use plain rods here"
-        )
+    """Refuse rods that keep a hand from turning in a mechanism whose hand can turn."""
+    for leg in legs:
+        for part in (leg.rod, getattr(leg, "length", None)):
+            if isinstance(part, Parallelogram | Universal):
+                raise ShapeError(
+                    f"{d.name}: a {type(part).__name__} keeps the hand from turning, which only "
+                    "parallel supports; use plain rods here"
+                )
 
 
 def _listed(symbols: Sequence[sp.Symbol]) -> str:

@@ -1,4 +1,4 @@
-"""What keeps a hand from turning: legs that are parallelograms."""
+"""What keeps a hand from turning: parallelograms, and universal joints with parallel axes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.hand import Hand, square
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
+from closedform.lemmas.modes import Exported
 from closedform.lemmas.parallelogram import Parallelogram, parallelogram
+from closedform.lemmas.universal import Universal
 from closedform.model.alike import INDEX
 from closedform.model.functions import real
 from closedform.model.step import Step
@@ -19,6 +21,7 @@ LEFT_OUT = (
     "Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in "
     "which the hand is turned."
 )
+TURNED = "Left out: postures in which the hand is turned and the universal joints fit all the same."
 
 
 @dataclass(frozen=True)
@@ -55,48 +58,115 @@ def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
 
 
 def check_held(m: Hand) -> None:
-    """Refuse a hand that could turn, and a parallelogram that would not keep it from turning."""
+    """Refuse a hand that could turn, and a rod that would not keep it from turning."""
     name, n = m.d.name, len(m.hand)
-    held = [leg for leg in m.legs if isinstance(leg.rod, Parallelogram)]
-    for leg in m.legs:
-        for bars in bars_of(1, leg, "P"):
-            if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
-                raise ShapeError(
-                    f"{name}: the bar of a parallelogram is a unit vector with {n} entries"
-                )
+    held = [leg for _, leg in m.held]
+    _check_directions(m, held)
     for leg in held:
-        if not isinstance(leg, Crank) or isinstance(leg.length, Parallelogram):
-            continue
-        turned = [leg.rod.direction.dot(vector(v)) for v in (leg.along, leg.across)]
-        if n == 2 or any(sp.simplify(e) != 0 for e in turned):
-            raise ShapeError(
-                f"{name}: the crank of {leg.joint} turns the bar on it; "
-                f"{'' if n == 2 else 'the bar has to be along its axis, or '}"
-                f"the crank has to be a Parallelogram too"
-            )
+        _check_on_crank(m, leg)
+    if len(held) == 3 and not any(e for leg in held for e in _across(held[0], leg)):
+        raise ShapeError(
+            f"{name}: the bars or axes of all three legs have the same direction, about which the "
+            f"hand can always turn"
+        )
     places = [m.place(leg) for leg in m.legs]
     if m.rails or all(place == places[0] for place in places):
         return
     if len(held) < (1 if n == 2 else 3):
+        rods = "one rod has" if n == 2 else "all three rods have"
         raise ShapeError(
             f"{name}: the legs end in different points of the hand, and nothing keeps it from "
-            f"turning; {'one rod has' if n == 2 else 'all three rods have'} to be a Parallelogram, "
-            f"or take platform, for a hand that turns"
+            f"turning; {rods} to be a Parallelogram{' or Universal' * (n == 3)}, or take platform, "
+            f"for a hand that turns"
         )
 
 
+def _check_directions(m: Hand, held: Sequence[Leg]) -> None:
+    """Refuse bars and axes that are no unit vectors of the plane or of space."""
+    name, n = m.d.name, len(m.hand)
+    for bars in (bars for leg in m.legs for bars in bars_of(1, leg, "P")):
+        if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
+            raise ShapeError(
+                f"{name}: the bar of a parallelogram is a unit vector with {n} entries"
+            )
+    for axis in (leg.rod.direction for leg in held if isinstance(leg.rod, Universal)):
+        if not len(axis) == n == 3 or sp.simplify(square(axis) - 1) != 0:
+            raise ShapeError(
+                f"{name}: the axis of a rod with universal joints is a unit vector in space"
+            )
+
+
+def _check_on_crank(m: Hand, leg: Leg) -> None:
+    """Refuse a bar or an axis that a crank turns."""
+    if not isinstance(leg, Crank) or isinstance(leg.length, Parallelogram):
+        return
+    turned = [leg.rod.direction.dot(vector(v)) for v in (leg.along, leg.across)]
+    if len(m.hand) == 2 or any(sp.simplify(e) != 0 for e in turned):
+        what = "axis" if isinstance(leg.rod, Universal) else "bar"
+        along = "" if len(m.hand) == 2 else f"the {what} has to be along its axis, or "
+        raise ShapeError(
+            f"{m.d.name}: the crank of {leg.joint} turns the {what} on it; {along}"
+            f"the crank has to be a Parallelogram too"
+        )
+
+
+def _across(one: Leg, other: Leg) -> sp.Matrix:
+    """A vector that vanishes if the bars or axes of two legs are parallel."""
+    return one.rod.direction.cross(other.rod.direction).applyfunc(sp.simplify)
+
+
+def _with(m: Hand, kind: type) -> list[tuple[int, Leg]]:
+    """The legs whose rods are of a kind."""
+    return [(k, leg) for k, leg in m.held if isinstance(leg.rod, kind)]
+
+
 def state_held(m: Hand, loop: Step) -> None:
-    """The step on what keeps the hand from turning, if there are parallelograms."""
-    if m.held:
+    """The steps on what keeps the hand from turning."""
+    if _with(m, Parallelogram):
         (_in_plane if len(m.hand) == 2 else _in_space)(m, loop)
+    if _with(m, Universal):
+        _by_axes(m, loop)
 
 
-def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
-    """What vanishes where the hand can turn, from the vectors along the rods."""
+def left_out(m: Hand) -> tuple[str, ...]:
+    """Notes on the postures that are left out, in which the hand is turned."""
+    notes = (LEFT_OUT, Parallelogram), (TURNED, Universal)
+    return tuple(note for note, kind in notes if _with(m, kind))
+
+
+def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[Exported]:
+    """The function that vanishes where the hand can turn, from the vectors along the rods.
+
+    There is none if the hand is a point, or if legs hold it in space and it is not known how.
+    """
+    factors = _constraint(m, rods)
+    if not factors:
+        return []
+    crossed = "unit vector along the bars times the vector along the rods"
+    if not _with(m, Universal):
+        what, how = (
+            "parallelograms",
+            f"The determinant of the normals of the parallelograms (a {crossed}).",
+        )
+    else:
+        what = "legs"
+        how = (
+            "The determinant of the directions about which the legs do not let the hand turn: the "
+            "vector along a rod without its part along the axis"
+            + f"; of a parallelogram, the {crossed}" * bool(_with(m, Parallelogram))
+            + "."
+        )
+    if len(m.hand) == 2:
+        how = "One factor for each leg with a parallelogram; the hand can turn if all vanish."
+    summary = f"The factors that vanish where the {what} do not keep the hand from turning."
+    return [("constraint", summary, {"factors": factors}, (how,))]
+
+
+def _constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
     spans = dict(zip((k for k, _ in m.numbered), rods, strict=True))
     if len(m.hand) == 3:
-        normals = [leg.rod.direction.cross(spans[k]) for k, leg in m.held]
-        return [sp.Matrix.hstack(*normals).det()] if len(normals) == 3 else []
+        couples = [leg.rod.couple(spans[k]) for k, leg in m.held]
+        return [sp.Matrix.hstack(*couples).det()] if len(couples) == 3 else []
     found = []
     for k, leg in m.held:
         factor = cross_in_plane(leg.rod.direction, spans[k])
@@ -115,7 +185,8 @@ def _in_space(m: Hand, loop: Step) -> None:
         "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
         "cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
-    bars = m.as_shown([(k, leg.rod.direction) for k, leg in m.held])
+    held = _with(m, Parallelogram)
+    bars = m.as_shown([(k, leg.rod.direction) for k, leg in held])
     one = INDEX if m.alike else "k"
     m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in bars})
     m.d.explain({rf"\mathbf n_{one}": f"normal of the parallelogram of leg {one}"})
@@ -127,7 +198,7 @@ def _in_space(m: Hand, loop: Step) -> None:
         "second.  The two rods are r + h*(v - u) and r - h*(v - u), and both have to be as long as "
         "l.  In a parallelogram v = u, and r is as long as a rod, whatever the width.  The other "
         "solutions are left out: the crossed one (antiparallelogram) and twisted ones."
-        f"{all_three * (len(m.held) == 3)}",
+        f"{all_three * (len(held) == 3)}",
         {
             r"\mathbf r\cdot(\mathbf v - \mathbf u)": sp.S.Zero,
             r"|\mathbf r|^2 + h^2\,|\mathbf v - \mathbf u|^2": "l^2",
@@ -142,13 +213,60 @@ def _in_space(m: Hand, loop: Step) -> None:
             (square(rods[0]) - square(rods[1]), 4 * h * r.dot(difference)),
             (square(rods[0]) + square(rods[1]), 2 * (square(r) + h**2 * square(difference))),
             (r.dot(w.cross(u)), w.dot(u.cross(r))),
-            *((square(leg.rod.direction), sp.S.One) for _, leg in m.held),
-            *(
-                (leg.rod.direction.dot(vector(v)), sp.S.Zero)
-                for _, leg in m.held
-                if isinstance(leg, Crank) and not isinstance(leg.length, Parallelogram)
-                for v in (leg.along, leg.across)
-            ),
+            *_unit_and_still(held),
+        ],
+        uses=[loop],
+    )
+
+
+def _unit_and_still(held: Sequence[tuple[int, Leg]]) -> list[tuple[sp.Expr, sp.Expr]]:
+    """That bars or axes are unit vectors, and along the axis of a crank that carries them."""
+    return [
+        *((square(leg.rod.direction), sp.S.One) for _, leg in held),
+        *(
+            (leg.rod.direction.dot(vector(v)), sp.S.Zero)
+            for _, leg in held
+            if isinstance(leg, Crank) and not isinstance(leg.length, Parallelogram)
+            for v in (leg.along, leg.across)
+        ),
+    ]
+
+
+def _by_axes(m: Hand, loop: Step) -> None:
+    """The step on universal joints with parallel axes."""
+    u, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
+    held = _with(m, Universal)
+    axes = m.as_shown([(k, leg.rod.direction) for k, leg in held])
+    one = INDEX if m.alike else "k"
+    m.d.explain({rf"\mathbf u_{k}": "direction of the outer axes of a leg" for k, _ in axes})
+    m.d.explain({rf"\mathbf m_{one}": f"part of the rod of leg {one} across its outer axes"})
+    all_three = (
+        "  Each leg takes one freedom of turning from the hand: the rate omega with which it turns "
+        "is at right angles to m, the part of the rod across the outer axes.  So the hand cannot "
+        "turn, unless the three vectors m are in one plane (constraint singularity)."
+    )
+    m.d.step(
+        "The universal joints",
+        "A rod has universal joints at both ends.  The axis that is fixed to what moves the rod "
+        "has the direction u and does not turn; that on the hand has the direction v.  The two "
+        "axes that are fixed to the rod are parallel, and at right angles to the rod, to u and to "
+        "v.  So u, v and the vector r along the rod are in one plane.  They are if v = u, wherever "
+        "the hand is.  The other solutions, in which the hand is turned, are left out."
+        f"{all_three * (len(held) == 3)}",
+        {
+            r"(\mathbf u\times\mathbf r)\cdot\mathbf v": sp.S.Zero,
+            **{rf"\mathbf u_{k}": e for k, e in axes},
+            rf"\mathbf m_{one}": rf"\mathbf r_{one} - (\mathbf u_{one}\cdot\mathbf r_{one})\,"
+            rf"\mathbf u_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf m_{one}": sp.S.Zero,
+        },
+        proves="At v = u the first equation holds for any r, and its derivative, while the hand "
+        "turns and moves in any way, is that of the last one.  The axes are unit vectors, and one "
+        "on a crank is along the axis of the crank.",
+        equal=[
+            (u.cross(r).dot(u), sp.S.Zero),
+            (u.cross(r).dot(w.cross(u)), w.dot(u.dot(r) * u - square(u) * r)),
+            *_unit_and_still(held),
         ],
         uses=[loop],
     )
@@ -192,4 +310,4 @@ def _in_plane(m: Hand, loop: Step) -> None:
     )
 
 
-__all__ = ["LEFT_OUT", "Bars", "bars_of", "check_held", "constraint", "state_held"]
+__all__ = ["LEFT_OUT", "Bars", "bars_of", "check_held", "constraint", "left_out", "state_held"]

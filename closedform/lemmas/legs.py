@@ -23,6 +23,7 @@ import sympy as sp
 
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.triangle import Triangle, indexed
+from closedform.lemmas.universal import Universal
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
@@ -313,11 +314,16 @@ class Slide:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A leg of variable length, the joint, from ``pivot`` to the point ``on_hand``."""
+    """A leg of variable length, the joint, from ``pivot`` to the point ``on_hand``.
+
+    With an ``axis`` it has universal joints at both ends, as a
+    :class:`~closedform.lemmas.universal.Universal`.
+    """
 
     joint: sp.Symbol
     pivot: Sequence[Any]
     on_hand: Sequence[Any] = ()
+    axis: Sequence[Any] = ()
     signs: int = 1
 
     @property
@@ -325,8 +331,8 @@ class Stretch:
         return vector(self.pivot)
 
     @property
-    def rod(self) -> sp.Symbol:
-        return self.joint
+    def rod(self) -> sp.Symbol | Universal:
+        return Universal(self.joint, self.axis) if self.axis else self.joint
 
     @property
     def rate(self) -> sp.Matrix:

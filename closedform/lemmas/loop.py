@@ -17,7 +17,7 @@ import sympy as sp
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
 from closedform.lemmas.hand import Hand
-from closedform.lemmas.held import LEFT_OUT, check_held, constraint, state_held
+from closedform.lemmas.held import check_held, constraint, left_out, state_held
 from closedform.lemmas.leg_by_leg import (
     MISSED,
     SIGN,
@@ -178,7 +178,7 @@ def _on_rods(
     m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
 ) -> _Meeting:
     n = len(m.legs)
-    radii = _radii(m, f)
+    radii = _radii(m, f, size)
     meet = two_circles if n == 2 else three_spheres
     still = all(isinstance(leg, Crank | Strut) for leg in m.legs)
     hand, share = tuple(m.hand), SHARE if still else MOVED
@@ -223,14 +223,22 @@ def _on_rods(
     )
 
 
-def _radii(m: Hand, f: Program) -> list[sp.Symbol]:
-    """The lengths of the rods; numbers that differ have names, because the lemma equates them."""
+def _radii(m: Hand, f: Program, size: sp.Expr) -> list[sp.Symbol]:
+    """The lengths of the rods; numbers that differ have names, because the lemma equates them.
+
+    Circles meet only if their radii are not negative; of spheres, which meet by the squares of
+    their radii, this is asked here.
+    """
     rods = {k: sp.sympify(leg.rod, strict=True) for k, leg in m.numbered}
-    same = len({*rods.values()}) == 1
-    return [
-        rod if rod.is_Symbol or (rod.is_number and same) else f.let(f"r_{k}", rod)
-        for k, rod in rods.items()
-    ]
+    same, found = len({*rods.values()}) == 1, []
+    for (k, rod), leg in zip(rods.items(), m.legs, strict=True):
+        if len(m.legs) == 3 and isinstance(leg, Stretch):
+            found.append(f.bound(f"r_{k}", rod, size, "a leg has a positive length"))
+        elif rod.is_Symbol or (rod.is_number and same):
+            found.append(rod)
+        else:
+            found.append(f.let(f"r_{k}", rod))
+    return found
 
 
 def _on_rails(
@@ -261,11 +269,6 @@ def _on_rails(
         proves=proves,
         notes=notes,
     )
-
-
-def left_out(m: Hand) -> tuple[str, ...]:
-    """A note on the mode of parallelograms that is left out."""
-    return (LEFT_OUT,) if m.held else ()
 
 
 def _roles(m: Hand) -> tuple[tuple[str, Any], ...]:
@@ -371,17 +374,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     ]
     if not m.rails:  # a normal is a unit vector, and a rod has a length
         functions.append(("condition_number", *conditioning(v, along, size, on_sphere=bool(still))))
-    if factors := constraint(m, along):
-        summary = (
-            "The factors that vanish where the parallelograms do not keep the hand from turning."
-        )
-        how = (
-            "The determinant of the normals of the parallelograms (a unit vector along the bars "
-            "times the vector along the rods)."
-            if len(m.hand) == 3
-            else "One factor for each leg with a parallelogram; the hand can turn if all vanish."
-        )
-        functions.append(("constraint", summary, {"factors": factors}, (how,)))
+    functions += constraint(m, along)
     export(d, v, at.modes, functions)
 
 

@@ -87,6 +87,10 @@ class Parallelogram:
         """Half of the width."""
         return sp.sympify(self.width, strict=True) / 2
 
+    def couple(self, rod: sp.Matrix) -> sp.Matrix:
+        """The direction about which it keeps the hand from turning, from the vector along it."""
+        return self.direction.cross(rod)
+
 
 def parallelogram(
     lengths: tuple[sp.Expr, sp.Expr],

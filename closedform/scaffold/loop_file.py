@@ -72,6 +72,7 @@ USED |= {
     "Slide",
     "Stretch",
     "Strut",
+    "Universal",
     "Upright",
 }
 USED |= {"Abs", "Rational", "cos", "sin", "sqrt"}

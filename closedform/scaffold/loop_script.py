@@ -74,10 +74,10 @@ def _on_legs(found: Legs) -> _Way:
         return _Way(upright or legs, [])
     if len(legs) != loop.dimensions:
         on_sphere = " beside its strut" if struts else ""
-        held = f"; the parallelogram {_held(loop)[0]} keeps it from turning" * bool(_held(loop))
+        rods = [f"; the parallelogram {rod} keeps it from turning" for rod in _held(loop)]
         raise loop.error(
             f"{len(driven)} joints are driven, but a hand that does not turn needs "
-            f"{loop.dimensions - len(struts)}{on_sphere}{held}"
+            f"{loop.dimensions - len(struts)}{on_sphere}{''.join(rods[:1])}"
         )
     return _Way(legs, list(AXES[: loop.dimensions]))
 
@@ -101,6 +101,11 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
         these = "one" if loop.dimensions == 2 else "all"
         raise loop.error(
             f"{body} may turn; either {these} of its rods must be parallelograms, or no body"
+        )
+    if held := [j.name for j in loop.of(body) if j.kind == "universal" and j.axis is not None]:
+        raise loop.error(
+            f"{body} may turn, although {listed(held)} has an axis; either all of its rods must "
+            f"have universal joints with an axis at both ends, or none"
         )
     fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
     if fixed and loop.dimensions == 3:

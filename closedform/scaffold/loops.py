@@ -78,6 +78,38 @@ class Legs:
         way = _tuple(self.direction(side, width))
         return f"Parallelogram({source(length)}, {way}, {source(width)})"
 
+    def rod(self, rod: str, near: Joint) -> str:
+        """The length of a rod, or what it is if it keeps the hand from turning."""
+        length = self.loop.rods[rod]
+        far = [j for j in self.loop.of(rod) if j is not near]
+        axis = self.axis_of(near, far[0]) if far else None
+        if axis is None:
+            return self.bar(rod, length)
+        if rod in self.loop.parallelograms:
+            raise self.loop.error(
+                f"{rod} is a parallelogram, so {near.name} and {far[0].name} need no axis"
+            )
+        return f"Universal({source(length)}, {self.at(axis)})"
+
+    def axis_of(self, near: Joint, far: Joint) -> sp.Matrix | None:
+        """The direction of the outer axes of the universal joints at the ends of a leg."""
+        ends = [(j, j.axis) for j in (near, far) if j.kind == "universal" and j.axis is not None]
+        if not ends:
+            return None
+        if len(ends) == 1 or self.loop.dimensions == 2:
+            raise self.loop.error(
+                f"{ends[0][0].name} has an axis; universal joints keep {self.end} from turning if "
+                f"a leg in space has them at both ends, each with the axis that is not fixed to "
+                f"the leg"
+            )
+        (_, first), (_, second) = ends
+        if any(sp.simplify(e) for e in first.cross(second)):
+            raise self.loop.error(
+                f"the axes of {near.name} and {far.name} have to be parallel, or the leg turns "
+                f"{self.end}; for a hand that turns leave both out"
+            )
+        return first
+
     def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:
         return (v / length).applyfunc(sp.simplify)
 
@@ -164,7 +196,7 @@ class Legs:
         end = self.point(joint.other(GROUND), near)
         return LoopLeg(
             joint,
-            f"Slide({joint.name}, {self.bar(rod, length)}, {self.at(end)}, "
+            f"Slide({joint.name}, {self.rod(rod, near)}, {self.at(end)}, "
             f"{self.at(joint.axis)}{self.tail(place)})",
             f"{joint.name} moves a slider, which a rod of length {length} joins to {self.end}",
             place,
@@ -175,7 +207,7 @@ class Legs:
         loop, name, body = self.loop, joint.name, joint.other(GROUND)
         place = self.place_on_hand(rod, near)
         end = self.point(body, near)
-        length, tail = self.bar(rod, loop.rods[rod]), self.tail(place)
+        length, tail = self.rod(rod, near), self.tail(place)
         start = self.pivot(joint)
         arm = end - start
         if loop.dimensions == 3:
@@ -276,9 +308,11 @@ class Legs:
         self.used |= {joint.name, *(end.name for end in ends.values())}
         base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])
+        axis = self.axis_of(ends[True], ends[False])
+        held = "" if axis is None else f", axis={self.at(axis)}"
         return LoopLeg(
             joint,
-            f"Stretch({joint.name}, {self.at(base)}{self.tail(place)})",
+            f"Stretch({joint.name}, {self.at(base)}{self.tail(place)}{held})",
             f"{joint.name} is the length of a leg from the ground to {self.end}",
             place,
         )
@@ -310,7 +344,7 @@ class Legs:
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")
-        if rod not in loop.parallelograms:
+        if rod not in loop.parallelograms and (far.kind != "universal" or far.axis is None):
             self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
 

@@ -42,6 +42,7 @@ from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
 from closedform.lemmas.on_rod import on_rod as on_rod
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
+from closedform.lemmas.planes import Plane as Plane
 from closedform.lemmas.platform import platform as platform
 from closedform.lemmas.quartic import OnCircle as OnCircle
 from closedform.lemmas.quartic import quartic as quartic

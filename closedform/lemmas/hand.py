@@ -12,6 +12,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_leg, vector
 from closedform.lemmas.parallelogram import Parallelogram
+from closedform.lemmas.planes import Flat, Plane
 from closedform.lemmas.rails import Rail
 from closedform.lemmas.universal import Universal
 from closedform.model.alike import INDEX, Alike, alike, renamed
@@ -43,6 +44,10 @@ class Hand:
             )
         if n == 3 and self.rails:
             raise ShapeError(f"{self.d.name}: a rail carries a hand in a plane only")
+        if len(self.planes) not in (0, 3):
+            raise ShapeError(
+                f"{self.d.name}: a leg of two bars with parallel axes is one of three in space"
+            )
         check_order(self.d, [leg for _, leg in self.driven])
 
     @cached_property
@@ -70,6 +75,15 @@ class Hand:
         return [leg for leg in self.legs if isinstance(leg, Rail)]
 
     @property
+    def planes(self) -> list[Plane]:
+        return [leg for leg in self.legs if isinstance(leg, Plane)]
+
+    @property
+    def flat(self) -> list[Flat]:
+        """The legs that hold the hand on a line or in a plane, instead of by a rod."""
+        return [*self.rails, *self.planes]
+
+    @property
     def held(self) -> list[tuple[int, Leg]]:
         """The legs whose rods keep the hand from turning."""
         kinds = Parallelogram | Universal
@@ -78,8 +92,10 @@ class Hand:
     @property
     def _singular(self) -> tuple[str, str, str]:
         """A clause that says where A is singular; the rods or legs have some position."""
-        if not self.rails:
+        if not self.flat:
             return "rods", "are", "in line" if len(self.hand) == 2 else "in one plane"
+        if self.planes:
+            return "planes", "are", "parallel to one line"
         if len(self.rails) == 2:
             return "rails", "are", "parallel"
         return "rod", "is", "at right angles to the rail"
@@ -138,7 +154,7 @@ class Hand:
         ends = zip(self.legs, self.centres, strict=True)
         return tuple(
             leg.normal.dot(self.hand - c)
-            if isinstance(leg, Rail)
+            if isinstance(leg, Flat)
             else square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2
             for leg, c in ends
         )
@@ -146,7 +162,7 @@ class Hand:
     def rows(self, spans: Sequence[sp.Matrix]) -> list[sp.Matrix]:
         """The rows of A, from the vectors from the near ends of the legs to their far ends."""
         legs = zip(self.legs, spans, strict=True)
-        return [leg.normal if isinstance(leg, Rail) else span for leg, span in legs]
+        return [leg.normal if isinstance(leg, Flat) else span for leg, span in legs]
 
     def as_shown(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
         """The formulas of the legs, by their numbers; of alike legs, only those of leg i."""
@@ -180,10 +196,17 @@ class Hand:
         shown: dict[str, Any] = {rf"\mathbf b_{k}": c for k, c in near}
         self.d.explain(dict.fromkeys(shown, "near end of the rod of a leg"))
         for k, leg in self.as_shown(self.numbered):
-            if isinstance(leg, Rail):
+            if isinstance(leg, Flat):
                 shown[rf"\mathbf n_{k}"] = leg.normal
             else:
                 shown[rf"|\mathbf p - \mathbf b_{k}|"] = sp.sympify(leg.rod, strict=True)
+        if self.planes:
+            return self.d.step(
+                "The loop",
+                "The joint of each leg determines a point b, from which two bars lead to the hand "
+                "p.  Their three axes have the direction n, so p - b is at right angles to n.",
+                shown,
+            )
         if self.rails:
             return self.d.step(
                 "The loop",

@@ -70,7 +70,7 @@ def check_held(m: Hand) -> None:
             f"hand can always turn"
         )
     places = [m.place(leg) for leg in m.legs]
-    if m.rails or all(place == places[0] for place in places):
+    if m.flat or all(place == places[0] for place in places):
         return
     if len(held) < (1 if n == 2 else 3):
         rods = "one rod has" if n == 2 else "all three rods have"
@@ -126,6 +126,8 @@ def state_held(m: Hand, loop: Step) -> None:
         (_in_plane if len(m.hand) == 2 else _in_space)(m, loop)
     if _with(m, Universal):
         _by_axes(m, loop)
+    if m.planes:
+        _by_parallel_axes(m, loop)
 
 
 def left_out(m: Hand) -> tuple[str, ...]:
@@ -230,6 +232,36 @@ def _unit_and_still(held: Sequence[tuple[int, Leg]]) -> list[tuple[sp.Expr, sp.E
             for v in (leg.along, leg.across)
         ),
     ]
+
+
+def _by_parallel_axes(m: Hand, loop: Step) -> None:
+    """The step on legs whose joints all turn the hand about one direction."""
+    a, b = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in "ab")
+    across = a.cross(b)
+    normals = [leg.normal for leg in m.planes]
+    m.d.explain({r"\mathbf a": "direction of the axes of a leg", "R": "rotation of the hand"})
+    m.d.explain({r"\mathbf b": "direction of the axes of another leg"})
+    m.d.step(
+        "The axes",
+        "All joints of a leg that turn have the same direction, so the leg turns the hand about it "
+        "alone: its rotation R keeps this direction.  It keeps those of two legs, a and b, and so "
+        "their cross product too.  The three vectors are a basis, because a and b are not "
+        "parallel.  So the hand does not turn at any posture.",
+        {
+            r"R\,\mathbf a": r"\mathbf a",
+            r"R\,\mathbf b": r"\mathbf b",
+            r"R\,(\mathbf a\times\mathbf b)": r"\mathbf a\times\mathbf b",
+            r"\det[\mathbf a\ \ \mathbf b\ \ \mathbf a\times\mathbf b]": r"|\mathbf a\times"
+            r"\mathbf b|^2",
+        },
+        proves="The determinant of the three vectors is the squared length of the cross product, "
+        "and the directions of the axes are unit vectors.",
+        equal=[
+            (sp.Matrix.hstack(a, b, across).det(), square(across)),
+            *((square(normal), sp.S.One) for normal in normals),
+        ],
+        uses=[loop],
+    )
 
 
 def _by_axes(m: Hand, loop: Step) -> None:

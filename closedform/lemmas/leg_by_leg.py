@@ -10,7 +10,7 @@ import sympy as sp
 
 from closedform.lemmas.chain import lengths_in_numbers
 from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
-from closedform.lemmas.rails import Rail
+from closedform.lemmas.planes import Flat
 from closedform.lemmas.reached import bounds_of_any, export_reach, signs_of
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
@@ -196,7 +196,8 @@ def size_of(
 
 def _in_numbers(leg: Sized) -> sp.Expr:
     """The lengths of a leg that are numbers, not parameters."""
-    lengths = [0 if isinstance(leg, Rail) else leg.rod, getattr(leg, "length", 0)]
+    rod = 0 if isinstance(leg, Flat) else leg.rod
+    lengths = [rod, getattr(leg, "length", 0), *getattr(leg, "bars", ())]
     places = [[length] for length in lengths] + [leg.base, leg.on_hand]
     exact = ([sp.sympify(e, strict=True) for e in place] for place in places)
     return sp.Add(*(max((_number(e) for e in place), default=sp.S.Zero) for place in exact))

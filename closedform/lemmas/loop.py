@@ -32,7 +32,8 @@ from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
 from closedform.lemmas.loop_skeleton import draw
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.modes import NO_MODE, Exported, export
-from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
+from closedform.lemmas.planes import Flat, three_planes
+from closedform.lemmas.rails import rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
@@ -108,19 +109,19 @@ class _Posture:
 def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     d, n, f = m.d, len(m.legs), m.d.program()
     sigma = real("sigma_assembly")
-    modes = branches((sigma, choice)) if len(m.rails) < n else SINGLE
+    modes = branches((sigma, choice)) if len(m.flat) < n else SINGLE
     d.assembly_modes = modes.labels
     stretched = [leg.joint for leg in m.legs if isinstance(leg, Stretch)]
-    slid = [leg.joint for leg in m.legs if isinstance(leg, Slide | Rail)]
+    slid = [leg.joint for leg in m.legs if isinstance(leg, Slide | Flat)]
     # the size has to be positive where a leg has a negative length, which does not reach a rail
-    stretched = [sp.Abs(q) if m.rails else q for q in stretched]
+    stretched = [sp.Abs(q) if m.flat else q for q in stretched]
     size = f.let("size", size_of(d, m.legs, slid) + sp.Add(*stretched))
     ends = [
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
         for (k, _), c in zip(m.numbered, m.centres, strict=True)
     ]
     near = m.in_lemma(ends)
-    met = (_on_rails if m.rails else _on_rods)(m, f, near, size, sigma)
+    met = (_on_lines if m.flat else _on_rods)(m, f, near, size, sigma)
     found = met.found
     d.step(
         f"Forward: {met.title}",
@@ -147,7 +148,7 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     record_lemma(d, "fk", met.link)
     v = Program(list(f.body), f.taken)
     (first, _), *_ = m.in_lemma(m.numbered)
-    name = f"span_{first}" if m.rails else f"A_{first}"
+    name = f"span_{first}" if m.flat else f"A_{first}"
     rod = sp.Matrix([v.let(f"{name}{i}", e) for i, e in enumerate(found.first, 1)])
     return _Posture(
         program=v,
@@ -241,11 +242,15 @@ def _radii(m: Hand, f: Program, size: sp.Expr) -> list[sp.Symbol]:
     return found
 
 
-def _on_rails(
+def _on_lines(
     m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
 ) -> _Meeting:
     notes: tuple[str, ...] = ()
-    if len(m.rails) == 2:
+    if m.planes:
+        found, title = three_planes(f, near, m.planes, m.hand, scale=size), "three planes"
+        reason = "The hand is where the planes of the three legs meet."
+        notes = ("UNREACHABLE: the bars of a leg do not reach.",)
+    elif len(m.rails) == 2:
         found, title = two_rails(f, near, m.rails, m.hand), "two lines"
         reason = "The hand is where the two rails meet."
     else:
@@ -260,6 +265,8 @@ def _on_rails(
         "The determinant of the rows of A, in the frame of the rail, is the sign of the mode times "
         "a length; of two rails, it is a number."
     )
+    if m.planes:
+        proves = "The determinant of the rows of A, the normals of the planes, is this number."
     return _Meeting(
         found=found,
         link=found.link,
@@ -305,11 +312,13 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     spans = [m.hand - c for c in m.centres]
     rods = m.rows(spans)
     rates = m.rates(rods)
-    halves = [1 if isinstance(leg, Rail) else 2 for leg in m.legs]
+    halves = [1 if isinstance(leg, Flat) else 2 for leg in m.legs]
     labels = [k for k, _ in m.driven]
     still = sp.zeros(n - len(rates), len(rates))
     strut = "  A strut has no joint, so its row of B is zero." * still.rows
     halved, vectors, half = "halved", "vectors along the rods", "half of the derivatives"
+    if m.planes:
+        halved, half, vectors = "as they are", "the derivatives", "normals of the planes"
     if m.rails:
         halved, half = "those of rods halved", "the derivatives, of a rod half of them"
         vectors += " and the normals of the rails"
@@ -349,7 +358,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     functions: list[Exported] = [
         (
             "jacobian_parallel",
-            "A of A*dp = B*dq; its rows are the vectors along the rods.",
+            f"A of A*dp = B*dq; its rows are the {vectors}.",
             {"A": A_at},
             (),
         ),
@@ -372,7 +381,7 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
             (),
         ),
     ]
-    if not m.rails:  # a normal is a unit vector, and a rod has a length
+    if not m.flat:  # a normal is a unit vector, and a rod has a length
         functions.append(("condition_number", *conditioning(v, along, size, on_sphere=bool(still))))
     functions += constraint(m, along)
     export(d, v, at.modes, functions)
@@ -424,7 +433,7 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
         meanings[r"\mathbf s"] = "unit vector along the strut"
         meanings["P"] = "rows of A without their part along the strut"
         meanings[r"\kappa"] = "ratio of the two singular values of P that are not zero"
-    elif not m.rails:
+    elif not m.flat:
         norm = "F" if len(numbers) == 3 else "2"
         part = r"\tfrac{1}{3}\," if len(numbers) == 3 else ""
         shown[r"\kappa"] = rf"{part}\lVert A\rVert_{norm}\,\lVert A^{{-1}}\rVert_{norm}"
@@ -435,7 +444,7 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
 
 def _inverse(m: Hand, loop: Step) -> None:
     d, g = m.d, m.d.program()
-    slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
+    slides = any(isinstance(leg, Slide | Flat) for leg in m.legs)
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, tuple(m.hand) if slides else ())))
     straight: list[sp.Matrix] = []
     hand = m.hand
@@ -446,7 +455,7 @@ def _inverse(m: Hand, loop: Step) -> None:
             hand = straight[0] - m.place(leg) + leg.base
         else:
             solved.solve(k, leg, w)
-    rows = solved.rows(straight, subtract=not m.rails)
+    rows = solved.rows(straight, subtract=not m.flat)
     along = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
         for (k, _), row in zip(m.numbered, rows, strict=True)

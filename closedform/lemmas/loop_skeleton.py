@@ -9,12 +9,17 @@ import sympy as sp
 
 from closedform.lemmas.hand import Hand, in_space, square
 from closedform.lemmas.held import Bars, bars_of
-from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
+from closedform.lemmas.leg_by_leg import size_of
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
 from closedform.lemmas.modes import NO_MODE
 from closedform.lemmas.parallelogram import Parallelogram
+from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.functions import Branches, Program
+from closedform.model.functions import Branches, Program, real
+
+ANY = sp.Matrix([real(f"w_{i}") for i in "xyz"])
+"""From the slider of a leg with two bars to the hand."""
 
 
 @dataclass
@@ -37,6 +42,9 @@ class _Drawing:
         if isinstance(leg, Rail):
             self._add_rail(k, leg, far, equation)
             return
+        if isinstance(leg, Plane):
+            self._add_plane(k, leg, far)
+            return
         self._add_rod(k, leg, far, equation)
         self._add_driven(k, leg)
         for pair in bars_of(k, leg, far):
@@ -48,6 +56,16 @@ class _Drawing:
         self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
         self.lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
         self.closing[end, far] = equation**2
+
+    def _add_plane(self, k: int, leg: Plane, far: str) -> None:
+        """The slider and both bars, which have their lengths if the hand is in the plane."""
+        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
+        self.joints[leg.joint] = (base, end)
+        self.lengths[base, end] = leg.joint
+        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
+        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
+            self.lengths[pair], self.closing[pair] = length, off
+        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
@@ -92,21 +110,41 @@ def draw(m: Hand, hand: sp.Matrix, program: Program, modes: Branches) -> None:
     for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
         drawn.add(k, leg, equation)
     ground = tuple(f"A{k}" for k, _ in m.numbered)
+    v = Program(list(program.body), program.taken)
+    points = _points(m, hand)
+    for k, leg in m.numbered:
+        if isinstance(leg, Plane):
+            names = Naming(v, size_of(m.d, m.legs, m.joints), f"_bars{k}")
+            elbow = leg.end() + leg.named_elbow(names, hand + m.place(leg) - leg.end())
+            points[f"E{k}"] = in_space(elbow)
     skeleton(
         m.d,
-        _points(m, hand),
+        points,
         links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **drawn.links},
         joints=drawn.joints,
         hand="P",
         hand_at=in_space(m.hand),
         ground=ground,
         lengths=drawn.lengths,
-        program=program,
+        program=v,
         branches=modes,
         notes=(NO_MODE, *["The width of a parallelogram matters here alone."] * bool(m.held)),
-        at_posture=[_points(m, m.hand)],
+        at_posture=[_points(m, m.hand), *_bars(m)],
         closing=drawn.closing,
     )
+
+
+def _bars(m: Hand) -> list[dict[str, Sequence[sp.Expr]]]:
+    """For the proof, the bars of each leg; the hand is anywhere, as seen from the slider."""
+    found: list[dict[str, Sequence[sp.Expr]]] = []
+    for k, leg in m.numbered:
+        if isinstance(leg, Plane):
+            place = m.place(leg)
+            far = m.hand + place
+            at = {f"B{k}": far - ANY, f"E{k}": far - ANY + leg.elbow(ANY)}
+            at["P" if place.is_zero_matrix else f"C{k}"] = far
+            found.append({name: in_space(e) for name, e in at.items()})
+    return found
 
 
 def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:

@@ -68,6 +68,7 @@ USED |= {
     "Crank",
     "Lever",
     "Parallelogram",
+    "Plane",
     "Rail",
     "Slide",
     "Stretch",

@@ -192,6 +192,9 @@ class Legs:
         """A driven slider with a rod, which is ``near`` where the slider carries it."""
         if joint.axis is None:
             raise self.loop.error(f"{joint.name} slides; say in which direction with axis")
+        beyond = [j for j in self.loop.of(rod) if j is not near]
+        if len(beyond) == 1 and beyond[0].other(rod) in self.loop.rods:
+            return self.plane(joint, near, beyond[0])
         place, length = self.place_on_hand(rod, near), self.loop.rods[rod]
         end = self.point(joint.other(GROUND), near)
         return LoopLeg(
@@ -199,6 +202,43 @@ class Legs:
             f"Slide({joint.name}, {self.rod(rod, near)}, {self.at(end)}, "
             f"{self.at(joint.axis)}{self.tail(place)})",
             f"{joint.name} moves a slider, which a rod of length {length} joins to {self.end}",
+            place,
+        )
+
+    def plane(self, joint: Joint, near: Joint, elbow: Joint) -> LoopLeg:
+        """A slider with two rods; ``near`` is on the slider, and ``elbow`` between the rods."""
+        loop = self.loop
+        first = near.other(joint.other(GROUND))
+        second = elbow.other(first)
+        far = [j for j in loop.of(second) if j is not elbow]
+        turning = [near, elbow, *far]
+        axes = [j.axis for j in turning if j.axis is not None and j.kind == "revolute"]
+        if (
+            len(turning) != 3
+            or len(axes) != 3
+            or any(axes[0].cross(axis) != sp.zeros(3, 1) for axis in axes)
+        ):
+            raise loop.error(
+                f"{joint.name} moves two rods one after the other; this is known if three revolute "
+                f"joints with parallel axes join the slider, the rods {first} and {second} and the "
+                f"hand: give each its axis"
+            )
+        assert joint.axis is not None
+        advance = sp.simplify(axes[0].dot(joint.axis))
+        if not advance.is_number or advance == 0:
+            raise loop.error(
+                f"the axis of {joint.name} must not be at right angles to that of {near.name}, and "
+                f"both are given in numbers"
+            )
+        place = self.place_of(far[0], second, held=True)
+        self.used |= {j.name for j in turning}
+        bars = f"({source(loop.rods[first])}, {source(loop.rods[second])})"
+        return LoopLeg(
+            joint,
+            f"Plane({joint.name}, {bars}, {self.at(self.point(joint.other(GROUND), near))}, "
+            f"{self.at(joint.axis)}, {self.at(axes[0])}{self.tail(place)})",
+            f"{joint.name} moves a slider, which two rods of length {loop.rods[first]} and "
+            f"{loop.rods[second]} with parallel axes join to {self.end}",
             place,
         )
 
@@ -331,8 +371,10 @@ class Legs:
         self.used |= {near.name, *(j.name for j in far)}
         return self.place_of(far[0], rod)
 
-    def place_of(self, far: Joint, rod: str = "") -> sp.Matrix:
+    def place_of(self, far: Joint, rod: str = "", *, held: bool = False) -> sp.Matrix:
+        """Where a leg ends on the hand, which may turn unless the leg keeps it from turning."""
         loop = self.loop
+        held |= rod in loop.parallelograms or (far.kind == "universal" and far.axis is not None)
         if far.at == loop.hand:
             return sp.zeros(loop.dimensions, 1)
         body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
@@ -344,7 +386,7 @@ class Legs:
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")
-        if rod not in loop.parallelograms and (far.kind != "universal" or far.axis is None):
+        if not held:
             self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
 

@@ -20,6 +20,8 @@ from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.coupled import coupled as coupled
 from closedform.lemmas.drives import parallelogram_drive as parallelogram_drive
 from closedform.lemmas.dyads import linkage as linkage
+from closedform.lemmas.guided import Guide as Guide
+from closedform.lemmas.guided import guided as guided
 from closedform.lemmas.in_reach import within_links as within_links
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.leeway import Carrying as Carrying

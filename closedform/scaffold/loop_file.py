@@ -49,23 +49,14 @@ from closedform.scaffold.tables import (
 )
 
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {
-    "d",
-    "pi",
-    "real",
-    "coupled",
-    "parallel",
-    "platform",
-    "tripod",
-    "on_rod",
-    "linkage",
-    "slotted",
-}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod", "linkage"}
+USED |= {"slotted", "guided"}
 USED |= {
     "Derivation",
     "Paper",
     "Body",
     "Crank",
+    "Guide",
     "Lever",
     "Parallelogram",
     "Plane",

@@ -11,6 +11,7 @@ import sympy as sp
 
 from closedform.algebra.formulas import number
 from closedform.scaffold.graph import AXES, GROUND, Joint, Loop
+from closedform.scaffold.guides import GuideLine, guide
 from closedform.scaffold.linkages import LinkageLines, linkage
 from closedform.scaffold.loops import TURNING, Legs, LoopLeg, listed
 from closedform.scaffold.on_rod import on_rod
@@ -65,7 +66,10 @@ def _way(found: Legs) -> _Way:
 def _on_legs(found: Legs) -> _Way:
     """A hand that legs carry."""
     loop, driven, struts = found.loop, found.legs(), found.struts()
+    passive = guide(found)
     found.check_all_used()
+    if passive:
+        return _Way(driven, [], guide=passive)
     legs = [*struts, *driven]
     if found.turning and not (loop.dimensions == 2 and _held(loop)):
         upright = [] if struts or loop.parallelograms else uprights(found)
@@ -162,19 +166,22 @@ def _beyond(loop: Loop, joint: Joint) -> Joint:
 class _Way:
     """What derives the loop: its legs, its task, and where the second rod ends on the first.
 
-    A linkage has bodies instead of legs.
+    A linkage has bodies instead of legs.  A passive leg may rule the motion of the hand.
     """
 
     legs: Sequence[LoopLeg]
     task: Sequence[str]
     at: str = ""
     linkage: LinkageLines | None = None
+    guide: GuideLine | None = None
 
     @property
     def name(self) -> str:
         """The function that is called; a hand that turns sets its task itself."""
         if self.linkage:
             return "linkage"
+        if self.guide:
+            return "guided"
         if self.legs[0].call.startswith("Upright"):
             return "tripod"
         if len(self.task) == 1 and any(leg.passive for leg in self.legs):
@@ -192,19 +199,23 @@ class _Way:
         legs = [leg.call for leg in self.legs]
         if self.name in ("coupled", "slotted", "on_rod"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
-        return ["    [", *(f"        {leg}," for leg in legs), "    ],"]
+        first = [f"    {self.guide.call},"] if self.guide else []
+        return [*first, "    [", *(f"        {leg}," for leg in legs), "    ],"]
 
     @property
     def parts(self) -> Sequence[str]:
         """The legs or the bodies, as they are written."""
-        return self.linkage.bodies if self.linkage else [leg.call for leg in self.legs]
+        if self.linkage:
+            return self.linkage.bodies
+        return [*([self.guide.call] if self.guide else []), *(leg.call for leg in self.legs)]
 
     @property
     def words(self) -> str:
         """What the mechanism consists of."""
         if self.linkage:
             return self.linkage.words
-        return "  ".join(f"{_sentence(leg)}." for leg in self.legs)
+        passive = [self.guide.words] if self.guide else []
+        return "  ".join([*passive, *(f"{_sentence(leg)}." for leg in self.legs)])
 
 
 def _sentence(leg: LoopLeg) -> str:
@@ -261,9 +272,9 @@ def _body(table: Table, way: _Way) -> list[str]:
     for joint, kind in table.joints.items():
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
-    for leg in way.legs:
-        if leg.passive:
-            lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
+    passive = [leg.passive for leg in way.legs if leg.passive]
+    passive += [way.guide.slide] if way.guide else []
+    lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
     if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)

@@ -192,7 +192,7 @@ class Legs:
         """A driven slider with a rod, which is ``near`` where the slider carries it."""
         if joint.axis is None:
             raise self.loop.error(f"{joint.name} slides; say in which direction with axis")
-        beyond = [j for j in self.loop.of(rod) if j is not near]
+        beyond = [j for j in self.loop.of(rod) if j is not near and j.at != self.loop.hand]
         if len(beyond) == 1 and beyond[0].other(rod) in self.loop.rods:
             return self.plane(joint, near, beyond[0])
         place, length = self.place_on_hand(rod, near), self.loop.rods[rod]

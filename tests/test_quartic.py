@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from arms import link, newton, wrapped
+from arms import OK, SINGULAR, link, misses, newton, wrapped
 from chains import arm, printed, solved
 from flint import arb
 from numpy.typing import NDArray
@@ -316,16 +316,39 @@ def test_skew_axes_that_meet_are_invalid(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "why"),
     [
-        ([(4, pi / 2, 3), (4, pi / 2, 0), (2, pi / 2, 0), NEAR, *WRIST[1:]], "on a circle"),
         ([(1, pi / 3, 0), (2, pi / 3, 0), (2, pi / 2, 0), (0, pi / 2, 0), *WRIST[1:]], "to axis 2"),
         ([*MIDDLE["level"][:4], (sp.Rational(1, 999), pi / 2, H), (0, 0, H)], "that is short"),
     ],
 )
 def test_what_the_chain_cannot_do_well_is_refused(rows: Any, why: str) -> None:
-    """A circle instead of an ellipse, equal links that fold onto an axis, axes that nearly meet."""
+    """Equal links that fold onto an axis, and axes that nearly meet."""
     with pytest.raises(NoChainError, match=why) as e:
         propose(arm(rows)[1])
     assert e.value.degree == 4
+
+
+def test_a_wrist_that_moves_on_a_circle_leaves_an_equation_of_degree_two(tmp_path: Path) -> None:
+    """The square of its distance from the first axis does not contain twice the angle."""
+    rows = [(4, pi / 2, 3), (4, pi / 2, 0), (2, pi / 2, 0), NEAR, *WRIST[1:]]
+    d, serial = arm(rows)
+    found = propose(serial)
+    assert found.lemmas[0] == "turn" and "quartic" not in found.lemmas
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == 4
+    serial.export(d)
+    code = printed(d, tmp_path)
+    rng = np.random.default_rng(9)
+    corners = rng.choice((0, np.pi / 2, np.pi), (500, 6))
+    away = rng.choice((0, 1e-15, 1e-9, 1e-3, 1), (500, 1))
+    q, T = corners + away * rng.uniform(-1, 1, (500, 6)), np.eye(4)
+    for k, (a, alpha, length) in enumerate(rows):
+        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    answers, status = code.ik(T)
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    missed, turned = misses(code.pose(answers), T, status)
+    assert missed < 1e-12 * 15 and turned < 1e-12
+    apart = np.abs(wrapped(answers - q[:, None]))[away[:, 0] == 1].max(axis=-1)
+    assert len(apart) > 50 and (np.nanmin(apart, axis=1) < 1e-6).all()
 
 
 def test_an_article_writes_the_coefficients_as_letters() -> None:

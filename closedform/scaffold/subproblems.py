@@ -452,31 +452,34 @@ class SubproblemMaker(WristMaker):
             f"axes {one.number}, {two.number} and {three.number} are parallel",
             "Of three joints that carry a point, at most two may be parallel.",
         )
-        if self.degree < 4:
+        square, p = sp.Symbol("square"), point("p")
+        g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
+        ellipse = Ellipse.of((one, two, three), square, p[2])
+        degree = 2 if ellipse.double == (0, 0) else 4
+        if self.degree < degree:
             raise NoChainError(
                 f"no two neighbours among axes {one.number}, {two.number} and {three.number} are "
                 f"parallel or meet",
                 "Otherwise they leave an equation of degree 4.",
                 degree=4,
             )
-        needed = "The known chain loses digits there; use ssik for a numeric inverse."
         if folds(two, three):
-            found = f"its wrist can come to axis {two.number}, where three solutions meet"
-            raise NoChainError(found, needed, degree=4)
-        square, p = sp.Symbol("square"), point("p")
-        g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
+            raise NoChainError(
+                f"its wrist can come to axis {two.number}, where three solutions meet",
+                "The known chain loses digits there; use ssik for a numeric inverse.",
+                degree=degree,
+            )
         self.add("square = ik.coordinate('square', p.dot(p))")
-        ellipse = Ellipse.of((one, two, three), square, p[2])
-        if ellipse.double == (0, 0):
-            found = f"its wrist moves on a circle, seen from joint {two.number} along its axis"
-            raise NoChainError(found, needed, degree=4)
         self.add(f"along, aside = {source(ellipse.along)}, {source(ellipse.aside)}")
         self.vector("centre", source(ellipse.centre))
         self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
-        double = source(ellipse.double[0]), source(ellipse.double[1])
-        third = self.met_by_circle(three, double, "radius")
+        if degree == 2:
+            third, factor = self._circles_met(three), "2*ik.size"
+        else:
+            double = source(ellipse.double[0]), source(ellipse.double[1])
+            third, factor = self.met_by_circle(three, double, "radius"), "1"
         self.vector("on_ellipse", f"centre + along*{third}.c + aside*{third}.s", "across")
-        first = self._rotate(one, "on_ellipse", "p", f"{{{self.unknowns[three.number]}: 1}}")
+        first = self._rotate(one, "on_ellipse", "p", f"{{{self.unknowns[three.number]}: {factor}}}")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("to_end", f"{source(t)} + {inside}")
         self.vector("to_target", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
@@ -511,6 +514,20 @@ class SubproblemMaker(WristMaker):
         arguments = f"{self.unknown(joint)}, ({', '.join(double)}, {linear}, {square})"
         pair = f"pair{joint.number}"
         self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
+        return pair
+
+    def _circles_met(self, joint: Single) -> str:
+        """The same if the ellipse is a circle: the equation does not contain twice the angle.
+
+        Like the quartic it accepts much more than rounding, because the result is compared with
+        the target.
+        """
+        self.add("squares = centre.dot(centre) + along.dot(along)")
+        sides = "centre.dot(aside)/ik.size, centre.dot(along)/ik.size"
+        sides += ", (radius**2 - squares)/(2*ik.size)"
+        scale = "2**16*(radius**2 + squares)/ik.size"
+        pair = f"pair{joint.number}"
+        self.solve("turn", f"{self.unknown(joint)}, ({sides}), {SIDE}, scale={scale}", pair, 2)
         return pair
 
     def _by_distance(self, joint: Single, e: sp.Matrix, u: sp.Matrix, toward: str) -> str:

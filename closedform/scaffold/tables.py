@@ -70,7 +70,7 @@ LINES = {
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "offset",
-    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried",
+    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -7,8 +7,10 @@ from sympy import pi
 from sympy.combinatorics import Permutation, PermutationGroup
 
 from closedform.scaffold import degree
+from closedform.scaffold import propose as proposals
 from closedform.scaffold.chainlinks import singles
-from closedform.scaffold.degree import Solutions, solutions, steps
+from closedform.scaffold.degree import Solutions, solutions, solutions_of_few, steps
+from closedform.scaffold.propose import NoChainError, propose
 
 H = sp.Rational(1, 2)
 COUNTED = {
@@ -45,6 +47,35 @@ def test_the_solutions_of_a_pose_are_counted(name: str) -> None:
     found = solutions(singles(arm(rows)[1]))
     assert found is not None
     assert (found.number, sorted(found.steps), found.solvable) == (number, [*degrees], solvable)
+
+
+FEW = {
+    "an elbow and a roll": ([(0, pi / 2, 1), (2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (0, 0, 1)], 4),
+    "five joints at random": (
+        [(1, pi / 2, 2), (3, pi / 3, 1), (4, pi / 4, 0), (3, pi / 3, 1), (0, 0, 1)], 1,
+    ),
+    "a wrist after a slide": (
+        [(0, pi / 3, None, 0), (1, pi / 2, 0), (0, -pi / 2, 2), (0, pi / 2, 0), (0, 0, H)], 2,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_the_solutions_of_a_pose_that_few_joints_reach_are_counted(name: str) -> None:
+    """A turret in front or behind, with both elbows: 4.  A wrist that flips: 2."""
+    rows, number = FEW[name]
+    assert solutions_of_few(singles(arm(rows)[1])) == number
+
+
+@pytest.mark.parametrize(("number", "why"), [(1, "degree 1 give it"), (4, "4 or less give them")])
+def test_an_arm_of_five_joints_without_a_chain_names_the_degree(
+    number: int, why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(proposals, "solutions_of_few", lambda _: number)
+    with pytest.raises(NoChainError, match="do not meet in a point") as caught:
+        propose(arm(FEW["five joints at random"][0])[1])
+    assert caught.value.degree == number
+    assert why in caught.value.needed and "Pinocchio" in caught.value.needed
 
 
 def test_one_count_may_miss_solutions_but_two_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:

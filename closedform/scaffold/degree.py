@@ -9,8 +9,10 @@ size of the largest primitive step is the degree of the equation that no smaller
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import sympy as sp
@@ -104,6 +106,22 @@ class Numeric:
                 T[:, :, 0], T[:, :, 1] = c * x + s * y, c * y - s * x
             T = (T.reshape(-1, 4) @ self.motions[k]).reshape(T.shape)
         return T, twists
+
+    def with_more(self, count: int, rng: np.random.Generator) -> Numeric:
+        """With joints after the last one, about axes at random; at zero they do not move."""
+        motions = [*self.motions]
+        for _ in range(count):
+            c = rng.normal(size=3)
+            place = np.eye(4, dtype=complex)
+            place[:3] = targets(np.array([[*c, *rng.uniform(0.3, 1.3, 3)]]))[0]
+            motions[-1] = motions[-1] @ place
+            motions.append(np.linalg.inv(place))
+        return replace(
+            self,
+            motions=np.array(motions),
+            senses=np.append(self.senses, np.ones(count, int)),
+            slides=np.append(self.slides, np.zeros(count, bool)),
+        )
 
     @cached_property
     def reach(self) -> float:
@@ -250,6 +268,9 @@ class Fibre:
         return x
 
 
+Count = TypeVar("Count")
+
+
 def solutions(arm: Singles) -> Solutions | None:
     """The solutions for a pose at random, as two counts find them; None if no two agree.
 
@@ -257,9 +278,32 @@ def solutions(arm: Singles) -> Solutions | None:
     may miss some.  What it finds is a lower bound, also of the group, which is not solvable if that
     of fewer loops is not.
     """
-    counted: list[Solutions] = []
+    return _agreed(lambda seed: counted_once(arm, seed))
+
+
+def solutions_of_few(arm: Singles) -> int | None:
+    """How many solutions a pose that fewer than six joints reach has, as :func:`solutions` counts.
+
+    Joints about axes at random make six of them; of the solutions for such a pose those count at
+    which the further joints are zero.
+    """
+    few = len(arm.joints)
+
+    def once(seed: int) -> int | None:
+        fibre = _explored(arm, seed)
+        if fibre is None:
+            return None
+        still = np.abs(np.exp(1j * fibre.found[:, few:]) - 1).max(axis=1) < MET
+        return int(still.sum())
+
+    return _agreed(once)
+
+
+def _agreed(once: Callable[[int], Count | None]) -> Count | None:
+    """What two counts, each with a seed of its own, agree on."""
+    counted: list[Count] = []
     for seed in SEEDS:
-        found = counted_once(arm, seed)
+        found = once(seed)
         if found is not None and found in counted:
             return found
         counted += [found] if found is not None else []
@@ -276,16 +320,24 @@ def is_regular(arm: Singles) -> bool:
 
 def counted_once(arm: Singles, seed: int) -> Solutions | None:
     """The solutions that loops find; None if they could not be followed."""
+    fibre = _explored(arm, seed)
+    if fibre is None:
+        return None
+    return Solutions(len(fibre.found), steps(fibre.group), solvable(fibre.group))
+
+
+def _explored(arm: Singles, seed: int) -> Fibre | None:
+    """All solutions for a pose of the arm, with further joints that are zero at a posture of it."""
     rng = np.random.default_rng(seed)
-    numeric = Numeric.of(arm, rng)
+    few = len(arm.joints)
+    numeric = Numeric.of(arm, rng).with_more(6 - few, rng)
     q = rng.normal(size=(1, 6)) + 0.3j * rng.normal(size=(1, 6))
+    q[:, few:] = 0
     T, twists = numeric.pose(q)
     if np.linalg.cond(twists[0]) > SINGULAR:
         return None
     fibre = Fibre(numeric, rng, coordinates(T[0]), q)
-    if not fibre.closed():
-        return None
-    return Solutions(len(fibre.found), steps(fibre.group), solvable(fibre.group))
+    return fibre if fibre.closed() else None
 
 
 def steps(group: PermutationGroup) -> tuple[int, ...]:
@@ -318,4 +370,4 @@ def solvable(group: PermutationGroup) -> bool:
     return not (last > 4 and onto.is_alt_sym()) and bool(group.is_solvable)
 
 
-__all__ = ["Solutions", "is_regular", "solutions", "steps"]
+__all__ = ["Solutions", "is_regular", "solutions", "solutions_of_few", "steps"]

@@ -17,7 +17,7 @@ from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.decoupled import DecoupledMaker
-from closedform.scaffold.degree import Solutions, is_regular, solutions
+from closedform.scaffold.degree import Solutions, is_regular, solutions, solutions_of_few
 from closedform.scaffold.known import KnownMaker
 from closedform.scaffold.maker import Maker
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
@@ -107,6 +107,9 @@ def _refusal(
         error = _counted(error, solutions(whole))
     elif n == 6 and not any(joint.slides for joint in whole.joints):
         error = NoChainError(error.found, f"{error.needed}  {NUMERIC}", error.degree)
+    elif n < 6 and arm.coordinates() is None and not error.degree:
+        progress("counting the solutions")
+        error = _counted_few(error, solutions_of_few(whole))
     return error.after(tried)
 
 
@@ -134,6 +137,21 @@ def _counted(error: NoChainError, counted: Solutions | None, given: str = "") ->
         )
     found = f"{error.found}, and {given}there is no closed form: degree {counted.degree}"
     return NoChainError(found, f"{told}; roots do not solve them.  {needed}", counted.degree)
+
+
+def _counted_few(error: NoChainError, number: int | None) -> NoChainError:
+    """The same for fewer than six joints, whose poses have a few solutions."""
+    needed = f"{error.needed}  Otherwise use a numeric inverse, such as that of Pinocchio."
+    if number is None or number > 4:
+        return NoChainError(error.found, needed)
+    some, degree = "1 solution", "1 give it"
+    if number > 1:
+        some, degree = f"{number} solutions", f"{number} or less give them"
+    told = (
+        f"Two numerical counts agree that a pose of the arm has {some} in complex numbers, at "
+        f"least.  Equations of degree {degree}, so a chain of your own may do so."
+    )
+    return NoChainError(error.found, f"{told}  {needed}", number)
 
 
 _Solve = Callable[[Any, Singles], str]

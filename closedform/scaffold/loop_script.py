@@ -23,6 +23,11 @@ from closedform.scaffold.uprights import HINGED, uprights
 UNSAID = "say what it measures"
 DEGREES = {1: 6, 2: 4}
 """Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
+BY_HAND = (
+    "For another mechanism write its equations in Python; velocity_matrices and lemmas such as "
+    "three_spheres take them."
+)
+ON_AXES = "If it is universal joints that keep it from turning, give both of each leg their axis."
 FUNCTIONS = {"Rational", "Abs"}
 """What a leg calls of SymPy that begins with a capital letter."""
 
@@ -68,6 +73,7 @@ def _on_legs(found: Legs) -> _Way:
     loop, driven, struts = found.loop, found.legs(), found.struts()
     passive = guide(found)
     found.check_all_used()
+    _check_ends(found)
     if passive:
         return _Way(driven, [], guide=passive)
     legs = [*struts, *driven]
@@ -91,6 +97,19 @@ def _held(loop: Loop) -> list[str]:
     return [rod for rod in loop.rods if rod in loop.parallelograms]
 
 
+def _check_ends(found: Legs) -> None:
+    """Refuse legs in space that hold a hand that may turn by the axis of a revolute joint."""
+    loop, body = found.loop, found.turning
+    if not body or loop.dimensions == 2:
+        return
+    fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
+    if fixed:
+        raise loop.error(
+            f"{listed(fixed)} would hold {body} by an axis; a leg is known to end on a hand that "
+            f"turns in a spherical or a universal joint.  {BY_HAND}"
+        )
+
+
 def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> None:
     """Refuse a hand that may turn with too few driven joints, or too many."""
     loop, body = found.loop, found.turning
@@ -111,20 +130,15 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
             f"{body} may turn, although {listed(held)} has an axis; either all of its rods must "
             f"have universal joints with an axis at both ends, or none"
         )
-    fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
-    if fixed and loop.dimensions == 3:
-        raise loop.error(
-            f"{listed(fixed)} would hold {body} by an axis; a leg is known to end on a hand that "
-            f"turns in a spherical or a universal joint"
-        )
     hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
+    on_axes = f"  {ON_AXES}" if loop.dimensions == 3 else ""
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
     if struts or len(legs) != needed:
         instead = "a strut carries it" if struts else f"there are {len(legs)}"
         raise loop.error(
             f"{body} may turn, so it needs {needed} driven joints in {where}, and {instead}.  "
             f"If the rods are parallelograms, which keep it from turning, give each "
-            f"parallelogram = [...], a vector along its short sides.{hinged}"
+            f"parallelogram = [...], a vector along its short sides.{on_axes}{hinged}"
         )
 
 

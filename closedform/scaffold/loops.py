@@ -382,7 +382,7 @@ class Legs:
             other = far.other(rod) if rod in far.between else " and ".join(far.between)
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
-                f"{self.end}; a leg has one rod"
+                f"{self.end}; a leg has one rod, and the hand is one body"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")

@@ -416,7 +416,7 @@ length = "L"
 parallelogram = [0, "w", 0]
 [bodies.rod2]
 length = "L"
-parallelogram = [0, "w", 0]
+parallelogram = [0, 0, "w"]
 [bodies.rod3]
 length = "L"
 parallelogram = [0, "w", 0]

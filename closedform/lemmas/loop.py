@@ -316,17 +316,17 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     labels = [k for k, _ in m.driven]
     still = sp.zeros(n - len(rates), len(rates))
     strut = "  A strut has no joint, so its row of B is zero." * still.rows
-    halved, vectors, half = "halved", "vectors along the rods", "half of the derivatives"
+    halved, vectors, half = ", halved,", "vectors along the rods", "half of the derivatives"
     if m.planes:
-        halved, half, vectors = "as they are", "the derivatives", "normals of the planes"
+        halved, half, vectors = "", "the derivatives", "normals of the planes"
     if m.rails:
-        halved, half = "those of rods halved", "the derivatives, of a rod half of them"
+        halved, half = ", those of rods halved,", "the derivatives, of a rod half of them"
         vectors += " and the normals of the rails"
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     adjugate = a.adjugate()
     d.step(
         "Velocity and singular sets",
-        f"The derivatives of the loop equations, {halved}, give A*dp = B*dq.  The "
+        f"The derivatives of the loop equations{halved} give A*dp = B*dq.  The "
         f"rows of A are the {vectors}.  B is diagonal, because each "
         "leg depends on its own joint alone.  "
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "

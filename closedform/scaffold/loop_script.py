@@ -71,7 +71,7 @@ def _way(found: Legs) -> _Way:
 def _on_legs(found: Legs) -> _Way:
     """A hand that legs carry."""
     loop, driven, struts = found.loop, found.legs(), found.struts()
-    passive = guide(found)
+    passive = None if loop.parallelograms else guide(found)
     found.check_all_used()
     _check_ends(found)
     if passive:

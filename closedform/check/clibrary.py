@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from closedform.check.failures import FailedError, UnavailableError
-from closedform.lower import Lowered, lower
+from closedform.lower import results_of
 from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
 
 FLAGS = ("-std=c99", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
 
@@ -50,38 +51,36 @@ class CLibrary:
         self.dtype = np.float32 if single else np.float64
         self._real = ctypes.c_float if single else ctypes.c_double
         self._name = derivation.name
-        self._programs = {f.name: lower(f, derivation) for f in derivation.functions}
+        self._functions = {f.name: f for f in derivation.functions}
         self._fields = len(derivation.parameters)
         library = built or _compiled(derivation.name, sources, scratch, single)
         self._library = ctypes.CDLL(str(library))
 
     def function(self, name: str) -> Callable[..., Any]:
         """``name(*inputs, params)`` over arrays with at most one leading axis."""
-        program = self._programs[name]
+        function = self._functions[name]
         batch = getattr(self._library, f"{self._name}_{name}_batch")
 
         def call(*arguments: Any) -> Any:
             *inputs, params = arguments
-            return self._run(batch, program, inputs, params)
+            return self._run(batch, function, inputs, params)
 
         return call
 
-    def _run(self, batch: Any, program: Lowered, inputs: Sequence[Any], params: Any) -> Any:
-        planes = [self._planes(x, a.size) for x, a in zip(inputs, program.inputs, strict=True)]
+    def _run(self, batch: Any, function: Function, inputs: Sequence[Any], params: Any) -> Any:
+        planes = [self._planes(x, a.size) for x, a in zip(inputs, function.inputs, strict=True)]
         n = planes[0].shape[1] if planes else 1
         fields = (self._real * self._fields)(*map(float, params))
         arguments: list[Any] = [ctypes.c_size_t(n), ctypes.byref(fields)]
-        outputs = []
-        for result in program.results:
+        results, outputs = results_of(function), []
+        for result in results:
             dtype = self.dtype if result.kind == "real" else np.uint8
             outputs.append(np.empty((prod(result.shape), n), dtype))
         for array in (*planes, *outputs):
             arguments += [array.ctypes.data_as(ctypes.c_void_p), ctypes.c_size_t(n)]
         batch(*arguments)
         lead = (n,) if inputs else ()
-        shaped = [
-            o.T.reshape((*lead, *r.shape)) for o, r in zip(outputs, program.results, strict=True)
-        ]
+        shaped = [o.T.reshape((*lead, *r.shape)) for o, r in zip(outputs, results, strict=True)]
         return shaped[0] if len(shaped) == 1 else tuple(shaped)
 
     def _planes(self, value: Any, size: int) -> np.ndarray[Any, Any]:

@@ -127,6 +127,14 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     return _with_degrees(whole, derivation)
 
 
+def results_of(function: Function) -> list[Result]:
+    """The output arrays of a function, without their entries; the last is the status, if any."""
+    lead = (len(list(function.cases())),) if function.branches else ()
+    kind = "bool" if function.boolean else "real"
+    found = [Result(a.name, (*lead, *a.shape), kind, ()) for a in function.outputs]
+    return [*found, Result("status", lead, "status", ())] if function.has_status else found
+
+
 def lower_branch(function: Function, derivation: Derivation, branch: int) -> Lowered:
     """Lower one branch of a function alone."""
     function = within_edge(function, derivation)
@@ -192,15 +200,9 @@ def _lower(
         build = Builder(graph, leaves, divisors)
         branch = Branch(function, derivation, build, names, label, signs, ranges)
         rows.append(branch.lowered(chosen, entries))
-    results = []
-    for k, output in enumerate(function.outputs):
-        nodes = tuple(n for row in rows for n in row[0][k])
-        lead = (len(rows),) if function.branches else ()
-        kind = "bool" if function.boolean else "real"
-        results.append(Result(output.name, (*lead, *output.shape), kind, nodes))
-    if function.has_status:
-        lead = (len(rows),) if function.branches else ()
-        results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
+    nodes = [tuple(n for row in rows for n in row[0][k]) for k in range(len(function.outputs))]
+    nodes.append(tuple(row[1] for row in rows))
+    results = [replace(r, nodes=n) for r, n in zip(results_of(function), nodes, strict=False)]
 
     finish = partial(_finished, function, [p.name for p in parameters], graph, ranges)
     whole = finish(results=results, names=names)

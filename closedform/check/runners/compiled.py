@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from closedform.check.clibrary import CLibrary, compiler
@@ -13,6 +14,9 @@ from closedform.model.tolerances import DOUBLE
 
 def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Iterator[Backend]:
     compiler()
-    double = CLibrary(derivation, folder, scratch)
+    with ThreadPoolExecutor() as pool:  # the compiler works in processes of its own
+        double, single = pool.map(
+            lambda single: CLibrary(derivation, folder, scratch, single=single), (False, True)
+        )
     yield Backend(name, double.function, double.dtype, DOUBLE)
-    yield float_backend(CLibrary(derivation, folder, scratch, single=True).function)
+    yield float_backend(single.function)

@@ -36,7 +36,8 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
         (
             "a, alpha, d, theta\n1, 0, 0, u\n1, 0, 0, v - u + pi/2\n",
             "u is the joint of an earlier row; if motors drive both, through a belt or a "
-            "parallelogram, give this joint a new name and write -u + v in a column motors",
+            "parallelogram, give this joint a new name and write -u + v in a column motors; if the "
+            "row keeps a hand level, leave it out and add the lengths after it to the first row",
         ),
         ("a, alpha, d, theta\n0, 90 deg, 0, t\n", "in radians, as multiples of pi; write pi/2"),
         ("a, alpha, d, theta\n0, 90°, 0, t\n", "in radians, as multiples of pi; write pi/2"),

@@ -69,7 +69,7 @@ LINES = {
     "both_links", "on_ellipse",
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "offset",
+    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
@@ -389,7 +389,8 @@ def _joint(
             raise TableError(
                 f"{where}: {column} has {', '.join(names)}, and {earlier[0]} is the joint of an "
                 f"earlier row; if motors drive both, through a belt or a parallelogram, give this "
-                f"joint a new name and write {motors} in a column motors"
+                f"joint a new name and write {motors} in a column motors; if the row keeps a hand "
+                f"level, leave it out and add the lengths after it to the first row"
             )
         if names and not given:
             raise TableError(

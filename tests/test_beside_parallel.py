@@ -178,3 +178,39 @@ def test_links_reach_where_solutions_meet(name: str, tmp_path: Path) -> None:
     assert away < 1e-12 * length and turned < 4e-12
     first = np.abs(wrapped(answers[..., 0] - q[:, None, 0]))
     assert (np.where(found, first, np.inf).min(axis=1) < 1e-4).all()
+
+
+H = sp.Rational(1, 2)
+AT_RIGHT_ANGLES = {
+    "the first three and the last axis": [
+        (2, 0, 1), (1, 0, 0), (1, pi / 2, H), (1, pi / 2, H), (sp.Rational(11, 10), -pi / 2, 0),
+        (0, 0, H),
+    ],
+    "no offset where the elbow ends": [
+        (5, 0, 2), (4, 0, 0), (1, pi / 2, 1), (1, pi / 2, 0), (2, pi / 2, 0), (0, 0, 1),
+    ],
+}  # fmt: skip
+"""Arms whose last axis is parallel to the first three if all others are at right angles."""
+
+
+@pytest.mark.parametrize("name", AT_RIGHT_ANGLES)
+def test_no_posture_near_right_angles_is_lost(name: str, tmp_path: Path) -> None:
+    """Four parallel axes leave the last joint to the two links, which have to reach."""
+    rows = AT_RIGHT_ANGLES[name]
+    d, serial = arm(rows)
+    solved(d, serial, propose(serial).source)
+    robot = printed(d, tmp_path)
+    rng = np.random.default_rng(1)
+    q = rng.choice([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi], (6000, 6))
+    q += rng.choice([0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3], (6000, 1)) * rng.choice(
+        [-1, 0, 1], q.shape
+    )
+    T, reached = np.eye(4), np.eye(4)
+    for k, (a, alpha, length) in enumerate(rows):
+        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    answers, status = robot.ik(T)
+    for k, (a, alpha, length) in enumerate(rows):
+        reached = reached @ link(float(a), float(alpha), float(length), answers[..., k])
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    away, turned = misses(reached, T, status)
+    assert away < 1e-12 * sum(float(a + d) for a, _, d in rows) and turned < 1e-12

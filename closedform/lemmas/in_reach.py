@@ -4,7 +4,8 @@ There a rounding error of the target turns the joint by the root of that error, 
 where three solutions meet.  The joint that the quartic determines with it, the direction in which
 three parallel axes turn an offset, and so the point that two links have to reach, are then wrong by
 more than rounding, and a stretched or folded elbow seems to be out of reach.  Of the turns of the
-joint that the target does not distinguish, one is taken for which the links reach.
+joint that the target does not distinguish, one is taken for which the links reach.  If the axis of
+the joint is parallel to those of the links, it distinguishes none.
 """
 
 from __future__ import annotations
@@ -91,11 +92,13 @@ def within_links(
         aligned.wrong <= 1,
         sp.Abs(start.to_aligned) <= start.of(FARTHEST),
     )
+    far = start.far(goal)
+    free = sp.And(start.moved <= start.of(FARTHEST), far.wrong <= 1)
     s, c = (
-        start.let(n, sp.Piecewise((a, there), (b, found.wrong <= 1), (e, True)))
-        for n, a, b, e in (
-            ("s", aligned.pair.s, found.pair.s, pair.s),
-            ("c", aligned.pair.c, found.pair.c, pair.c),
+        start.let(n, sp.Piecewise((f, free), (a, there), (b, found.wrong <= 1), (e, True)))
+        for n, f, a, b, e in (
+            ("s", far.pair.s, aligned.pair.s, found.pair.s, pair.s),
+            ("c", far.pair.c, aligned.pair.c, found.pair.c, pair.c),
         )
     )
     kept = Pair(choose(loose, s, pair.s), choose(loose, c, pair.c))
@@ -125,13 +128,18 @@ class _Place:
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         return self.chain.let(f"{name}_{self.name}", value)
 
+    def turned(self, turn: Pair, suffix: str) -> _Place:
+        """Turned by the angle of a pair."""
+        name = f"{self.name}{suffix}"
+        pair = (self.pair + turn).known_as(self.chain.program, f"_{name}")
+        return replace(self, pair=pair, name=name)
+
     def by(self, angle: sp.Expr, suffix: str) -> _Place:
         """Turned by the angle with this tangent."""
         name = f"{self.name}{suffix}"
         t = self.chain.let(f"t_{name}", angle)
         unit = self.chain.let(f"unit_{name}", sp.sqrt(1 + t**2))
-        pair = (self.pair + Pair(t / unit, 1 / unit)).known_as(self.chain.program, f"_{name}")
-        return replace(self, pair=pair, name=name)
+        return self.turned(Pair(t / unit, 1 / unit), suffix)
 
     def _with_rates(self, name: str, value: Callable[[Pair], sp.Matrix]) -> list[list[sp.Expr]]:
         """The first two entries of a vector that is linear in the pair, and both derivatives."""
@@ -220,6 +228,29 @@ class _Place:
     def aligned(self) -> _Place:
         """Turned to there, as if the turn were small."""
         return self.by(sp.Max(-1, sp.Min(1, self.to_aligned)), "a")
+
+    @cached_property
+    def moved(self) -> sp.Expr:
+        """By how much turns move the point: little if the joint is nearly parallel to the links."""
+        rates = [e**2 for row in self.point for e in row[1:]]
+        return self.let("moved", sp.sqrt(sp.Add(*rates)))
+
+    def far(self, goal: sp.Expr) -> _Place:
+        """Turned by any angle so that the distance is the goal, for a joint parallel to the links.
+
+        There the square of the distance is a cosine of the turn, which three values determine.
+        """
+        side = self.turned(Pair(sp.S.One, sp.S.Zero), "q")
+        back = self.turned(Pair(sp.S.Zero, -sp.S.One), "h")
+        here, behind = self.distance**2, back.distance**2
+        mean = self.let("mean", (here + behind) / 2)
+        a = self.let("swing_c", (here - behind) / 2)
+        b = self.let("swing_s", side.distance**2 - mean)
+        h = self.let("swing", sp.sqrt(a**2 + b**2))
+        w = self.let("wanted", sp.Max(-h, sp.Min(goal**2 - mean, h)))
+        root = self.let("swing_root", sign_of(b) * sp.sqrt(sp.Max(0, (h - w) * (h + w))))
+        turn = direction((b * w - a * root) / h, (a * w + b * root) / h, h, sp.Eq(h, 0))
+        return self.turned(turn, "r")
 
     @cached_property
     def undistinguished(self) -> sp.Expr:

@@ -10,7 +10,7 @@ import sympy as sp
 from closedform.algebra.resolvent import Resolvent
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.links import named
+from closedform.lemmas.links import degenerate, named
 from closedform.lemmas.pairs import any_pair
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import Program, choose, real, sign_of
@@ -97,7 +97,7 @@ def quartic(
     """``p cos 2x + q sin 2x + 2 a cos x + 2 b sin x + e = 0``: up to four solutions, on two lines.
 
     Where two solutions nearly meet, a target that is missed by more than rounding is accepted too;
-    compare the target with the result of the chain.
+    compare the target with the result of the chain.  x is free where all coefficients vanish.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def quartic(
     x
         the joint or the auxiliary angle that is solved for
     coefficients
-        p, q, a, b and e; p and q must not both vanish
+        p, q, a, b and e; if p and q vanish, so must the others
     choices
         the names of the two lines, and those of the two solutions on each
     means
@@ -119,6 +119,9 @@ def quartic(
     letters = zip("pqabe", coefficients, strict=True)
     p, q, a, b, e = (chain.named(f"{n}_quartic{tag}", value) for n, value in letters)
     size = program.let(f"size_{tag}", sp.sqrt(p**2 + q**2), nonnegative=True)
+    free: sp.Basic = sp.false
+    if all(e.free_symbols or e == 0 for e in map(sp.sympify, coefficients[:2])):
+        size, free = _divisor(program, x, size, means.radius, tag)
     half, behind = _half(chain, p, q, size, tag)
     A = program.let(f"A_{tag}", (a * half.c + b * half.s) / size)
     B = program.let(f"B_{tag}", (b * half.c - a * half.s) / size)
@@ -133,9 +136,9 @@ def quartic(
     cosine, m, at_a = _part(program, A, (upper, rest_a), u, f"a_{tag}")
     sine, d, at_b = _part(program, B, (lower, rest_b), -u, f"b_{tag}")
     n = program.let(f"n_{tag}", (m - tau * d) / 2)
-    # much more than the rounding error of e, which small terms amplify: the circle decides in the
-    # end
-    terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2)
+    # much more than the rounding error of e, a difference of squares, which small terms amplify:
+    # the circle decides in the end
+    terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2) + means.radius**2
     missed = program.let(f"missed_{tag}", 2**16 * terms / size / (2 + sp.Abs(m + tau * d)))
     meaning = "the line meets the unit circle"
     below = program.bound(f"below_{tag}", 1 - n, missed, meaning)
@@ -148,6 +151,7 @@ def quartic(
     found = (found + half).known_as(program, f"_{tag}_0")
     for step in range(1, POLISHED + 1):
         found = _polished(chain, found, falls, ((p, q, a, b), means), f"{tag}_{step}")
+    found = Pair(choose(free, 0, found.s), choose(free, 1, found.c))
     pair, names = named(chain, x, found)
     lemma = Lemma(
         "quartic in one angle",
@@ -170,9 +174,20 @@ def quartic(
     for flags, at in (((at_a, left), 2 * t**2 - 1), ((at_b,), 1 - 2 * t**2)):
         locus = {n: value.xreplace({u: at}) for n, value in {**given, u: u}.items()}
         cases.append((flags, locus, "the lines are nearly parallel to an axis"))
-    degenerate = tuple(Degenerate(flags, locus, None, text) for flags, locus, text in cases)
+    none = dict.fromkeys((p, q, a, b, e), sp.S.Zero)
+    found_free = degenerate(free, [none], x, f"the point does not depend on {x.name}")
+    told = tuple(Degenerate(flags, locus, None, text) for flags, locus, text in cases)
     relation = Relation(Resolvent(A, B, E).law(u), (), f"that {u} is a root", root=u)
-    return Applied(lemma, pair, names, given, degenerate, relations=(relation,))
+    return Applied(lemma, pair, names, given, found_free + told, relations=(relation,))
+
+
+def _divisor(
+    program: Program, x: sp.Symbol, size: sp.Symbol, radius: sp.Expr, tag: str
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """The size by which others are divided, and a flag: it vanishes, and x is free."""
+    meaning = f"the point does not depend on {x.name}"
+    free = program.vanishes(f"free_{tag}", size, radius**2, meaning, free=(x,), squares=True)
+    return program.let(f"divisor_{tag}", choose(free, 1, size), nonnegative=True), free
 
 
 def _half(

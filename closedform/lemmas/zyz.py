@@ -167,6 +167,22 @@ class Reaching:
     lever: sp.Expr
     """The lever of the turn before: a rounding error of the target over it turns the wrist."""
 
+    @classmethod
+    def turning(
+        cls,
+        chain: Chain,
+        target: tuple[sp.Expr, sp.Expr],
+        lengths: tuple[sp.Expr, sp.Expr],
+        offset: tuple[sp.Expr, sp.Expr],
+        *,
+        lever: sp.Expr,
+    ) -> Reaching:
+        """The same if the angle turns the vector ``offset``, which may be zero at some postures."""
+        x, y = (sp.sympify(e, strict=True) for e in offset)
+        length = chain.let("offset", sp.sqrt(x**2 + y**2))
+        ahead = direction(y, x, length, sp.Eq(length, 0))
+        return cls(chain, target, lengths, offset=length, ahead=ahead, lever=lever)
+
     def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
         def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
             return self.chain.program.vanishes(name, value, scale, "the turn has no effect")

@@ -15,7 +15,7 @@ import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
 from closedform.scaffold.chainlinks import Single, parallel
-from closedform.scaffold.maker import FLIP, Maker, Z, norm, times, turning
+from closedform.scaffold.maker import FLIP, Maker, Z, times, turning
 from closedform.scaffold.source import source
 
 SIDE = "{+1: 'left', -1: 'right'}"
@@ -226,11 +226,9 @@ class WristMaker(Maker):
         (x, y, _), q = self.carried.offset_at, self.carried.point
         if x == y == 0:
             return ""
-        self.add(f"offset = ik.let('offset', {source(norm(sp.Matrix([x, y])))})")
-        ahead = f"Pair({source(y)}/offset, {source(x)}/offset)"
-        more = f"offset=offset, ahead={ahead}, lever=ik.size"
-        lengths = ", ".join(self.carried.lengths)
-        self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {more})")
+        offset = f"({source(x)}, {source(y)})"
+        arguments = f"({q}[0], {q}[1]), ({', '.join(self.carried.lengths)}), {offset}"
+        self.add(f"reaching = Reaching.turning(ik, {arguments}, lever=ik.size)")
         return ", reaching=reaching"
 
     def middle(self, first: Single, middle: Single, onward: str = "") -> tuple[str, int]:

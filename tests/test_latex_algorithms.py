@@ -1,7 +1,7 @@
 """Algorithms as the articles print them, computed with the numbers of a posture."""
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import mpmath
 import numpy as np
@@ -15,11 +15,24 @@ from closedform.pipeline import scripts
 
 DIGITS = 40
 LETTERS = ("chi", "omega", "nu", "mu")
-MECHANISMS = ("franka_arm", "h6ar", "h6ar_loop_closed", "hybrid_five_bar", "irb260", "ur_arm")
+MECHANISMS = (
+    "franka_arm",
+    "h6ar",
+    "h6ar_loop_closed",
+    "hybrid_five_bar",
+    "irb260",
+    "spherical_wrist",
+    "ur_arm",
+)
 
 
-def computed(function: Function, given: Mapping[sp.Basic, sp.Basic]) -> list[sp.Expr] | None:
-    """The outputs in a usual posture, statement by statement; None if a bound is negative."""
+def computed(
+    function: Function, given: Mapping[sp.Basic, sp.Basic], results: Sequence[sp.Symbol] = ()
+) -> list[sp.Expr] | None:
+    """The outputs in a usual posture, statement by statement; None if a bound is negative.
+
+    An output may be in terms of ``results`` before it.
+    """
     usual = {s.symbol: sp.false for s in function.body if isinstance(s, Vanishes)}
     made = [s for s in function.body if isinstance(s, Let | Bound)]
     values = {s.symbol: substitute(s.value, usual) for s in made}
@@ -34,7 +47,11 @@ def computed(function: Function, given: Mapping[sp.Basic, sp.Basic]) -> list[sp.
             env[s.symbol] = values[s.symbol].xreplace(env).evalf(DIGITS)
             if isinstance(s, Bound) and env[s.symbol] < 0:
                 return None
-    return [e.xreplace(env).evalf(DIGITS) for e in outputs]
+    found = []
+    for k, e in enumerate(outputs):
+        found.append(e.xreplace(env).evalf(DIGITS))
+        env |= {result: found[-1] for result in results[k : k + 1] if result not in env}
+    return found
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
@@ -59,10 +76,10 @@ def test_an_algorithm_gives_what_the_function_gives(name: str) -> None:
         inputs = dict(zip(first, values, strict=True)) | {e: q[-1] for m in more for e in m}
         given = {s: sp.Float(float(v), DIGITS) for s, v in (lengths | inputs).items()}
         results = subject.inverse.unknowns if subject.inverse else ()
-        read = plain(function, lemmas, LETTERS, results).function
+        read = plain(function, lemmas, LETTERS, results=results).function
         for _, signs in function.cases():
             here = given | {s: sp.Integer(k) for s, k in signs.items()}
-            exact, read_off = computed(function, here), computed(read, here)
+            exact, read_off = computed(function, here), computed(read, here, results)
             assert (exact is None) == (read_off is None)
             for one, other in zip(exact or (), read_off or (), strict=True):
                 with mpmath.workdps(DIGITS):

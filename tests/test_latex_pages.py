@@ -12,6 +12,7 @@ from closedform.generated.numpy import puma560
 
 from closedform.algebra.normal_form import equal
 from closedform.emit.backends.latex import symbols
+from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.article import Page, document, indexed, tied
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
@@ -19,7 +20,6 @@ from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.lemmas import clauses, packed
 from closedform.emit.backends.latex.prose import Prose, escape, quoted
 from closedform.emit.backends.latex.sheet import Block
-from closedform.emit.backends.latex.stages import same_angle
 from closedform.emit.backends.latex.wide import Lines
 from closedform.emit.render import render
 from closedform.mechanics import by_axes

@@ -25,7 +25,7 @@ from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.twins import twins
-from closedform.emit.backends.latex.vectors import InVectors, is_vector
+from closedform.emit.backends.latex.vectors import InVectors, is_vector, simplest_first
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
     Bound,
@@ -261,7 +261,10 @@ class Algorithm:
         if not isinstance(value, sp.MatrixBase):
             value = value.xreplace(self.pairs)
         value = substitute(value, self.known)
-        return self.short(self.in_names_of_steps(value)) if isinstance(value, sp.Expr) else value
+        if not isinstance(value, sp.Expr):
+            return value
+        # a step may have named what sums of angles make of it
+        return self.in_names_of_steps(self.short(self.in_names_of_steps(value)))
 
     def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
         """A value of the joints in names that the steps of the derivation have defined."""
@@ -440,7 +443,7 @@ class Algorithm:
             text = r",\ ".join(self.page.math(self.shown(e)) for e in value)
             text = f"({text})"
         else:
-            terms = sorted(sp.Add.make_args(self.shown(value)), key=_simplest_first)
+            terms = sorted(sp.Add.make_args(self.shown(value)), key=simplest_first)
             texts = [self.page.math(t) for t in terms]
             signed = [t if t.startswith("-") else f"+ {t}" for t in texts[1:]]
             text = " ".join([texts[0], *signed])
@@ -586,12 +589,6 @@ def _is_below(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool:
     """Whether a factor divides by a root, or by the name of one."""
     base, power = factor.as_base_exp()
     return (power == -1 and base in roots) or (power == -sp.S.Half and base.is_Add)
-
-
-def _simplest_first(term: sp.Expr) -> tuple[Any, ...]:
-    """The order of the terms of a vector: without a factor, with a number, with a name."""
-    number = term.as_coeff_Mul()[0]
-    return bool(number.is_negative), len(term.free_symbols), abs(number) != 1, str(term)
 
 
 STATUS = {"unless": "unreachable", "invalid": "invalid"}

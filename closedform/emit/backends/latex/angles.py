@@ -413,6 +413,13 @@ def added(value: sp.Expr, totals: Mapping[sp.Expr, sp.Symbol]) -> sp.Expr:
         value = changed
 
 
+def same_angle(pair: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr | None:
+    """The angle whose sine and cosine are the values, if a whole pair is that of another angle."""
+    angles = {v.args[0] for v in values if isinstance(v, sp.sin | sp.cos)}
+    alike = all(a.func == b.func for a, b in zip(pair, values, strict=True))
+    return angles.pop() if len(pair) == 2 and alike and len(angles) == 1 else None
+
+
 def turned(y: sp.Expr, x: sp.Expr) -> sp.Expr | None:
     """The angle of a vector that is a unit vector, or another one turned by an angle."""
     if isinstance(y, sp.sin) and isinstance(x, sp.cos) and y.args == x.args:
@@ -430,4 +437,4 @@ def turned(y: sp.Expr, x: sp.Expr) -> sp.Expr | None:
     return None
 
 
-__all__ = ["Turned", "added", "in_angles", "turned"]
+__all__ = ["Turned", "added", "in_angles", "same_angle", "turned"]

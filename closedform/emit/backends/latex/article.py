@@ -110,7 +110,7 @@ class Page(Sheet):
             earlier = self.algorithm(model) if model else None
             results = inverse.unknowns if inverse else ()
             turned = None
-            if inverse and isinstance(inverse.glue, Rank):
+            if inverse and (isinstance(inverse.glue, Rank) or finds_all(inverse, lemmas)):
                 turned = in_angles(subject.function, lemmas, results, self.free_angles)
                 turned = turned.multiplied(self.rotations() | matrices(inverse, lemmas))
                 subject = replace(subject, function=turned.function)
@@ -125,7 +125,8 @@ class Page(Sheet):
             }
             glue = inverse.glue if inverse else None
             joints = glue.joints if isinstance(glue, Combination) else {}
-            read = plain(subject.function, lemmas, free, returned, joints)
+            known = set() if function.has_status else self.quantities.values
+            read = plain(subject.function, lemmas, free, known, returned, joints)
             written = {n: w for lemma in lemmas for n, w in lemma.written.items()}
             vectors = in_vectors(read.function, written) if written else None
             if vectors:
@@ -338,11 +339,19 @@ class Page(Sheet):
         return "" if "=" in name else f"{self.prose(name)}: "
 
     def vanishing(self, factor: sp.Expr, algorithm: Algorithm | None) -> str:
-        """``B_11 = rho = 0`` for a factor with a name of its own."""
-        shown = self.math(algorithm.shown(factor)) if algorithm else self.math(factor)
+        """``B_11 = rho = 0`` for a factor with a name of its own; a sign does not vanish."""
+        if algorithm and factor.is_Mul:
+            factor = sp.Mul(*(f for f in factor.args if not is_sign(algorithm.values.get(f))))
+        named = algorithm.shown if algorithm else self.in_names_of_steps
+        shown = self.math(named(factor))
         own = self.math(factor)
         name = f"{own} = " if factor.is_Symbol and own != shown else ""
         return f"{name}{shown} = 0"
+
+    def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
+        """A value of the joints in names that the steps have defined."""
+        named = {str(s): s for s in value.free_symbols}
+        return self.lines.tidy(self.quantities.of_a_function(value, (), named))
 
     def outputs(self, function: Function) -> list[Equation]:
         self.lines.clear()
@@ -353,6 +362,16 @@ class Page(Sheet):
             entries = [self.quantities.of_a_function(e, own) for e in array.entries]
             rows += self.array(array, entries, names)
         return rows
+
+
+def finds_all(inverse: Inverse, lemmas: Sequence[Lemma]) -> bool:
+    """Whether one lemma finds all joints of an inverse without links, as the angles of a wrist."""
+    return len(lemmas) == 1 and not inverse.links and {*lemmas[0].solution} == {*inverse.unknowns}
+
+
+def is_sign(value: sp.Expr | None) -> bool:
+    """Whether a value is a sign, by cases."""
+    return isinstance(value, sp.Piecewise) and {abs(e) for e, _ in value.args} == {1}
 
 
 def matrices(inverse: Inverse, lemmas: Sequence[Lemma]) -> dict[str, sp.MatrixBase]:

@@ -133,9 +133,10 @@ class Cases:
     def vanishing(self, value: sp.Expr) -> str:
         """The condition that a nonnegative value is zero."""
         parts = sp.Add.make_args(value)
-        if len(parts) > 1 and all(isinstance(t, sp.Abs) for t in parts):
-            inner = [rf"{self.page.math(self.page.lines.tidy(t.args[0]))} = 0" for t in parts]
-            return ", ".join(f"${t}$" for t in inner)
+        sizes = any(isinstance(t, sp.Abs) for t in parts)
+        if len(parts) > 1 and sizes and all(t.is_nonnegative for t in parts):
+            inner = [t.args[0] if isinstance(t, sp.Abs) else t for t in parts]
+            return ", ".join(equality(self.page, self.page.lines.tidy(t)) for t in inner)
         return equality(self.page, value)
 
     def _determined(self, statement: Determined) -> Case:

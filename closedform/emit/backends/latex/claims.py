@@ -10,7 +10,7 @@ from typing import Any
 
 from closedform.emit.backends.latex.equations import reference
 from closedform.emit.backends.latex.formulas import flat
-from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
+from closedform.emit.backends.latex.prose import GREEK, Prose, escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Derivation
@@ -59,7 +59,9 @@ class Claims:
     def rows(self) -> list[dict[str, Any]]:
         """The rows of the table; ``heading`` is the section of the paper, given once."""
         rows, where = [], ""
-        for k, claim in enumerate(self.proof.claims, 1):
+        sections = [claim.where for claim in self.proof.claims]
+        order = sorted(enumerate(self.proof.claims, 1), key=lambda c: sections.index(c[1].where))
+        for k, claim in order:
             rows.append({**self.claim(claim), "number": k, "heading": claim.where != where})
             where = claim.where
         return rows
@@ -87,8 +89,9 @@ class Claims:
     def told(self, evidence: str) -> str:
         """What was found, in a line: fractions are flat, comparisons and joints are formulas."""
         parts = flat(evidence).split("$")
-        joints = [rf"\b{j.name}\b" for j in self.derivation.joints if re.search(r"\d", j.name)]
-        formula = "|".join([COMPARED, *joints])
+        names = [*(j.name for j in self.derivation.joints), *self.derivation.task]
+        names = [rf"\b{n}\b" for n in dict.fromkeys(names) if n in GREEK or re.search(r"\d", n)]
+        formula = "|".join([COMPARED, *names])
         for i in range(0, len(parts), 2):
             parts[i] = re.sub(formula, lambda m: f"${self.prose.formula(m[0])}$", parts[i])
         return mixed("$".join(parts))

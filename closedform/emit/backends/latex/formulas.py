@@ -26,6 +26,9 @@ FITS = 76.0
 SIGN = re.compile(r"sigma(_|$)")
 JOINT = re.compile(r"theta(\d)([A-Z]?)")
 TRIGONOMETRIC = sp.sin | sp.cos | sp.tan
+WAVES = (sp.sin, sp.cos)
+SHORT = re.compile(r"\\mathrm\{([cs])\}(_.+)")
+"""An abbreviated sine or cosine."""
 
 
 class Printer(LatexPrinter):  # type: ignore[misc]
@@ -109,6 +112,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             terms = list(_ordered_terms(expr, order or self.order))
         if _negative(terms[0]):
             terms.sort(key=_negative)
+        if terms[-1].is_number and all(t.has(*WAVES) for t in terms[:-1]):  # 1 + cos
+            terms.sort(key=lambda term: not (term.is_number and term.is_positive))
         if any(e.is_Symbol and SIGN.match(e.name) for e in terms[0].args):
             terms.sort(key=lambda term: not isinstance(term, sp.atan2))
         return terms
@@ -131,17 +136,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         number, factors = _number(expr)
         if number.is_negative and (turned := _turned(factors)):
             number, factors = -number, turned
-        over, under, radicands = [], [], ([], [])  # type: ignore[var-annotated]
-        for factor in factors:
-            base, power = factor.as_base_exp()
-            if factor.is_Add and all(map(_negative, factor.args)):
-                number, factor, base = -number, -factor, -factor
-            if power.is_Rational and abs(power) == sp.S.Half:
-                radicands[power.is_negative].append(base)
-            elif power.is_Rational and power.is_negative:
-                under.append(base ** (-power))
-            else:
-                over.append(factor)
+        number, over, under, radicands = _sides(number, factors)
         over_root, under_root = map(self._root, radicands)
         sign = "- " if number.is_negative else ""
         p, q = abs(number.p), number.q
@@ -208,9 +203,12 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             return (6, 0, natural(str(base)), str(power))
         if base.is_Symbol:
             text = self._print_Symbol(base)
+            if pair := SHORT.fullmatch(text):  # the sine or the cosine of a joint that was solved
+                return (3, 0, natural(pair[2]), (pair[1] == "s", str(power)))
             kind = 1 if SIGN.match(base.name) else 2
             greek = re.sub(r"\d.*|_.*", "", base.name).strip("\\ ") in GREEK
-            return (kind, kind == 2 and greek, natural(text), str(power))
+            entry = text[:1].isupper() and base.name not in self.parameters
+            return (kind, kind == 2 and (greek, entry), natural(text), str(power))
         if isinstance(base, TRIGONOMETRIC):
             text = self._print(base)
             short = text.startswith(r"\mathrm")
@@ -337,6 +335,30 @@ def _factors(expr: sp.Expr) -> list[sp.Expr]:
     return list(sp.Mul.make_args(expr))
 
 
+def _sides(
+    number: sp.Rational, factors: Sequence[sp.Expr]
+) -> tuple[sp.Rational, list[sp.Expr], list[sp.Expr], tuple[list[sp.Expr], list[sp.Expr]]]:
+    """The factors above and below the line of a fraction, and what is under a root there.
+
+    The number changes its sign with each sum that has minus signs alone.
+    """
+    over, under = list[sp.Expr](), list[sp.Expr]()
+    radicands = list[sp.Expr](), list[sp.Expr]()
+    for factor in factors:
+        base, power = factor.as_base_exp()
+        if factor.is_Add and all(map(_negative, factor.args)):
+            number, factor, base = -number, -factor, -factor
+        if factor.is_number and power == sp.S.Half:  # stands with the numbers
+            over.append(factor)
+        elif power.is_Rational and abs(power) == sp.S.Half:
+            radicands[power.is_negative].append(base)
+        elif power.is_Rational and power.is_negative:
+            under.append(base ** (-power))
+        else:
+            over.append(factor)
+    return number, over, under, radicands
+
+
 def _number(expr: sp.Expr) -> tuple[sp.Rational, list[sp.Expr]]:
     """The rational factor of a product, and the others."""
     factors = list(chain.from_iterable(map(_factors, _factors(expr))))
@@ -385,7 +407,7 @@ def stacked(rows: Sequence[str]) -> str:
 
 
 INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
-SQUARED = re.compile(r"\\sqrt\{([A-Za-z])\^(?:2|\{2\})\}")
+SQUARED = re.compile(r"\\sqrt\{([A-Za-z](?:_\w)?)\^(?:2|\{2\})\}")
 """The root of a name that is written as a square, and whose root is not negative."""
 FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}")  # fmt: skip  # noqa: E501
 

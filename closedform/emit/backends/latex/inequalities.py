@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from itertools import combinations, permutations
 
 import sympy as sp
@@ -13,30 +13,57 @@ from closedform.emit.backends.latex.sheet import Sheet
 def inequalities(
     page: Sheet, order: Mapping[sp.Symbol, int], values: Sequence[sp.Expr]
 ) -> list[str]:
-    """``|d| <= m <= a`` for m - d, m + d and a - m, and what is left one by one."""
+    """``|d| <= m <= a`` for m - d, m + d and a - m, ``b <= x <= a`` alike, and the others alone."""
     math = page.math
     left = list(dict.fromkeys(values))
     texts: list[str] = []
     while pairs := [
-        found
+        (order.get(found[0], len(order)), *found, v, w)
         for v, w in combinations(left, 2)
-        if (found := (*magnitude(page, v, w), v, w))[0] in order and found[1] != 0
+        if is_name(found := magnitude(page, v, w), order)
     ]:
-        middle, difference, value, other = max(pairs, key=lambda p: order[p[0]])
-        above = next((e + middle for e in left if is_above(e, middle)), None)
-        text = rf"{math(sp.Abs(difference, evaluate=False))} \le {math(middle)}"
-        text += rf" \le {math(above)}" if above is not None else ""
-        texts.append(f"${text}$")
-        used = {value, other, *(() if above is None else (above - middle,))}
-        left = [e for e in left if e not in used]
-    for value, other in permutations(left, 2):
-        middle = next((m for m in order if m in value.free_symbols & other.free_symbols), None)
-        if middle and is_above(value, middle) and is_above(-other, middle):
-            text = rf"{math(middle - other)} \le {math(middle)} \le {math(value + middle)}"
-            texts.append(f"${text}$")
-            left = [e for e in left if e not in (value, other)]
-            break
+        _, middle, difference, value, other = max(pairs, key=lambda p: p[0])
+        left = [e for e in left if e not in (value, other)]
+        texts.append(between_sizes(page, difference, middle, left))
+    while between := next((b for v, w in permutations(left, 2) if (b := limits(v, w))), None):
+        lower, middle, upper = between
+        left = [e for e in left if e not in (upper - middle, middle - lower)]
+        if lower == -upper:
+            texts.append(between_sizes(page, middle, upper, left))
+        else:
+            lower = page.lines.tidy(lower)
+            texts.append(rf"${math(lower)} \le {math(middle)} \le {math(upper)}$")
     return texts + [nonnegative(page, value) for value in left]
+
+
+def between_sizes(page: Sheet, inner: sp.Expr, middle: sp.Expr, left: list[sp.Expr]) -> str:
+    """``|d| <= m``, and ``<= a`` for a bound a - m among those that are left, which is used up."""
+    text = rf"{page.math(sp.Abs(inner, evaluate=False))} \le {page.math(middle)}"
+    if above := next((e for e in left if is_above(e, middle)), None):
+        left.remove(above)
+        text += rf" \le {page.math(above + middle)}"
+    return f"${text}$"
+
+
+def is_name(found: tuple[sp.Expr, sp.Expr], order: Container[sp.Expr]) -> bool:
+    """Whether the middle of two bounds is a name or a root, and the bounds differ."""
+    middle, difference = found
+    root = middle.is_Pow and middle.exp == sp.S.Half
+    return difference != 0 and (middle in order or bool(root))
+
+
+def limits(value: sp.Expr, other: sp.Expr) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
+    """b, x and a of the bounds a - x and x - b: what is subtracted in one and added in the other.
+
+    The terms with a minus in x have to have one in ``other`` too, as those of x - b do.
+    """
+    terms = sp.Add.make_args(other)
+    shared = [t for t in terms if -t in sp.Add.make_args(value)]
+    middle = sp.Add(*shared)
+    lower, upper = middle - other, value + middle
+    if not shared or not lower or not upper or all(map(_is_negative, shared)):
+        return None
+    return lower, middle, upper
 
 
 def is_above(value: sp.Expr, middle: sp.Expr) -> bool:
@@ -45,9 +72,10 @@ def is_above(value: sp.Expr, middle: sp.Expr) -> bool:
 
 
 def magnitude(page: Sheet, value: sp.Expr, other: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """m and d of two bounds m - d and m + d; d has a positive term first."""
+    """m and d of two bounds m - d and m + d; the first term of d by its letter is positive."""
     middle, difference = sp.expand((value + other) / 2), sp.expand((other - value) / 2)
-    first = page.printer._as_ordered_terms(difference)[0] if difference.is_Add else difference
+    numbers = {t: t.as_coeff_Mul() for t in sp.Add.make_args(difference)}
+    first = min(numbers, key=lambda t: page.math(abs(numbers[t][0]) * numbers[t][1]))
     if _is_negative(first):
         difference = -difference
     return middle, difference
@@ -67,6 +95,9 @@ def equality(page: Sheet, value: sp.Expr) -> str:
     """The condition that a value is zero: ``a = b`` for ``a - b``, and 0 for each of squares."""
     if isinstance(value, sp.Min):
         return " or ".join(equality(page, e) for e in sorted(value.args, key=page.math))
+    root = value.is_Pow and value.exp == sp.S.Half and value.base.is_Symbol
+    if root and not page.math(value).startswith(r"\sqrt"):  # of a name that is a square
+        return f"${page.math(value)} = 0$"
     if isinstance(value, sp.Abs) or (value.is_Pow and value.exp.is_positive):
         return equality(page, value.args[0])
     terms = page.printer._as_ordered_terms(value) if value.is_Add else [value]
@@ -78,7 +109,9 @@ def equality(page: Sheet, value: sp.Expr) -> str:
     less = [-t for t in terms if t.as_coeff_Mul()[0].is_negative]
     more = [t for t in terms if not t.as_coeff_Mul()[0].is_negative]
     if less and more:
-        return f"${page.math(sp.Add(*more))} = {page.math(sp.Add(*less))}$"
+        sides = [sp.Add(*more), sp.Add(*less)]
+        sides.sort(key=lambda e: e.free_symbols <= page.parameters)
+        return f"${page.math(sides[0])} = {page.math(sides[1])}$"
     return f"${page.math(value)} = 0$"
 
 

@@ -15,9 +15,9 @@ from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.listing import lines_kept, whole
 from closedform.emit.backends.latex.prose import escape, upright
-from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.emit.backends.latex.sheet import Sheet, block, blocks
 from closedform.emit.backends.latex.sources import explained_as_a_whole
-from closedform.emit.backends.latex.stages import Stages, block
+from closedform.emit.backends.latex.stages import Stages
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
     Array,
@@ -131,7 +131,7 @@ class Told:
         rows += [r for s in sorted(others, key=str) for r in page.equations(s, case.locus[s])]
         _, signs = next(function.cases())
         values = function.at(signs, dict.fromkeys(case.flags, True), case.locus)
-        convention = dict(zip(inverse.unknowns, values, strict=True))[case.free]
+        convention = without_turns(dict(zip(inverse.unknowns, values, strict=True))[case.free])
         narrow = all(measure(a + b) < FITS / 2 and r"\begin" not in b for a, b in rows)
         return {
             "free": page.math(case.free),
@@ -206,6 +206,18 @@ class Told:
             for _, chosen in function.cases()
             for name in names
         }
+
+
+def without_turns(value: sp.Expr) -> sp.Expr:
+    """A value without the angles of vectors along the first axis, which are zero."""
+
+    def is_along(e: sp.Expr) -> bool:
+        if not isinstance(e, sp.atan2) or e.args[0] != 0:
+            return False
+        powers = [f.as_base_exp()[1] for f in sp.Mul.make_args(e.args[1])]
+        return all(p == sp.S.Half for p in powers)  # a root is not negative
+
+    return value.replace(is_along, lambda _: sp.S.Zero)
 
 
 __all__ = ["Told"]

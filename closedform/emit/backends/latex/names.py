@@ -91,6 +91,11 @@ class Quantities:
             value = whole
         return value
 
+    @property
+    def values(self) -> set[sp.Expr]:
+        """The values of the quantities."""
+        return {e for e, _ in {**self.former, **self.narrow, **self.known}.values()}
+
     def in_value(self, value: sp.Expr) -> set[str]:
         """The names of quantities of steps in a value."""
         every = {**self.former, **self.narrow, **self.known}

@@ -7,7 +7,7 @@ numbers from another one that is known better.  A reader has the angle, and the 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Any
@@ -39,13 +39,14 @@ def plain(
     function: Function,
     lemmas: Sequence[Lemma],
     letters: Sequence[str] = (),
+    known: Set[sp.Expr] = frozenset(),
     results: Sequence[sp.Symbol] = (),
     joints: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Plain:
     """The function in the angles that its lemmas give, without what differs within rounding.
 
-    ``letters`` are for parts of sums of angles, and ``results`` the symbols of the outputs, some of
-    which ``joints`` gives in the angles.
+    ``letters`` are for parts of sums of angles, except those that are ``known`` by a name, and
+    ``results`` the symbols of the outputs, some of which ``joints`` gives in the angles.
     """
     body, same, numbers = _exact(function.body)
     body = _known_directly(body, lemmas)
@@ -88,7 +89,7 @@ def plain(
     told, turned = _with_angles_of_results(told, results)
     names = {n: substitute(e, turned) for n, e in names.items()} | turned
     own = _own_names(told, results)
-    told = _renamed(_with_half_sums(_without_pairs(told), letters), own)
+    told = _renamed(_with_half_sums(_without_pairs(told), letters, known), own)
     return Plain(told, {**{n: substitute(e, own) for n, e in names.items()}, **own})
 
 
@@ -173,7 +174,7 @@ def _tangent(value: sp.Expr) -> sp.Expr | None:
     return next((sp.tan(a) for a in angles if value == sp.sin(a) / sp.cos(a)), None)
 
 
-def _with_half_sums(function: Function, letters: Sequence[str]) -> Function:
+def _with_half_sums(function: Function, letters: Sequence[str], known: Set[sp.Expr]) -> Function:
     """The function with letters for halves of sums of angles that occur more than once."""
     usual, inputs = _usual(function.body), set(function.symbols)
     held = [substitute(s.value, usual) for s in function.body if isinstance(s, Let | Bound)]
@@ -187,13 +188,18 @@ def _with_half_sums(function: Function, letters: Sequence[str]) -> Function:
     halves = [
         a
         for a, n in found.items()
-        if n > 1 and a.free_symbols <= inputs and any(t.as_coeff_Mul()[0].q != 1 for t in a.args)
+        if n > 1 and not {a, -a} & known and a.free_symbols <= inputs and _has_part(a)
     ]
     if len(halves) > len(letters):
         return function
     names = {a: real(letter) for a, letter in zip(halves, letters, strict=False)}
     named = [Let(name, angle) for angle, name in names.items()]
     return _replaced(replace(function, body=(*named, *function.body)), names, skipped=len(named))
+
+
+def _has_part(angle: sp.Expr) -> bool:
+    """Whether a sum contains a half of an angle, or another part."""
+    return any(t.as_coeff_Mul()[0].q != 1 for t in angle.args)
 
 
 def _replaced(function: Function, parts: Mapping[Any, Any], skipped: int = 0) -> Function:

@@ -66,6 +66,8 @@ SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"
 ENGLISH = re.compile(rf"(?!(?:{'|'.join(sorted(GREEK))})$)[a-z]{{3,}}")
 """The name of a symbol that is a word of a sentence."""
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
+PRODUCT = re.compile(r"(?<=[^\s$])\$ \$(?=[^\s$])")
+"""Between two formulas that are factors."""
 WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 """A symbol that is a word; as a factor it needs a space."""
 ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|to|vanishes)\b)[a-z]")
@@ -157,8 +159,11 @@ def mixed(text: str) -> str:
             r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
         ):
             stiff = True
-        formula = rf"$\displaystyle {formula if stiff else loosen(formula)}$"
+        formula = ROWS.sub(_roomy, formula if stiff else loosen(formula))
+        formula = rf"$\displaystyle {formula}$"
         formula = rf"\fit{{{formula}}}" if stiff else formula
+        if r"\begin{aligned}" in part and parts[i - 1].strip():  # its lines stand by themselves
+            formula = rf"\newline {formula}"
         parts[i] = formula if i % 2 else quoted(part)
     return "".join(parts)
 
@@ -192,6 +197,15 @@ def _letter(letter: str, index: str) -> str:
     return (
         f"{before}{letter}^{{{index[1:]}}}" if index[0] == "^" else f"{before}{letter}_{{{index}}}"
     )
+
+
+ROWS = re.compile(r"\\begin\{(cases|aligned)\}.*?\\end\{\1\}", re.DOTALL)
+
+
+def _roomy(found: re.Match[str]) -> str:
+    """Rows of formulas, with some space between those that have fractions."""
+    rows = found[0]
+    return rows.replace(r"\\ ", r"\\[6pt] ") if r"\frac" in rows else rows
 
 
 STIFF = 36
@@ -234,7 +248,7 @@ class Prose:
 
         self.angles: dict[str, str] = {}
         """Angles of an inverse whose names are words, in LaTeX."""
-        self.code = {f.name for f in functions if f.has_status} - self.known
+        self.code = ({f.name for f in functions if f.has_status} | {"fk", "ik"}) - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
         bold = set(BOLD.findall(" ".join(shown)))
         self.vectors = bold - names - {*shown}
@@ -267,7 +281,7 @@ class Prose:
                 parts[i] = "$A$"
             else:
                 parts[i] = self._part(part)
-        return "".join(parts)
+        return PRODUCT.sub(r"\\,", "".join(parts))
 
     def _part(self, text: str) -> str:
         """A formula, or text; parentheses with words in them may contain formulas."""

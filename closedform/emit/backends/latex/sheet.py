@@ -42,7 +42,8 @@ class Sheet:
         self.lines = Lines(self.printer, self.prose.known)
         inputs = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
         self.quantities = Quantities(self.printer, [upright(n) for n in inputs])
-        self.symbols = {p.symbol for p in derivation.parameters}
+        self.parameters = {p.symbol for p in derivation.parameters}
+        self.symbols = set(self.parameters)
         self.symbols |= {s for f in derivation.functions for s in f.symbols}
         self.printer.rename(conventional_names(derivation))
         defined = [a for i in derivation.inverses for a in i.rank.defined]
@@ -166,6 +167,12 @@ class Block:
         )
         kind = "align" if self.rows[0].numbered else "align*"
         return f"\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}"
+
+
+def block(array: Array) -> list[sp.Expr]:
+    """The entries of the rotation in a matrix or a pose."""
+    columns = array.shape[1]
+    return [array.entries[columns * i + j] for i in range(3) for j in range(3)]
 
 
 def blocks(equations: Sequence[Numbered | Equation]) -> list[Block]:

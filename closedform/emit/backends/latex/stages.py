@@ -13,6 +13,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
+from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.equations import (
     Numbered,
@@ -27,7 +28,7 @@ from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import mixed
 from closedform.emit.backends.latex.rotations import is_turned
-from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.emit.backends.latex.sheet import Sheet, block, blocks
 from closedform.emit.backends.latex.sources import (
     Stated,
     explained,
@@ -37,7 +38,6 @@ from closedform.emit.backends.latex.sources import (
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
-    Array,
     Bound,
     Let,
     Vanishes,
@@ -49,6 +49,8 @@ from closedform.model.lemma import Lemma
 
 FEW = 4
 """More parts of the target than that are not listed."""
+WIDE = 0.8
+"""The part of a line that the left side of an equation may take."""
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
 
 
@@ -102,8 +104,8 @@ class Stages:
         self.told: set[sp.Symbol] = set()
         """Names that a step has defined."""
         self.stated = Stated(page)
-        self.seen = list[str]()
-        """The numbers of the equations of the derivation that define names in a step."""
+        self.seen = dict[str, str]()
+        """The names in a step that the derivation defines, and the numbers of their equations."""
 
     def context(self) -> list[dict[str, Any]]:
         return [self.told_stage(k, step) for k, step in enumerate(self.steps, 1)]
@@ -181,7 +183,8 @@ class Stages:
             "count": self.count(step),
             "vectors": mixed(lemma.vectors),
             "solution": blocks(solution),
-            "seen": reference(self.seen),
+            "seen": reference(self.seen.values()),
+            "seen_names": listed([f"${n}$" for n in self.seen]) if len(self.seen) <= FEW else "",
             "exists": ", ".join(dict.fromkeys(e for s in step if (e := self.exists(s)))),
             "degenerate": "; ".join(dict.fromkeys(e for s in step if (e := self.degenerate(s)))),
         }
@@ -234,13 +237,13 @@ class Stages:
         if unknown and all(t.as_coeff_Mul()[0].is_negative for t in unknown):
             unknown, rest = [-t for t in unknown], [-t for t in rest]
         negative = [t for t in unknown if t.as_coeff_Mul()[0].is_negative]
-        if len(unknown) == 2 and len(negative) == 1 and not rest:  # two terms are equal
-            unknown, rest = [t for t in unknown if t not in negative], [-negative[0]]
-        left = self.page.lines.tidy(sp.Add(*unknown))
+        if negative and not rest:  # what is subtracted stands on the other side
+            unknown, rest = [t for t in unknown if t not in negative], [-t for t in negative]
+        left, right = (self.page.lines.tidy(sp.Add(*terms)) for terms in (unknown, rest))
         text = self.page.math(left)
-        if measure(text) > FITS * 0.6:
-            return self.page.equations("0", self.named(equation))
-        return self.page.equations(text, self.page.lines.tidy(sp.Add(*rest)))
+        if measure(text) > FITS * WIDE:  # its parts get names on the right
+            return self.page.equations(self.page.math(right), left)
+        return self.page.equations(text, right)
 
     def without_detours(self, value: sp.Expr) -> sp.Expr:
         """The same without a name, such as that of a difference, where it is shorter."""
@@ -380,7 +383,14 @@ class Stages:
         number = NUMBERS[n] if n < len(NUMBERS) else str(n)
         before = self.solvings[: self.solvings.index(step[0])]
         used = {s for other in before for s in self.own_symbols(other)}
-        own = {s for e in step for s in self.own_symbols(e) | set(e.lemma.signs)} - used
+        chosen = {s for e in step for s in e.lemma.signs}
+        chosen |= {
+            s
+            for c in chosen & self.algorithm.values.keys()
+            for s in self.algorithm.values[c].free_symbols
+        }
+        own = {s for e in step for s in self.own_symbols(e)} | chosen
+        own -= used
         signs = [s for s in self.algorithm.signs if s in own]
         told = listed([rf"${self.page.math(s)} = \pm 1$" for s in signs])
         start = "Each has" if several else f"There {'are' if n != 1 else 'is'}"
@@ -539,7 +549,7 @@ class Stages:
             with algorithm.as_two(s in apart or s in apart.values()):
                 own = self.page.equations(algorithm.known.get(s, s), value)
             if label := self.stated.of(own, value):
-                self.seen.append(label)
+                self.seen[self.page.math(algorithm.known.get(s, s))] = label
             else:
                 rows += [row for row in own if row[0] != row[1]]
         return rows
@@ -584,17 +594,4 @@ class Stages:
         ]
 
 
-def same_angle(pair: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr | None:
-    """The angle whose sine and cosine are the values, if a whole pair is that of another angle."""
-    angles = {v.args[0] for v in values if isinstance(v, sp.sin | sp.cos)}
-    alike = all(a.func == b.func for a, b in zip(pair, values, strict=True))
-    return angles.pop() if len(pair) == 2 and alike and len(angles) == 1 else None
-
-
-def block(array: Array) -> list[sp.Expr]:
-    """The entries of the rotation in a matrix or a pose."""
-    columns = array.shape[1]
-    return [array.entries[columns * i + j] for i in range(3) for j in range(3)]
-
-
-__all__ = ["Solving", "Stages", "block", "same_angle"]
+__all__ = ["Solving", "Stages"]

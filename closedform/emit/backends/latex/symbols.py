@@ -8,8 +8,9 @@ not have two forms.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 
@@ -239,6 +240,10 @@ def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
 
 
+DEFINED = re.compile(r"(.*?)see (\\eqref\{[^{}]*\})")
+"""A meaning with the number of the equation that defines the symbol."""
+INDEXED = re.compile(r"(.+)_\{(\d+)\}('?)")
+"""A symbol with a number."""
 WIDEST = 24
 """The letters of the symbols in one row; more are too wide for their column."""
 
@@ -246,23 +251,39 @@ WIDEST = 24
 def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Neighbours with one meaning in one row, and so those that follow each other by number."""
     done: list[tuple[list[str], str, list[str]]] = []
-    named = re.compile(r"(.*?)see (\\eqref\{[^{}]*\})")
-    for form, meaning in rows:
-        label = named.fullmatch(meaning)
-        stem = re.fullmatch(r"(.+)_\{(\d+)\}", form)
+    for form, meaning in side_by_side([*rows]):
+        label = DEFINED.fullmatch(meaning)
+        stem = INDEXED.fullmatch(form)
         if done:
             forms, common, labels = done[-1]
-            last = re.fullmatch(r"(.+)_\{(\d+)\}", forms[-1])
+            last = INDEXED.fullmatch(forms[-1])
             if not label and meaning == common and _letters([*forms, form]) <= WIDEST:
                 forms.append(form)
                 continue
-            follows = stem and last and stem[1] == last[1] and _follows(stem[2], last[2])
+            follows = (
+                stem
+                and last
+                and stem.group(1, 3) == last.group(1, 3)
+                and _follows(stem[2], last[2])
+            )
             if label and labels and follows and common.startswith(f"{label[1]}see"):
                 forms.append(form)
                 labels.append(label[2])
                 continue
         done.append(([form], meaning, [label[2]] if label else []))
     return [_joined(forms, meaning, labels) for forms, meaning, labels in done]
+
+
+def side_by_side(rows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """The rows, with those beside the first one that differ from it in their number alone."""
+    first: dict[Any, int] = {}
+
+    def place(row: tuple[int, tuple[str, str]]) -> int:
+        k, (form, meaning) = row
+        stem, label = INDEXED.fullmatch(form), DEFINED.fullmatch(meaning)
+        return first.setdefault((stem[1], stem[3], label[1]), k) if stem and label else k
+
+    return [row for _, row in sorted(enumerate(rows), key=place)]
 
 
 def _follows(number: str, last: str) -> bool:

@@ -252,4 +252,10 @@ def _needed(
     return needed
 
 
-__all__ = ["InVectors", "Vector", "in_vectors", "is_vector"]
+def simplest_first(term: sp.Expr) -> tuple[bool, int, bool, str]:
+    """The order of the terms of a vector: without a factor, with a number, with a name."""
+    number = term.as_coeff_Mul()[0]
+    return bool(number.is_negative), len(term.free_symbols), bool(abs(number) != 1), str(term)
+
+
+__all__ = ["InVectors", "Vector", "in_vectors", "is_vector", "simplest_first"]

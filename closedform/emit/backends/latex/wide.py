@@ -10,12 +10,13 @@ the same on every machine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations, count, permutations
+from itertools import combinations, count, groupby, permutations
 from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.factoring import factored
+from closedform.emit.backends.latex.equations import runs
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
 from closedform.emit.backends.latex.names import TUPLE, element
 from closedform.model.functions import real
@@ -66,7 +67,20 @@ class Lines:
         return self._widths[value]
 
     def equations(self, left: str, value: Any) -> list[Equation]:
-        """A value as one equation or, if it is too wide, as several."""
+        """A value as one equation or, if it is too wide, as several: the parts by their numbers."""
+        return self._in_order(self._equations(left, value))
+
+    def _in_order(self, rows: Sequence[Equation]) -> list[Equation]:
+        names = {self.printer.math(s): k for k, s in enumerate(self.parts.values())}
+        done: list[Equation] = []
+        for are_parts, group in groupby(runs(rows), lambda run: run[0][0] in names):
+            found = list(group)
+            if are_parts:
+                found.sort(key=lambda run: names[run[0][0]])
+            done += [row for run in found for row in run]
+        return done
+
+    def _equations(self, left: str, value: Any) -> list[Equation]:
         if isinstance(value, str):
             return [(left, value)]
         if isinstance(value, list | tuple):

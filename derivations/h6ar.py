@@ -31,8 +31,11 @@ from closedform.derivations.h6ar_mechanism import (
     extended,
     half_gap,
     half_sums,
+    half_sums_step,
     in_space,
     midpoint,
+    mu2,
+    mu23,
     named,
     outer_jacobian,
     pair,
@@ -125,25 +128,25 @@ d.step(
     proves="The published coordinates of both tips are those of the product of the frames.",
     equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
 )
+half_sums_step(d, q)
 
 # Yaw, roll and the invariant point
 
 apart = (right - left) / 2
 mean = half_gap(m)
 invariant = arm(m, theta2A, theta23A)
-off, fore = invariant - midpoint(m), sqrt(m.L2**2 + m.a3**2)
+off, fore = arm(m, mu2, mu23) - midpoint(m), sqrt(m.L2**2 + m.a3**2)
 short_upper, short_fore = m.L1 * (1 - cos(alpha)), fore * (1 - cos(beta))
-bent = (m.L2 * sin(theta23A - theta2A) + m.a3 * cos(theta23A - theta2A)) / fore
+bent = (m.L2 * sin(mu23 - mu2) + m.a3 * cos(mu23 - mu2)) / fore
 leaning = d.step(
     "Yaw and roll",
     "Eqs. (3) to (5) compare the tips: d tan(psi) is half the distance by which the right tip is "
-    "ahead of the left one, and d tan(phi) half the distance by which it is above.  In terms of "
-    "the averages and half differences of the angles, both are linear in the sines of the half "
-    "differences.",
+    "ahead of the left one, and d tan(phi) half the distance by which it is above.  Both are "
+    "linear in the sines of the half differences of the angles.",
     {r"\Delta_a = d \tan\psi": mean[0], r"\Delta_h = d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
     proves=(
-        "Half the difference of the tips is as stated, in terms of the averages and half "
+        "Half the difference of the tips is as stated, in terms of the half sums and half "
         "differences of the angles."
     ),
     equal=[(apart.xreplace(halves), mean)],
@@ -152,10 +155,12 @@ leaning = d.step(
 d.step(
     "Invariant point",
     "The paper gives this point twice: as the middle of the tips in (6), and by the averages of "
-    "the angles in (7).  This model uses (7).  In (6) the links are shortened by the cosines of "
-    "the half differences.  The line between the two points is one side of a triangle, and the "
-    "other sides are e_1 and e_2.  So the points are at most e_1 + e_2 apart, which is of second "
-    "order in the half differences.",
+    "the angles in (7).  This model uses (7).  The average theta2A on the shorter arc is mu2 if "
+    "cos(delta_2) is not negative, and half a turn from it otherwise; theta23A likewise.  In (6) "
+    "the links are shortened by the cosines of the half differences.  If the averages are the half "
+    "sums, the line between the two points is one side of a triangle, and the other sides are e_1 "
+    "and e_2.  So the points are at most e_1 + e_2 apart, which is of second order in the half "
+    "differences.",
     {
         "(r, h)_I": invariant,
         "(r, h)_6": midpoint(m),
@@ -172,7 +177,7 @@ d.step(
     equal=[
         (((right + left) / 2).xreplace(halves), midpoint(m)),
         (off.dot(off), short_upper**2 + short_fore**2 + 2 * short_upper * short_fore * bent),
-        (1 - bent**2, (straight(m.L2, m.a3, pair(theta2A), pair(theta23A)) / fore) ** 2),
+        (1 - bent**2, (straight(m.L2, m.a3, pair(mu2), pair(mu23)) / fore) ** 2),
     ],
 )
 
@@ -230,8 +235,8 @@ def averages(p: Program) -> tuple[Pair, Pair]:
     upper, fore = (
         Pair(c=p.let(f"c{n}", side * cos(mean)), s=p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
-            ("2A", means[theta2A], means[alpha]),
-            ("23A", means[theta23A], means[beta]),
+            ("2A", means[mu2], means[alpha]),
+            ("23A", means[mu23], means[beta]),
         )
         for side in [p.let(f"side{n}", sign_of(cos(half)))]
     )
@@ -328,7 +333,7 @@ d.function(
 # Velocity
 
 outer = outer_jacobian(m, q, m.d / cos(psi), wrist)
-by_half = sp.Matrix([means[s] for s in (theta2A, theta23A, alpha, beta)]).jacobian(q)
+by_half = sp.Matrix([means[s] for s in (mu2, mu23, alpha, beta)]).jacobian(q)
 gap = real("ahead"), real("higher")
 side2A, side23A = real("side2A"), real("side23A")
 inner = sp.zeros(6)
@@ -345,7 +350,7 @@ outward = reach(m, posture.upper, posture.fore, along, across)[0]
 
 
 with_wrist = straight(along, across, posture.upper, posture.fore)
-without = straight(m.L2, m.a3, posture.upper, posture.fore)
+without = straight(m.L2, m.a3, pair(mu2), pair(mu23))
 area = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
 factors_of, position = factors_shown(d, m, q, m.d / cos(psi), wrist)
 d.step(
@@ -519,8 +524,8 @@ def together(first: sp.Expr, second: sp.Expr) -> sp.Expr:
 
 
 turned_halves = {
-    theta2A: theta2A + together(*upper_turns),
-    theta23A: theta23A + together(*fore_turns),
+    mu2: theta2A + together(*upper_turns),
+    mu23: theta23A + together(*fore_turns),
 }
 waist_turn = p.let("waist_turn", choose(at_limit, waist_rate * sum(turns), 0))
 joints = {theta1: theta1 + atan2(waist_turn, sp.S.One), theta: theta} | {

@@ -23,6 +23,7 @@ from closedform.derivations.h6ar_mechanism import (
     extended,
     half_gap,
     half_sums,
+    half_sums_step,
     in_space,
     midpoint,
     named,
@@ -106,11 +107,11 @@ middle, apart = (right + left) / 2, (right - left) / 2
 means, halves = half_sums(q), by_half_sums(q)
 midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
 tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
+half_sums_step(d, q)
 d.step(
     "Middle and distance of the tips",
-    "The middle of the tips and half their difference are written in half sums A and half "
-    "differences of the angles of both arms (alpha for the upper arms, beta for the fore-arms).  "
-    "In this form no digits of the difference cancel if the tips are close together.",
+    "Each tip is the end of an arm of two links.  The middle of the tips and half their difference "
+    "follow from the half sums and half differences of the angles.",
     {
         "(r, h)_R": right,
         "(r, h)_L": left,

@@ -33,6 +33,7 @@ from closedform import (
 pair = Pair.of
 theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")
+mu2, mu23 = real("mu2"), real("mu23")
 x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
 target = (x, y, z, psi, phi, pitch)
 L_theta, L_2W, a_3W = real("L_theta"), real("L_2W"), real("a_3W")
@@ -91,7 +92,7 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
         "a3": (50, "offset of the fore-arms at the elbow"),
         "d1": (500, "height of the shoulders"),
         "d": (100, "distance of each arm from the mid-plane"),
-        "gs": (20, "half the distance of the gears of the wrist, g_s"),
+        "gs": (20, "half the distance of the gears of the wrist"),
         "al": (120, "length of the links of the wrist, which the paper writes as a product"),
         "loff": (50, "distance from the gears to the pitch joint"),
         "lp": (100, "distance from the pitch joint to the tip"),
@@ -110,6 +111,8 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
         d.write(f"theta23{arm}", rf"\theta_{{23}}^{arm}", f"absolute angle of the {side} fore-arm")
     d.write("theta2A", r"\theta_2^A", "average of the angles of the upper arms")
     d.write("theta23A", r"\theta_{23}^A", "average of the absolute angles of the fore-arms")
+    d.write("mu2", r"\mu_2", "half the sum of the angles of the upper arms")
+    d.write("mu23", r"\mu_{23}", "half the sum of the absolute angles of the fore-arms")
     d.write("alpha", r"\delta_2", "half the difference of the angles of the upper arms")
     d.write("beta", r"\delta_{23}", "half the difference of the absolute angles of the fore-arms")
     d.write("f", meaning="length of a fore-arm, from the elbow to the tip")
@@ -170,25 +173,44 @@ def in_space(m: Dimensions, waist: Pair, planar: sp.Matrix, side: sp.Expr) -> sp
 
 
 def half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
-    """Averages and half differences of the arms' angles, in terms of the joints."""
+    """Half sums and half differences of the arms' angles, in terms of the joints."""
     upper, bend = (q.theta2R + q.theta2L) / 2, (q.theta3R + q.theta3L) / 2
     apart, bent = (q.theta2R - q.theta2L) / 2, (q.theta3R - q.theta3L) / 2
-    return {theta2A: upper, theta23A: upper + bend, alpha: apart, beta: apart + bent}
+    return {mu2: upper, mu23: upper + bend, alpha: apart, beta: apart + bent}
 
 
 def by_half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
-    """The joints of the arms in terms of averages and half differences."""
+    """The joints of the arms in terms of half sums and half differences."""
     return {
-        q.theta2R: theta2A + alpha,
-        q.theta2L: theta2A - alpha,
-        q.theta3R: theta23A + beta - theta2A - alpha,
-        q.theta3L: theta23A - beta - theta2A + alpha,
+        q.theta2R: mu2 + alpha,
+        q.theta2L: mu2 - alpha,
+        q.theta3R: mu23 + beta - mu2 - alpha,
+        q.theta3L: mu23 - beta - mu2 + alpha,
     }
+
+
+def half_sums_step(d: Derivation, q: Joints) -> None:
+    """Define the half sums and half differences."""
+    means, halves = half_sums(q), by_half_sums(q)
+    d.step(
+        "Half sums and half differences",
+        "The arms are compared in half sums (mu) and half differences (delta) of their angles.  In "
+        "this form no digits cancel in the difference of the tips if these are close together.",
+        {
+            r"\mu_2": means[mu2],
+            r"\mu_{23}": means[mu23],
+            r"\delta_2": means[alpha],
+            r"\delta_{23}": means[beta],
+        },
+        proves="The angles of the right arm are the half sums plus the half differences, and those "
+        "of the left arm are the half sums minus them.",
+        equal=[(joint, e.subs(means, simultaneous=True)) for joint, e in halves.items()],
+    )
 
 
 def half_gap(m: Dimensions) -> sp.Matrix:
     """Half the distances by which the right tip is ahead of the left one and above it."""
-    upper, fore = pair(theta2A), pair(theta23A)
+    upper, fore = pair(mu2), pair(mu23)
     return sp.Matrix(
         [
             -m.L1 * upper.s * sin(alpha) + (m.L2 * fore.c - m.a3 * fore.s) * sin(beta),
@@ -199,8 +221,8 @@ def half_gap(m: Dimensions) -> sp.Matrix:
 
 def midpoint(m: Dimensions) -> sp.Matrix:
     """The middle of the tips in the mid-plane."""
-    shoulder = m.L1 * pair(theta2A).unit
-    return cos(alpha) * shoulder + cos(beta) * (arm(m, theta2A, theta23A) - shoulder)
+    shoulder = m.L1 * pair(mu2).unit
+    return cos(alpha) * shoulder + cos(beta) * (arm(m, mu2, mu23) - shoulder)
 
 
 def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr, d: sp.Expr):

@@ -43,7 +43,7 @@ typedef struct {
     real_t a3; /* offset of the fore-arms at the elbow, in m (example; the paper gives no dimensions) */
     real_t d1; /* height of the shoulders, in m (example; the paper gives no dimensions) */
     real_t d; /* distance of each arm from the mid-plane, in m (example; the paper gives no dimensions) */
-    real_t gs; /* half the distance of the gears of the wrist, g_s, in m (example; the paper gives no dimensions) */
+    real_t gs; /* half the distance of the gears of the wrist, in m (example; the paper gives no dimensions) */
     real_t al; /* length of the links of the wrist, which the paper writes as a product, in m (example; the paper gives no dimensions) */
     real_t loff; /* distance from the gears to the pitch joint, in m (example; the paper gives no dimensions) */
     real_t lp; /* distance from the pitch joint to the tip, in m (example; the paper gives no dimensions) */

@@ -107,7 +107,7 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
  * @property {number} [a3] offset of the fore-arms at the elbow, in m; default 0.05 (example; the paper gives no dimensions)
  * @property {number} [d1] height of the shoulders, in m; default 0.5 (example; the paper gives no dimensions)
  * @property {number} [d] distance of each arm from the mid-plane, in m; default 0.1 (example; the paper gives no dimensions)
- * @property {number} [gs] half the distance of the gears of the wrist, g_s, in m; default 0.02 (example; the paper gives no dimensions)
+ * @property {number} [gs] half the distance of the gears of the wrist, in m; default 0.02 (example; the paper gives no dimensions)
  * @property {number} [al] length of the links of the wrist, which the paper writes as a product, in m; default 0.12 (example; the paper gives no dimensions)
  * @property {number} [loff] distance from the gears to the pitch joint, in m; default 0.05 (example; the paper gives no dimensions)
  * @property {number} [lp] distance from the pitch joint to the tip, in m; default 0.1 (example; the paper gives no dimensions)

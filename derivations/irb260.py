@@ -125,10 +125,9 @@ d.explain(
         r"\xi_4'": "twist of a joint in the present posture",
         r"\xi_5": "twist of a joint at home",
         r"\xi_5'": "twist of a joint in the present posture",
-        r"r_{\mathrm{A}}": "root of a factor of Heron's formula",
-        r"r_{\mathrm{B}}": "root of a factor of Heron's formula",
-        r"r_{\mathrm{C}}": "root of a factor of Heron's formula",
-        r"r_{\mathrm{S}}": "root of a factor of Heron's formula",
+        **dict.fromkeys("ABCS", "factor of Heron's formula"),
+        "L": "distance of the wrist from the shoulder",
+        "J_m": "derivative of (x, y, z, yaw) with respect to the motors",
         "v_1": "component of v",
         "w_1": "component of w",
         "v_2": "component of v",
@@ -321,8 +320,8 @@ d.step(
     "Body Jacobian and task Jacobian",
     "The body Jacobian gives the same twist in the frame of the hand.  The task Jacobian is the "
     "derivative of (x, y, z, yaw); its first three rows are the velocity of the origin of the "
-    "hand, v + omega × p.",
-    {"J_b": J_body, "J": J},
+    "hand, v + omega × p.  J_m is the derivative with respect to the motors.",
+    {"J_b": J_body, "J": J, "J_m = J M": J_motors},
     proves=(
         "Each column of the body Jacobian is the twist that belongs to the derivative of the "
         "pose, in the frame of the hand; the rows of the task Jacobian are v + omega × p and the "
@@ -409,6 +408,7 @@ d.function(
     "Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.",
     {"q": q},
     {"J": J_motors},
+    equation="J_m",
 )
 d.function("determinant", "Determinant of the task Jacobian.", {"q": q}, {"det": det})
 d.function(

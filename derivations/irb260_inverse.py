@@ -46,15 +46,25 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     triangle = sides.lemma((elbow, alpha), reach)
     folded = p.vanishes("folded", reach, size, "the wrist is on the shoulder", free=(theta2,))
     no_link = p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
-    turret = linear_pair(theta1, s1, c1)
+    turret = replace(
+        linear_pair(theta1, s1, c1),
+        plainly={theta1: choose(on_axis, 0, atan2(-side * px, side * py))},
+        roles=(("x", theta1), ("f", -side * px), ("g", side * py)),
+    )
     shoulder = linear_pair(theta2, u, h)
-    hand = linear_pair(theta5, sin(psi) * c1 - cos(psi) * s1, cos(psi) * c1 + sin(psi) * s1)
+    hand = replace(
+        linear_pair(theta5, sin(psi) * c1 - cos(psi) * s1, cos(psi) * c1 + sin(psi) * s1),
+        plainly={theta5: psi - theta1},
+        roles=(("x", theta1 + theta5), ("f", sin(psi)), ("g", cos(psi))),
+    )
     solution = {
         theta1: turret[theta1],
         theta2: choose(folded, 0, shoulder[theta2] - choose(no_link, 0, triangle[alpha])),
         theta3: choose(no_link, -pi / 2, triangle[elbow] - pi / 2),
         theta5: hand[theta5],
     }
+    span = real("L")
+    roots = {real(f"r{k}", nonnegative=True): sqrt(real(k, nonnegative=True)) for k in "SABC"}
     told_elbow = replace(
         triangle,
         solution={theta3: triangle[elbow] - pi / 2},
@@ -94,25 +104,27 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     )
     d.step(
         "Inverse: the elbow and the shoulder",
-        "The wrist is u ahead of the shoulder and h above it.  The two arms and the line between "
-        "these joints form a triangle.  In it the angle of the elbow is theta3 + 90 degrees, so "
+        "The wrist is u ahead of the shoulder and h above it.  The two arms and the line of "
+        "length L between these joints form a triangle.  S, A, B and C are the factors of Heron's "
+        "formula for its area.  In it the angle of the elbow is theta3 + 90 degrees, so "
         "elbow_up (sigma_elbow = 1) means cos(theta3) >= 0, as at home, and elbow_down means "
         "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
         "free; we return 0.",
         {
-            r"r_{\mathrm{S}}^2": l3 + l4 + sqrt(u**2 + h**2),
-            r"r_{\mathrm{A}}^2": l3 + l4 - sqrt(u**2 + h**2),
-            r"r_{\mathrm{B}}^2": l3 - l4 + sqrt(u**2 + h**2),
-            r"r_{\mathrm{C}}^2": l4 - l3 + sqrt(u**2 + h**2),
-            r"\theta_3": triangle[elbow] - pi / 2,
-            r"\alpha": triangle[alpha],
+            "L": sqrt(u**2 + h**2),
+            "S": l3 + l4 + span,
+            "A": l3 + l4 - span,
+            "B": l3 - l4 + span,
+            "C": l4 - l3 + span,
+            r"\theta_3": triangle[elbow].xreplace(roots) - pi / 2,
+            r"\alpha": triangle[alpha].xreplace(roots),
             r"\theta_2": shoulder[theta2] - alpha,
         },
         solves={"ik": [theta2, theta3]},
     )
     d.step(
         "Inverse: the hand",
-        "theta5 is the yaw minus the turn of the turret, computed by sine and cosine.",
+        "theta5 is the yaw minus the turn of the turret.",
         {r"\theta_5": r"\psi - \theta_1"},
         solves={"ik": [theta5]},
     )

@@ -200,6 +200,8 @@ for name, meaning in (
 ):
     d.write(name, meaning=meaning)
 d.write("r_P", "r_P", "distance of P from AB")
+d.write("rP", "r_P", same="r_P")
+d.write("rP2", "r_P^2", same="r_P")
 d.explain(
     {
         r"\rho": "distance of P from AB, with a sign",
@@ -221,10 +223,10 @@ d.explain(
         r"F_\psi": "polynomial that vanishes on the curve of one psi",
         r"\alpha": "abbreviation, for the leg over A",
         r"\beta": "abbreviation, for the leg over B",
-        "N_a": "measure of how far leg AC is from being stretched",
-        "M_a": "measure of how far leg AC is from being folded",
-        "N_b": "measure of how far leg BD is from being stretched",
-        "M_b": "measure of how far leg BD is from being folded",
+        "N_c": "measure of how far leg AC is from being stretched",
+        "M_c": "measure of how far leg AC is from being folded",
+        "N_d": "measure of how far leg BD is from being stretched",
+        "M_d": "measure of how far leg BD is from being folded",
     }
 )
 d.write("P_r", r"\rho", same="rho")

@@ -72,7 +72,7 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
     base2, base3, elbow4, elbow5 = (real(name) for name in ("base2", "base3", "elbow4", "elbow5"))
 
     w = Program()
-    r2 = w.let("r2", x**2 + z**2, nonnegative=True)
+    r2 = w.let("rP2", x**2 + z**2, nonnegative=True)
     square_c = w.let("square_c", r2 + y**2, nonnegative=True)
     square_d = w.let("square_d", r2 + (y - L0) ** 2, nonnegative=True)
     squares = list(w.body)
@@ -87,7 +87,7 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
     )
     inside = Program([*squares, *(s for s in w.body if isinstance(s, Bound))])
     size = L0 + L1 + L2
-    r = w.let("r", sqrt(r2), nonnegative=True)
+    r = w.let("rP", sqrt(r2), nonnegative=True)
     on_axis = w.vanishes("on_axis", r, size, "P is on the axis", free=(theta1,))
     at_a = w.vanishes("at_A", r + sp.Abs(y), size, "P is at A", free=(theta2,))
     at_b = w.vanishes("at_B", r + sp.Abs(y - L0), size, "P is at B", free=(theta3,))
@@ -110,6 +110,8 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
         sp.Abs(bars_at_p((y * (y - L0) + r2, tau * r * L0), *legs)),
         4 * L2**2 * square_c * square_d,
         "C, D and P are in line, or C and D coincide",
+        name=r"|\overrightarrow{CP} \times \overrightarrow{DP}|",
+        scale_name="L_2^2",
         missed=sum(
             sp.Max(0, sqrt(square) - L1 - L2, sp.Abs(L1 - L2) - sqrt(square))
             for square in (square_c, square_d)
@@ -163,16 +165,16 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
     theta1, _, _, theta4, theta5 = loop.angles
     x, y, z = loop.p
 
-    def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict[str, sp.Expr]:
+    def spelled(leg: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict[str, sp.Expr]:
         """The formulas of one leg: distance of P from its pivot, N, M and the angle of its bar."""
-        N, M = (real(f"{n}_{name}", nonnegative=True) for n in "NM")
+        N, M = (real(f"{n}_{leg}", nonnegative=True) for n in "NM")
+        name, joint = {"c": ("a", 2), "d": ("b", 3)}[leg]
         distance = real(name) ** 2
         return {
             f"{name}^2": square,
-            f"N_{name}": (L1 + L2) ** 2 - distance,
-            f"M_{name}": distance - (L1 - L2) ** 2,
-            rf"\theta_{ {'a': 2, 'b': 3}[name] }": atan2(tau * real("r_P"), along)
-            - Triangle(L1, L2, sign, N, M).base,
+            f"N_{leg}": (L1 + L2) ** 2 - distance,
+            f"M_{leg}": distance - (L1 - L2) ** 2,
+            rf"\theta_{joint}": atan2(tau * real("r_P"), along) - Triangle(L1, L2, sign, N, M).base,
         }
 
     d.step(
@@ -186,8 +188,8 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
         {
             "r_P": sqrt(x**2 + z**2),
             r"\theta_1": turn[theta1],
-            **spelled("a", y**2 + real("r_P") ** 2, y, sigma2),
-            **spelled("b", (y - L0) ** 2 + real("r_P") ** 2, y - L0, sigma3),
+            **spelled("c", y**2 + real("r_P") ** 2, y, sigma2),
+            **spelled("d", (y - L0) ** 2 + real("r_P") ** 2, y - L0, sigma3),
         },
         uses=[loop.step],
         solves={"ik": ()},
@@ -203,7 +205,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
         "is SINGULAR if the sine is less than 2^-10.  The inverse computes the cross product of "
         "the bars without their angles, from the products of each bar with the line from its "
         "pivot to P.  The inner product of AP and CP is half of AP^2 - L1^2 + L2^2, and their "
-        "cross product is half the root of N_a M_a, with the sign of the leg.",
+        "cross product is half the root of N_c M_c, with the sign of the leg.",
         {
             r"\overrightarrow{AP}": ap,
             r"\overrightarrow{BP}": bp,

@@ -1076,8 +1076,8 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t3 = L2 * 2.0
     t4 = -(ops.feasibility * (t2 * (L1 * 2.0 + t3)))
     t5 = t2 * t2
-    r2 = x * x + z * z
-    square_c = r2 + y * y
+    rP2 = x * x + z * z
+    square_c = rP2 + y * y
     t6 = t5 - square_c
     t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t8 = L1 - L2
@@ -1086,49 +1086,49 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t11 = t8 * t8
     t12 = square_c - t11
     t13 = y - L0
-    square_d = r2 + t13 * t13
+    square_d = rP2 + t13 * t13
     t14 = t5 - square_d
     t15 = square_d - t11
     t16 = (t4 <= t6) & (t10 <= t12) & (t4 <= t14) & (t10 <= t15)
     unreachable = ops.opposite(t16)
     failed = invalid | unreachable
-    r = ops.sqrt(r2)
+    rP = ops.sqrt(rP2)
     t17 = ops.vanishing * (L0 + t2)
-    on_axis = r <= t17
+    on_axis = rP <= t17
     t18 = ops.opposite(failed)
     t19 = t18 & ops.opposite(on_axis)
     t20 = ops.select(on_axis, 0.0, ops.atan2(z, ops.select(t19, -x, 1.0)))
     t21 = ops.select(failed, ops.nan, ops.wrap_cut(t20))
-    at_A = r + ops.abs(y) <= t17
+    at_A = rP + ops.abs(y) <= t17
     no_link_c = L1 * L2 <= t5 * ops.vanishing
     M_c = ops.max(t12, 0.0)
     N_c = ops.max(t6, 0.0)
     ahead_c = ops.select(no_link_c, 1.0, t2 * M_c + N_c * t8)
     t22 = t18 & ops.opposite(at_A)
-    at_B = r + ops.abs(t13) <= t17
+    at_B = rP + ops.abs(t13) <= t17
     t23 = t18 & ops.opposite(at_B)
-    r_2 = ops.sqrt(ops.select(t22 | t23, r2, 1.0))
-    t24 = ahead_c * r_2
+    rP_2 = ops.sqrt(ops.select(t22 | t23, rP2, 1.0))
+    t24 = ahead_c * rP_2
     t25 = ops.opposite(no_link_c)
     t26 = N_c * M_c
     t27 = t3 * ops.sqrt(ops.select(t22 & t25, t26, 1.0))
     beyond_c = ops.select(no_link_c, 0.0, t27)
     t28 = y * beyond_c
     t29 = y * ahead_c
-    t30 = r_2 * beyond_c
+    t30 = rP_2 * beyond_c
     t31 = ops.atan2(t24 - t28, ops.select(t22, t29 + t30, 1.0))
     t32 = ops.select(at_A, 0.0, t31)
     t33 = ops.select(failed, ops.nan, ops.wrap_cut(t32))
     M_d = ops.max(t15, 0.0)
     N_d = ops.max(t14, 0.0)
     ahead_d = ops.select(no_link_c, 1.0, t2 * M_d + t8 * N_d)
-    t34 = ahead_d * r_2
+    t34 = ahead_d * rP_2
     t35 = N_d * M_d
     t36 = t3 * ops.sqrt(ops.select(t23 & t25, t35, 1.0))
     beyond_d = ops.select(no_link_c, 0.0, t36)
     t37 = t13 * beyond_d
     t38 = t13 * ahead_d
-    t39 = r_2 * beyond_d
+    t39 = rP_2 * beyond_d
     t40 = ops.atan2(t34 - t37, ops.select(t23, t38 + t39, 1.0))
     t41 = ops.select(at_B, 0.0, t40)
     t42 = ops.select(failed, ops.nan, ops.wrap_cut(t41))
@@ -1152,9 +1152,9 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t58 = ops.sqrt(t26)
     t59 = ops.sqrt(t35)
     t60 = t58 * t59
-    t61 = L0 * r
+    t61 = L0 * rP
     t62 = (t57 + t60) * t61
-    t63 = r2 + y * t13
+    t63 = rP2 + y * t13
     t64 = inner_d * t58
     t65 = inner_c * t59
     t66 = t63 * (t64 - t65)
@@ -1275,15 +1275,15 @@ def _workspace_contains(ops, x, y, z, L0, L1, L2):
     t2 = L1 + L2
     t3 = ops.feasibility * (t2 * (L1 * 2.0 + L2 * 2.0))
     t4 = t2 * t2
-    r2 = x * x + z * z
-    square_c = r2 + y * y
+    rP2 = x * x + z * z
+    square_c = rP2 + y * y
     t5 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t6 = L1 - L2
     t7 = ops.feasibility * (t2 * (t5 + 2.0 * ops.abs(t6)))
     t8 = t6 * t6
     t9 = (-t3 <= t4 - square_c) & (-t7 <= square_c - t8)
     t10 = y - L0
-    square_d = r2 + t10 * t10
+    square_d = rP2 + t10 * t10
     t11 = t9 & (-t3 <= t4 - square_d) & (-t7 <= square_d - t8)
     return (
         ops.opposite(invalid | ops.opposite(t11)),

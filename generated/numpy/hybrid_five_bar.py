@@ -1117,11 +1117,11 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 
 def _ik(x, y, z, L0, L1, L2):
-    r2 = x * x + z * z
-    r = np.sqrt(r2)
+    rP2 = x * x + z * z
+    rP = np.sqrt(rP2)
     t1 = L1 + L2
     t2 = _runtime.VANISHING * (L0 + t1)
-    on_axis = r <= t2
+    on_axis = rP <= t2
     t3 = _runtime.select(on_axis, 0.0, np.arctan2(z, -x))
     t4 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t5 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
@@ -1132,7 +1132,7 @@ def _ik(x, y, z, L0, L1, L2):
     t7 = L2 * 2.0
     t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7))
     t9 = t1 * t1
-    square_c = r2 + y * y
+    square_c = rP2 + y * y
     t10 = t9 - square_c
     t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t12 = L1 - L2
@@ -1142,7 +1142,7 @@ def _ik(x, y, z, L0, L1, L2):
     t15 = t12 * t12
     t16 = square_c - t15
     t17 = y - L0
-    square_d = r2 + t17 * t17
+    square_d = rP2 + t17 * t17
     t18 = t9 - square_d
     t19 = square_d - t15
     del t15
@@ -1153,7 +1153,7 @@ def _ik(x, y, z, L0, L1, L2):
     t21 = _runtime.poison(invalid | unreachable)
     t22 = _runtime.wrap_cut(t3) + t21
     del t3
-    at_A = r + np.abs(y) <= t2
+    at_A = rP + np.abs(y) <= t2
     no_link_c = L1 * L2 <= t9 * _runtime.VANISHING
     del t9
     M_c = np.maximum(t16, 0.0)
@@ -1161,24 +1161,24 @@ def _ik(x, y, z, L0, L1, L2):
     N_c = np.maximum(t10, 0.0)
     del t10
     ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t12)
-    t23 = ahead_c * r
+    t23 = ahead_c * rP
     t24 = np.sqrt(N_c * M_c)
     del M_c, N_c
     beyond_c = _runtime.select(no_link_c, 0.0, t7 * t24)
     t25 = y * beyond_c
     t26 = y * ahead_c
     del ahead_c
-    t27 = r * beyond_c
+    t27 = rP * beyond_c
     del beyond_c
     t28 = _runtime.select(at_A, 0.0, np.arctan2(t23 - t25, t26 + t27))
     t29 = _runtime.wrap_cut(t28) + t21
-    at_B = r + np.abs(t17) <= t2
+    at_B = rP + np.abs(t17) <= t2
     M_d = np.maximum(t19, 0.0)
     del t19
     N_d = np.maximum(t18, 0.0)
     del t18
     ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t12 * N_d)
-    t30 = ahead_d * r
+    t30 = ahead_d * rP
     t31 = np.sqrt(N_d * M_d)
     del M_d, N_d
     beyond_d = _runtime.select(no_link_c, 0.0, t7 * t31)
@@ -1186,7 +1186,7 @@ def _ik(x, y, z, L0, L1, L2):
     t32 = t17 * beyond_d
     t33 = t17 * ahead_d
     del ahead_d
-    t34 = r * beyond_d
+    t34 = rP * beyond_d
     del beyond_d
     t35 = _runtime.select(at_B, 0.0, np.arctan2(t30 - t32, t33 + t34))
     t36 = _runtime.wrap_cut(t35) + t21
@@ -1216,11 +1216,11 @@ def _ik(x, y, z, L0, L1, L2):
     del t48
     t49 = inner_c * inner_d
     t50 = t24 * t31
-    t51 = L0 * r
-    del r
+    t51 = L0 * rP
+    del rP
     t52 = (t49 + t50) * t51
-    t53 = r2 + y * t17
-    del r2, t17
+    t53 = rP2 + y * t17
+    del rP2, t17
     t54 = inner_d * t24
     del inner_d, t24
     t55 = inner_c * t31
@@ -1357,8 +1357,8 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t4 = L1 + L2
     t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0))
     t6 = t4 * t4
-    r2 = x * x + z * z
-    square_c = r2 + y * y
+    rP2 = x * x + z * z
+    square_c = rP2 + y * y
     t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t8 = L1 - L2
     t9 = _runtime.FEASIBILITY * (t4 * (t7 + 2.0 * np.abs(t8)))
@@ -1368,8 +1368,8 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t11 = (-t5 <= t6 - square_c) & (-t9 <= square_c - t10)
     del square_c
     t12 = y - L0
-    square_d = r2 + t12 * t12
-    del r2, t12
+    square_d = rP2 + t12 * t12
+    del rP2, t12
     t13 = t11 & (-t5 <= t6 - square_d) & (-t9 <= square_d - t10)
     del square_d, t10, t11, t5, t6, t9
     t14 = np.logical_not(np.logical_not(t3) | np.logical_not(t13))

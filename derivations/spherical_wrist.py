@@ -50,7 +50,6 @@ q = (theta4, theta5, theta6)
 # Orientation by Euler angles
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
-d.write("flip", r"\varepsilon", "pi in the second branch, 0 in the first")
 d.explain(
     {
         "A_4": "motion from link to link",

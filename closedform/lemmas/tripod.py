@@ -147,10 +147,10 @@ def _close(m: Tripod, placed: Step) -> Step:
     m.d.loop = loop = m.d.step(
         "The loop",
         "In the plane of leg i, with the distance from the z axis and the height as coordinates, "
-        "its joint determines the near end b of the rod.  The corner of the hand is the far end.  "
-        "The rod keeps the distance of its ends.",
+        "its joint determines the near end b_i of the rod.  The corner of the hand is the far "
+        "end.  The rod keeps the distance of its ends.",
         {},
-        rows=[("i", "b", "length of the rod"), *ends],
+        rows=[("i", "b_i", "length of the rod"), *ends],
         uses=[placed],
     )
     m.d.step(

@@ -120,7 +120,7 @@ def four_parameters(robot: ModuleType) -> Any:
     d.arrow(end, end + 0.5 * across, width=1.2)
     d.label(end + 0.5 * across, "$x_i$")
     d.dimension(np.zeros(3), corner, "$d_i$")
-    d.dimension(corner, end, "$a_i$")
+    d.label(corner + 0.72 * (end - corner), "$a_i$")
     d.line([corner, corner + 0.6 * E], color="#6b6b6b", linestyle=(0, (2, 2)))
     d.angle(corner, E, Z, theta, r"$\theta_i$", radius=0.17, reference=0)
     d.line([end, end + 0.8 * Z], color="#6b6b6b", linestyle=(0, (2, 2)))
@@ -149,7 +149,7 @@ def euler(robot: ModuleType) -> Any:
     phi, theta, psi = np.radians([40, 35, 45])
     R = np.eye(3)
     letters = "xyz"
-    names: list[list[str]] = [[f"{a}" + "'" * k for a in letters] for k in range(4)]
+    names: list[list[str]] = [[f"{a}" + "\N{PRIME}" * k for a in letters] for k in range(4)]
     for k, (ax, axis, turn, name) in enumerate(
         zip(panels, (2, 1, 2), (phi, theta, psi), (r"\phi", r"\theta", r"\varphi"), strict=True)
     ):

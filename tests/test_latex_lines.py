@@ -114,19 +114,33 @@ def test_two_equal_arms_are_told_once() -> None:
     assert sum("r_R = " in t for t in texts) == sum("r_L = " in t for t in texts) == 1
 
 
-def test_lemmas_with_other_lengths_are_no_twins() -> None:
+def two_arms(lengths: tuple[str, str], names: tuple[str, str]) -> tuple[object, ...]:
+    """Two arms of two links; the last length of each, and what the names of each end in."""
     p = Program()
-    links = (real("l_1"), real("l_2"), real("l_3"))
     arms = []
-    for side, unknowns, lengths in (("R", "xy", links), ("L", "uv", (*links[:2], real("l_4")))):
-        ends = tuple(p.let(f"{k}_{side}", real(f"{k}0") ** 2) for k in "rh")
-        pair = tuple(real(f"{k}{side}") for k in unknowns)
-        sigma = p.let(f"sigma_{side}", real("tau"))
-        arms.append(two_link_arm(p, lengths, ends, pair, sigma, suffix=f"_{side}"))
+    for side, last, name in zip("RL", lengths, names, strict=True):
+        ends = tuple(p.let(f"{k}_{name}", real(f"{k}0") ** 2) for k in "rh")
+        pair = (real(f"theta2{side}"), real(f"theta3{side}"))
+        sigma = p.let(f"sigma_{name}", real("tau"))
+        links = (real("l_1"), real("l_2"), real(last))
+        arms.append(two_link_arm(p, links, ends, pair, sigma, suffix=f"_{name}"))
     flags = {s.symbol: s for s in p.body if isinstance(s, Vanishes)}
     usual = dict.fromkeys(flags, sp.false)
     values = {s.symbol: substitute(s.value, usual) for s in p.body if isinstance(s, Let | Bound)}
-    assert twins(arms, values, flags) is None
+    for arm in arms:
+        angles = {**arm.solution, **arm.plainly}
+        values |= {u: substitute(e, usual) for u, e in angles.items()}
+    return twins(arms, values, flags), *arms
+
+
+def test_twins_are_found_by_what_their_names_stand_for() -> None:
+    found, one, other = two_arms(("l_3", "l_3"), ("a", "left_behind"))
+    assert found is not None and found.lemmas == (one, other) and found.indices == ("R", "L")
+    assert real("r_left_behind") in found.symbols.values()
+
+
+def test_lemmas_with_other_lengths_are_no_twins() -> None:
+    assert two_arms(("l_3", "l_4"), ("R", "L"))[0] is None
 
 
 def test_squares_of_a_sine_and_a_cosine_are_added() -> None:

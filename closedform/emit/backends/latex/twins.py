@@ -1,12 +1,13 @@
 """Two lemmas of an inverse that differ in names alone, such as those of two equal arms.
 
-What holds of both is told once, of part i; what differs is told of each.
+They are recognised by what their names stand for: another choice of symbols makes one value the
+other.  What holds of both is told once, of part i; what differs is told of each.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import combinations, pairwise
@@ -94,17 +95,13 @@ def _matched(
             continue
         symbols[one] = other
         if one in values and other in values:
-            pending += _corresponding(values[one], values[other])
+            pending += _corresponding(values[one], values[other], symbols, values.keys())
     alike = {s for s, t in symbols.items() if s in values and t in values}
     alike = {s for s in alike if values[s].xreplace(symbols) == values[symbols[s]]}
     indices = _difference(*(str(u.name) for u in unknowns[0]))
     if not indices or not {u for u, _ in unknowns} <= alike:
         return None
-    marks = {
-        s: t
-        for s, t in combinations(flags, 2)
-        if _differ_in_one_part(s, t) and _same_mark(flags[s], flags[t], symbols)
-    }
+    marks = {s: t for s, t in combinations(flags, 2) if _same_mark(flags[s], flags[t], symbols)}
     letters: dict[sp.Symbol, str] = {}
     for pair in symbols.items():
         shared = _shared_parts(*pair)
@@ -119,21 +116,59 @@ def _same_mark(one: Vanishes, other: Vanishes, symbols: Pairs) -> bool:
     return free and bool(one.value.xreplace(symbols) == other.value)
 
 
-def _corresponding(one: sp.Expr, other: sp.Expr) -> list[tuple[sp.Symbol, sp.Symbol]]:
-    """The symbols in which two expressions differ, if their names show which belong together."""
-    mine = sorted(one.free_symbols - other.free_symbols, key=str)
-    yours = sorted(other.free_symbols - one.free_symbols, key=str)
-    found = [(s, t) for s in mine for t in yours if _differ_in_one_part(s, t)]
-    whole = len(mine) == len(yours) == len(found) == len({t for _, t in found})
-    return found if whole else []
+def _corresponding(
+    one: sp.Expr, other: sp.Expr, names: Pairs, computed: Set[sp.Symbol]
+) -> list[tuple[sp.Symbol, sp.Symbol]]:
+    """The further symbols in which two values differ; what is given is the same in both."""
+    for found in renamings(one, other, names):
+        more = [(s, t) for s, t in found.items() if s not in names]
+        if all({s, t} <= computed for s, t in more):
+            return more
+    return []
 
 
-def _differ_in_one_part(one: sp.Symbol, other: sp.Symbol) -> bool:
-    """Whether names are the same but for a part between underscores: N_right and N_left."""
-    return bool(_shared_parts(one, other))
+def renamings(one: sp.Expr, other: sp.Expr, names: Pairs) -> Iterator[Pairs]:
+    """The other symbols for those of an expression that make it another one, ``names`` included.
+
+    Terms and factors that both have stay what they are.
+    """
+    if one.is_Symbol and other.is_Symbol:
+        taken = one in names or other in names.values()
+        if names.get(one, one) == other and (one in names or not taken):
+            yield names
+        elif not taken:
+            yield {**names, one: other}
+    elif one.func == other.func and len(one.args) == len(other.args):
+        if not one.args:
+            yield from [names] if one == other else []
+        elif one.is_Add or one.is_Mul:
+            mine = [a for a in one.args if a not in other.args]
+            yield from _in_any_order(mine, [a for a in other.args if a not in one.args], names)
+        else:
+            yield from _in_order(one.args, other.args, names)
+
+
+def _in_order(one: Sequence[sp.Expr], other: Sequence[sp.Expr], names: Pairs) -> Iterator[Pairs]:
+    if not one:
+        yield names
+        return
+    for found in renamings(one[0], other[0], names):
+        yield from _in_order(one[1:], other[1:], found)
+
+
+def _in_any_order(
+    one: Sequence[sp.Expr], other: Sequence[sp.Expr], names: Pairs
+) -> Iterator[Pairs]:
+    if not one:
+        yield names
+        return
+    for k, e in enumerate(other):
+        for found in renamings(one[0], e, names):
+            yield from _in_any_order(one[1:], [*other[:k], *other[k + 1 :]], found)
 
 
 def _shared_parts(one: sp.Symbol, other: sp.Symbol) -> str:
+    """What is left of two names without the part in which they differ: N of N_right and N_left."""
     a, b = str(one.name).split("_"), str(other.name).split("_")
     if len(a) != len(b) or sum(x != y for x, y in zip(a, b, strict=True)) != 1:
         return ""
@@ -146,4 +181,4 @@ def _difference(one: str, other: str) -> tuple[str, str] | None:
     return apart[0] if len(one) == len(other) and len(apart) == 1 else None
 
 
-__all__ = ["Twins", "twins"]
+__all__ = ["Twins", "renamings", "twins"]

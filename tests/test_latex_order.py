@@ -136,6 +136,13 @@ def test_entries_of_matrices_stand_behind_lengths() -> None:
     assert printer.math(real("R21") * a) == "a R_{21}"
 
 
+def test_terms_stand_in_the_order_of_the_letters_that_are_printed() -> None:
+    printer = Printer(set())
+    printer.written = {"beyond": r"\Delta_z", "width": r"\Delta_x"}
+    value = real("beyond") ** 2 + real("width") ** 2
+    assert printer.math(value) == r"\Delta_x^{2} + \Delta_z^{2}"
+
+
 def test_factors_in_a_sentence_are_one_formula(sheet: Sheet) -> None:
     prose = Prose(sheet.derivation)
     assert prose("the product l1 l2 of both") == r"the product $l_{1}\,l_{2}$ of both"

@@ -103,7 +103,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
         A direction comes before an angle to either side of it.
         """
-        renamed = {s: self._by_letter(s) for s in expr.free_symbols & self.names.keys()}
+        renamed = {s: self._by_letter(s) for s in expr.free_symbols if self._called(s)}
         if renamed:
             former = {new: old for old, new in renamed.items()}
             in_order = _ordered_terms(expr.xreplace(renamed), order or self.order)
@@ -118,9 +118,13 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             terms.sort(key=lambda term: not isinstance(term, sp.atan2))
         return terms
 
+    def _called(self, symbol: sp.Symbol) -> str:
+        """How a symbol is written if that does not follow from its name."""
+        return self.written.get(str(symbol.name)) or self.names.get(symbol, "")
+
     def _by_letter(self, symbol: sp.Symbol) -> sp.Symbol:
         """A symbol that SymPy sorts by what is printed for this one."""
-        letter = re.sub(r"\\(?:math[a-z]+|prime)|[\\{}^ ]", "", self.names[symbol])
+        letter = re.sub(r"\\(?:math[a-z]+|prime)|[\\{}^ ]", "", self._called(symbol))
         return sp.Symbol(letter, **symbol.assumptions0)
 
     # Products

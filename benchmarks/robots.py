@@ -24,7 +24,7 @@ from closedform.pipeline import run as pipeline
 from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.proof.prove import prove
-from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
+from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.new import InverseSearch, Script, new
 
 from .native import LOOP, compiled, processor, running

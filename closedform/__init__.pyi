@@ -17,11 +17,6 @@ from closedform.lemmas.arm_plane import arm_angle as arm_angle
 from closedform.lemmas.arm_plane import arm_plane as arm_plane
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
-from closedform.lemmas.coupled import coupled as coupled
-from closedform.lemmas.drives import parallelogram_drive as parallelogram_drive
-from closedform.lemmas.dyads import linkage as linkage
-from closedform.lemmas.guided import Guide as Guide
-from closedform.lemmas.guided import guided as guided
 from closedform.lemmas.in_reach import within_links as within_links
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.leeway import Carrying as Carrying
@@ -30,7 +25,6 @@ from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch
 from closedform.lemmas.legs import Strut as Strut
-from closedform.lemmas.linkage import Body as Body
 from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar
 from closedform.lemmas.links import remainder as remainder
@@ -38,14 +32,11 @@ from closedform.lemmas.links import slide as slide
 from closedform.lemmas.links import turn as turn
 from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
-from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWrist
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
-from closedform.lemmas.on_rod import on_rod as on_rod
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.planes import Plane as Plane
-from closedform.lemmas.platform import platform as platform
 from closedform.lemmas.quartic import OnCircle as OnCircle
 from closedform.lemmas.quartic import quartic as quartic
 from closedform.lemmas.rails import Rail as Rail
@@ -56,8 +47,6 @@ from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.sine_cosine import turned_back as turned_back
-from closedform.lemmas.slotted import Lever as Lever
-from closedform.lemmas.slotted import slotted as slotted
 from closedform.lemmas.spheres import three_spheres as three_spheres
 from closedform.lemmas.tangent import CoordinateWithin as CoordinateWithin
 from closedform.lemmas.tangent import LinkAtHeight as LinkAtHeight
@@ -68,8 +57,6 @@ from closedform.lemmas.tangent import Preferred as Preferred
 from closedform.lemmas.tangent import TwoTurns as TwoTurns
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.triangle import Triangle as Triangle
-from closedform.lemmas.tripod import tripod as tripod
-from closedform.lemmas.tripod_legs import Upright as Upright
 from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
@@ -80,6 +67,19 @@ from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.zyz import Reaching as Reaching
 from closedform.lemmas.zyz import zyz as zyz
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
+from closedform.loops.coupled import coupled as coupled
+from closedform.loops.drives import parallelogram_drive as parallelogram_drive
+from closedform.loops.dyads import linkage as linkage
+from closedform.loops.guided import Guide as Guide
+from closedform.loops.guided import guided as guided
+from closedform.loops.linkage import Body as Body
+from closedform.loops.on_rod import on_rod as on_rod
+from closedform.loops.parallel import parallel as parallel
+from closedform.loops.platform import platform as platform
+from closedform.loops.slotted import Lever as Lever
+from closedform.loops.slotted import slotted as slotted
+from closedform.loops.tripod import tripod as tripod
+from closedform.loops.tripod_legs import Upright as Upright
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws
 from closedform.mechanics.frames import adjoint as adjoint
@@ -156,7 +156,7 @@ from closedform.proof.checks.statements import Not as Not
 from closedform.proof.checks.statements import Rounded as Rounded
 from closedform.proof.checks.statements import Undecidable as Undecidable
 from closedform.proof.prove import prove as prove
-from closedform.scaffold.propose import propose as propose
+from closedform.scaffold.chains.propose import propose as propose
 
 generated: ModuleType
 

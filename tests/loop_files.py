@@ -10,8 +10,8 @@ import pytest
 
 from closedform import Derivation
 from closedform.cli.commands import main
-from closedform.scaffold.loop_file import read_loop
-from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops.file import read_loop
+from closedform.scaffold.loops.script import loop_script
 
 
 def script_of(name: str, text: str, folder: Path) -> str:

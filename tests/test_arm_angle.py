@@ -20,7 +20,7 @@ from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.chains.propose import NoChainError, propose
 
 R = sp.Rational
 TWISTS = (-pi / 2, pi / 2, pi / 2, -pi / 2, -pi / 2, pi / 2, 0)

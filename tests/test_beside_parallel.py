@@ -13,7 +13,7 @@ from chains import arm, printed, solved
 from sympy import pi
 
 from closedform.proof.prove import prove
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.chains.propose import NoChainError, propose
 
 
 def tenths(*lengths: int) -> list[sp.Rational]:

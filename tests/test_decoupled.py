@@ -10,8 +10,8 @@ from chains import arm, printed, solved
 from sympy import pi
 
 from closedform.proof.prove import prove
+from closedform.scaffold.chains.propose import NoChainError, propose
 from closedform.scaffold.new import new
-from closedform.scaffold.propose import NoChainError, propose
 
 H = sp.Rational(1, 2)
 GANTRY = [(0, pi / 2, None, pi / 2), (0, pi / 2, None, pi / 2), (0, 0, None, 0)]

@@ -6,11 +6,11 @@ from chains import arm
 from sympy import pi
 from sympy.combinatorics import Permutation, PermutationGroup
 
-from closedform.scaffold import degree
-from closedform.scaffold import propose as proposals
-from closedform.scaffold.chainlinks import singles
-from closedform.scaffold.degree import Solutions, solutions, solutions_of_few, steps
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.chains import degree
+from closedform.scaffold.chains import propose as proposals
+from closedform.scaffold.chains.chainlinks import singles
+from closedform.scaffold.chains.degree import Solutions, solutions, solutions_of_few, steps
+from closedform.scaffold.chains.propose import NoChainError, propose
 
 H = sp.Rational(1, 2)
 COUNTED = {

@@ -10,7 +10,7 @@ from chains import arm, printed, solved
 from sympy import pi
 
 from closedform.proof.prove import prove
-from closedform.scaffold.propose import propose
+from closedform.scaffold.chains.propose import propose
 
 WRIST = [(0, -pi / 2, 0), (0, pi / 2, 0), (0, 0, 0)]
 OFFSET = [(0, -pi / 2, 0), (0, pi / 2, 0), (1, pi / 2, 1), (-1, -pi / 2, 0)]

@@ -9,7 +9,7 @@ from loop_files import apart, derived, newton, read_script, script_of
 
 from closedform import Derivation, Guide, Paper, Slide, Stretch, Strut, guided
 from closedform.algebra.shapes import ShapeError
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 TRICEPT = (Path(__file__).parent / "held_out_loops" / "tricept.toml").read_text("utf-8")
 CRANKS = (

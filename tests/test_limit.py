@@ -14,10 +14,10 @@ from closedform.pipeline.store import Store
 from closedform.proof import prove as prove_module
 from closedform.scaffold import limit
 from closedform.scaffold import new as scaffold
+from closedform.scaffold.inputs.motors import motors_of
+from closedform.scaffold.inputs.tables import TableError, read_dh
 from closedform.scaffold.limit import LimitError, bounded, limited
-from closedform.scaffold.motors import motors_of
 from closedform.scaffold.new import InverseSearch, new
-from closedform.scaffold.tables import TableError, read_dh
 
 PLANAR = "a, alpha, d, theta\n1, 0, 0, theta1\n1, 0, 0, theta2\n"
 COUPLED = """\

@@ -14,7 +14,7 @@ import sympy as sp
 from loop_files import derived, script_of
 
 from closedform import plot
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
 MODES = {"watt": 4, "watt_two": 4, "klann": 4, "jansen": 8, "peaucellier": 8, "two_cranks": 4}

@@ -28,8 +28,8 @@ from closedform.lemmas.spheres import three_spheres
 from closedform.model.functions import Program
 from closedform.proof.links import prove_lemma
 from closedform.proof.require import ProofError
+from closedform.scaffold.inputs.tables import TableError
 from closedform.scaffold.new import new
-from closedform.scaffold.tables import TableError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 HANDS = ("five_bar", "delta", "linear_delta", "orthoglide", "spherical_five_bar", "rpr_planar")

@@ -9,10 +9,10 @@ import sympy as sp
 from test_urdf import arm_of
 
 from closedform.cli.commands import main
-from closedform.scaffold.mjcf import read_mjcf
+from closedform.scaffold.inputs.mjcf import read_mjcf
+from closedform.scaffold.inputs.tables import TableError
+from closedform.scaffold.inputs.tree import Choice
 from closedform.scaffold.new import new
-from closedform.scaffold.tables import TableError
-from closedform.scaffold.tree import Choice
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 

@@ -11,10 +11,10 @@ import pytest
 import sympy as sp
 from test_urdf import arm_of, turned
 
-from closedform.scaffold.mjcf import read_mjcf
+from closedform.scaffold.inputs.mjcf import read_mjcf
+from closedform.scaffold.inputs.tables import TableError
+from closedform.scaffold.inputs.tree import Choice
 from closedform.scaffold.new import new
-from closedform.scaffold.tables import TableError
-from closedform.scaffold.tree import Choice
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 

@@ -17,7 +17,7 @@ from closedform.emit.pages import pages, shared_files
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof
 from closedform.robots import Robot
-from closedform.scaffold.propose import propose
+from closedform.scaffold.chains.propose import propose
 
 LANGUAGES = ("numpy", "c", "js")
 ROOM = Rational(1, 2)

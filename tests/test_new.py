@@ -9,7 +9,7 @@ import pytest
 
 from closedform.cli.commands import main
 from closedform.pipeline import trial
-from closedform.scaffold.known import KnownMaker
+from closedform.scaffold.chains.known import KnownMaker
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 

@@ -11,7 +11,7 @@ from arms import OK, SINGULAR, UNREACHABLE, link, misses
 from chains import arm, printed, solved
 from sympy import pi
 
-from closedform.scaffold.propose import propose
+from closedform.scaffold.chains.propose import propose
 
 H = sp.Rational(1, 2)
 ARMS = {

@@ -15,8 +15,8 @@ from closedform.mechanics.arm import RowError, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
+from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import InverseSearch, new
-from closedform.scaffold.urdf import read_urdf
 
 ROMEO = Path(__file__).parent / "urdf" / "romeo_left_arm.urdf"
 

@@ -9,7 +9,7 @@ from loop_files import derived, newton, read_script, script_of
 from closedform import Derivation, Paper, Rail, plot, real
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import crosscheck, module_backend
-from closedform.lemmas.on_rails import on_rails
+from closedform.loops.on_rails import on_rails
 from closedform.robots import Robot
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)

@@ -10,7 +10,7 @@ from loop_files import derived, script_of
 from closedform import Crank, Derivation, Paper, Parallelogram, Stretch, on_rod, real
 from closedform.algebra.shapes import ShapeError
 from closedform.robots import Robot
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
 NAMES = ("loader", "minitaur")

@@ -11,7 +11,7 @@ from loop_files import derived, newton, read_script, script_of
 
 from closedform import Derivation, Paper, Parallelogram, Slide, platform, prove, real
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.held import LEFT_OUT
+from closedform.loops.held import LEFT_OUT
 from closedform.scaffold.new import new
 
 HANDS = ("delta", "linear_delta", "orthoglide")

@@ -9,7 +9,7 @@ from loop_files import derived, newton, read_script, script_of
 
 from closedform import Derivation, Paper, Plane, Rail, Slide, parallel, real
 from closedform.algebra.shapes import ShapeError
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
 TEXTS = {n: (FOLDER / f"{n}.toml").read_text("utf-8") for n in ("tripteron", "tilted_tripteron")}

@@ -12,10 +12,10 @@ from loop_files import derived, read_script, script_of
 from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import Backend, check_forward, crosscheck, module_backend
-from closedform.lemmas.platform import Platform, degree_in_plane
+from closedform.loops.platform import Platform, degree_in_plane
 from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 GUIDE = (Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md").read_text("utf-8")
 [STAGE] = re.findall(r"```toml stage.toml\n(.*?)```", GUIDE, re.DOTALL)

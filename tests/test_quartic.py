@@ -28,7 +28,7 @@ from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import Proof, prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.chains.propose import NoChainError, propose
 
 LINE, SIDE = {+1: "first", -1: "second"}, {+1: "left", -1: "right"}
 A, B, E = sp.symbols("a b e", real=True)

@@ -24,8 +24,8 @@ from closedform import (
 )
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import crosscheck, module_backend
-from closedform.scaffold.loop_script import DEGREES
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
+from closedform.scaffold.loops.script import DEGREES
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 L, H = 2.0, 1.0

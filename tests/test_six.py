@@ -9,7 +9,7 @@ from sympy import pi
 from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import propose
+from closedform.scaffold.chains.propose import propose
 
 H = sp.Rational(1, 2)
 WRIST = [(0, -pi / 2, 0), (0, pi / 2, 0), (0, 0, H)]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from loop_files import apart, derived, newton, read_script, script_of
 
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
 LINES = 40

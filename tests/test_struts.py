@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from loop_files import derived, script_of
 
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 GUIDE = Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md"
 [TRACKER] = re.findall(r"```toml tracker.toml\n(.*?)```", GUIDE.read_text("utf-8"), re.DOTALL)

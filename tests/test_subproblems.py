@@ -18,8 +18,8 @@ from closedform.mechanics.arm import Serial
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, propose
-from closedform.scaffold.recognise import recognised
+from closedform.scaffold.chains.propose import NoChainError, propose
+from closedform.scaffold.chains.recognise import recognised
 
 ROOM = sp.Rational(1, 2)
 WRIST = [(0, -pi / 2, ROOM), (0, pi / 2, 0), (0, 0, 0)]

@@ -13,7 +13,7 @@ from closedform import plot
 from closedform.algebra.shapes import ShapeError
 from closedform.cli.commands import main
 from closedform.robots import Robot
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 GUIDE = (Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md").read_text("utf-8")
 [FROM_FILE] = re.findall(r"```toml head.toml\n(.*?)```", GUIDE, re.DOTALL)

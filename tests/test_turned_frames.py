@@ -12,9 +12,9 @@ from test_urdf import arm_of, forward
 from closedform.model.functions import real
 from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
+from closedform.scaffold.chains.recognise import recognised
+from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import InverseSearch, new
-from closedform.scaffold.recognise import recognised
-from closedform.scaffold.urdf import read_urdf
 
 PANTHERA = Path(__file__).parents[1] / "benchmarks" / "arms" / "panthera.urdf"
 BACK = "-0.306676319401685"

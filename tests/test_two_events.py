@@ -17,7 +17,7 @@ from test_six import CHAINS as SIX
 from test_six import H
 from test_subproblems import CHAINS as SUBPROBLEMS
 
-from closedform.scaffold.propose import propose
+from closedform.scaffold.chains.propose import propose
 
 OBLIQUE = {
     "three parallel axes, oblique wrist whose outer axes can be aligned": [

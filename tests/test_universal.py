@@ -20,7 +20,7 @@ from closedform import (
     real,
 )
 from closedform.algebra.shapes import ShapeError
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = Path(__file__).parent / "held_out_loops"
 TSAI = (FOLDER / "tsai.toml").read_text("utf-8")

@@ -12,11 +12,11 @@ import sympy as sp
 from closedform.cli.commands import main
 from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
+from closedform.scaffold.chains.recognise import recognised
+from closedform.scaffold.inputs.tables import Table, TableError
+from closedform.scaffold.inputs.tree import Choice, meant_angle
+from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import new
-from closedform.scaffold.recognise import recognised
-from closedform.scaffold.tables import Table, TableError
-from closedform.scaffold.tree import Choice, meant_angle
-from closedform.scaffold.urdf import read_urdf
 
 ARMS = Path(__file__).parents[1] / "benchmarks" / "arms"
 UR5 = """

@@ -283,8 +283,8 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
     _require_extra()
     from closedform.pipeline import trial
+    from closedform.scaffold.inputs.tree import Choice
     from closedform.scaffold.new import InverseSearch, check_name, new
-    from closedform.scaffold.tree import Choice
 
     try:
         check_name(options.name)

@@ -23,17 +23,13 @@ from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
-from closedform.scaffold.limit import LimitError, bounded
-from closedform.scaffold.loop_file import read_loop
-from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.mjcf import read_mjcf
-from closedform.scaffold.motors import motors_of
-from closedform.scaffold.proposal import Tried
-from closedform.scaffold.propose import NoChainError, propose
-from closedform.scaffold.recognise import recognised
-from closedform.scaffold.source import file_name, literal, source
-from closedform.scaffold.spelling import mistaken_units
-from closedform.scaffold.tables import (
+from closedform.scaffold.chains.proposal import Tried
+from closedform.scaffold.chains.propose import NoChainError, propose
+from closedform.scaffold.chains.recognise import recognised
+from closedform.scaffold.inputs.mjcf import read_mjcf
+from closedform.scaffold.inputs.motors import motors_of
+from closedform.scaffold.inputs.spelling import mistaken_units
+from closedform.scaffold.inputs.tables import (
     AUTHOR,
     CHAIN,
     IMPORTED,
@@ -43,8 +39,12 @@ from closedform.scaffold.tables import (
     read_dh,
     read_screws,
 )
-from closedform.scaffold.tree import DEFAULT, Choice
-from closedform.scaffold.urdf import read_urdf
+from closedform.scaffold.inputs.tree import DEFAULT, Choice
+from closedform.scaffold.inputs.urdf import read_urdf
+from closedform.scaffold.limit import LimitError, bounded
+from closedform.scaffold.loops.file import read_loop
+from closedform.scaffold.loops.script import loop_script
+from closedform.scaffold.source import file_name, literal, source
 
 LINE = 100
 """The maximum length of a line in a script."""

@@ -1,0 +1,333 @@
+"""The inverse of a planar linkage that is solved dyad by dyad: the same lemmas in reverse.
+
+The hand is known, and the driven bodies are not.  If the bodies are dyads again, one after the
+other, the joints follow.  A hand that one joint moves is on a curve: then a body is held at two
+points at last, and their distance tells whether the target is on the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+
+from closedform.lemmas.circles import two_circles
+from closedform.lemmas.legs import Naming, Solution
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import (
+    MISSED,
+    SIGN,
+    named_in,
+    record_lemma,
+    where_free,
+)
+from closedform.loops.linkage import GROUND, Linkage
+from closedform.loops.reached import bounds_of_any, export_reach
+from closedform.mechanics.assur import Dyad, Held, Order, order
+from closedform.model.functions import SINGLE, Program, branches, choose, real
+from closedform.model.inverse import Degenerate, Inverse, Link
+from closedform.model.lemma import Lemma
+from closedform.model.step import Step
+
+
+def known_points(m: Linkage, p: Program, bodies: Sequence[str]) -> dict[str, sp.Matrix]:
+    """The points of the ground and of bodies whose joints are known, in a program."""
+    at = {point: m.ground(point) for point in m.points[GROUND]}
+    for body in bodies:
+        for point in m.points[body]:
+            if point not in at:
+                at[point] = named(p, f"p{point}", m.on_turning(body, point))
+    return at
+
+
+def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
+    """A point with its coordinates under names."""
+    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
+
+
+def inverse(m: Linkage, loop: Step) -> None:
+    """Derive and export the inverse, or say why there is none."""
+    known = [GROUND, *[m.follower] * bool(m.follower)]
+    found = order(m.points, known, [m.at] * bool(m.at), sought=m.driven)
+    if found.left:
+        m.d.no_inverse(f"with the hand held, {found.undone}")
+        return
+    _Reverse(m, loop, found).export()
+
+
+@dataclass
+class _Reverse:
+    """The inverse as it is written into a program."""
+
+    m: Linkage
+    loop: Step
+    order: Order
+    links: list[Link] = field(default_factory=list)
+    found: list[Solution] = field(default_factory=list)
+    values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    equations: list[sp.Expr] = field(default_factory=list)
+    passive: list[sp.Symbol] = field(default_factory=list)
+    signs: list[sp.Symbol] = field(default_factory=list)
+    missed: list[sp.Expr] = field(default_factory=list)
+    free: list[sp.Symbol] = field(default_factory=list)
+    """The flags that a pin is free."""
+    lost: list[sp.Expr] = field(default_factory=list)
+    """How much each dyad enlarges an error of the target."""
+
+    def __post_init__(self) -> None:
+        m, self.program = self.m, self.m.d.program()
+        self.size = self.program.let("size", m.size)
+        self.at = known_points(m, self.program, [m.follower] * bool(m.follower))
+        self.meant = {p: m.ground(p) for p in m.points[GROUND]}
+        if m.follower:
+            self.meant |= {p: m.on_turning(m.follower, p) for p in m.points[m.follower]}
+        else:
+            self.at[m.at] = self.meant[m.at] = m.hand
+
+    def export(self) -> None:
+        for k, step in enumerate(self.order.steps, 1):
+            if isinstance(step, Held):
+                self._hold(step, k)
+            else:
+                driven = [body for body in step.bodies if body in self.m.driven]
+                if len(driven) == 1:
+                    self._crank(step, driven[0], k)
+                    continue
+                self._circles(step, k)
+                for body in driven:
+                    self._angle(body, self.m.pivot(body), step.pin)
+        self._determined()
+        self._write()
+
+    def _carry(self, body: str, near: str, far: str) -> None:
+        """Add the other points of a body, under names and in symbols."""
+        m = self.m
+        for point in m.points[body]:
+            if point not in self.at:
+                place = m.carried(body, (near, far, point), self.at)
+                self.at[point] = named(self.program, f"p{point}", place)
+                self.meant[point] = m.carried(body, (near, far, point), self.meant)
+
+    def _crank(self, step: Dyad, body: str, k: int) -> None:
+        """A driven body and the bar that it moves."""
+        m, p = self.m, self.program
+        i = step.bodies.index(body)
+        other, near = step.bodies[1 - i], step.near[1 - i]
+        rod = m.length(other, near, step.pin)
+        names = Naming(p, self.size, f"_{k}")
+        drawn = m.crank(body, step.pin, rod)
+        crank = drawn.named(names)
+        self.signs.append(sigma := real(f"sigma_{body}"))
+        w = self.at[near] - crank.base
+        solved = crank.solve(names, w, sigma)
+        start = len(p.body)
+        place = named(p, f"p{step.pin}", self.at[near] - solved.rod)
+        link = replace(
+            solved.link,
+            body=(*solved.link.body, *p.body[start:]),
+            means=dict(zip(place, crank.end(), strict=True)),
+        )
+        self.links.append(link)
+        self.free += [flag for case in link.degenerate for flag in case.flags]
+        self.found.append(solved)
+        self.values[crank.joint] = solved.value
+        self.missed.append(solved.missed)
+        self.equations.append(square(drawn.end() - self.meant[near]) - rod**2)
+        self.at[step.pin], self.meant[step.pin] = place, drawn.end()
+        self._lose(step)
+        self._carry(body, m.pivot(body), step.pin)
+        self._carry(other, near, step.pin)
+
+    def _circles(self, step: Dyad, k: int) -> None:
+        """Two bodies that no joint drives."""
+        m, p = self.m, self.program
+        self.signs.append(sigma := real(f"sigma_{step.pin}"))
+        unknowns = m.unknown(step.pin)
+        lengths = self._lengths(step)
+        radii = [
+            r if r.is_Symbol else p.let(f"r{i}_{k}", r, nonnegative=True)
+            for i, r in enumerate(lengths, 1)
+        ]
+        centres = [named(p, f"b{i}_{k}", self.at[n]) for i, n in enumerate(step.near, 1)]
+        met = two_circles(
+            p,
+            centres,
+            radii,
+            tuple(unknowns),
+            sigma,
+            scale=self.size,
+            share=sp.S.Half,
+            free=m.d.actuated,
+            suffix=f"_{k}",
+        )
+        start = len(p.body)
+        place = named(p, f"p{step.pin}", sp.Matrix([met.lemma[x] for x in unknowns]))
+        means = dict(zip(place, unknowns, strict=True))
+        self.links.append(replace(met.link, body=(*met.link.body, *p.body[start:]), means=means))
+        self.free += [flag for case in met.link.degenerate for flag in case.flags]
+        self.passive += unknowns
+        for near, length in zip(step.near, lengths, strict=True):
+            self.equations.append(square(unknowns - self.meant[near]) - length**2)
+        self.at[step.pin], self.meant[step.pin] = place, unknowns
+        self._lose(step)
+        for body, near in zip(step.bodies, step.near, strict=True):
+            self._carry(body, near, step.pin)
+
+    def _lose(self, step: Dyad) -> None:
+        """Note that a pin is moved far by rounding if its bars are in line, or both begin there."""
+        a, b = (self.at[step.pin] - self.at[near] for near in step.near)
+        size = sp.Mul(*self._lengths(step))
+        apart = sp.sqrt(square(self.at[step.near[0]] - self.at[step.near[1]]))
+        self.lost.append(size / (sp.Abs(a[0] * b[1] - a[1] * b[0]) + size / 2**20))
+        self.lost.append(self.size / (apart + self.size / 2**20))
+
+    def _lengths(self, step: Dyad) -> list[sp.Expr]:
+        pairs = zip(step.bodies, step.near, strict=True)
+        return [self.m.length(body, near, step.pin) for body, near in pairs]
+
+    def _hold(self, step: Held, k: int) -> None:
+        """A body whose points are known: their distances have to be right."""
+        m, p = self.m, self.program
+        near, far, *others = step.points
+        for point in (far, *others):
+            between = square(self.at[point] - self.at[near])
+            apart = p.let(f"apart_{k}{point}", sp.sqrt(between), nonnegative=True)
+            gap = apart - m.length(step.body, near, point)
+            # a pin that is free may be chosen such that the distance is right
+            off = p.let(f"off_{k}{point}", choose(sp.Or(*self.free), 0, gap))
+            lost = sp.Min(2**40, sp.Mul(*self.lost))
+            p.match(off, self.size * lost / 2, "the hand is on its curve")
+            self.missed.append(sp.Abs(off))
+        if step.body in m.driven:
+            self._angle(step.body, near, far)
+        self._carry(step.body, near, far)
+
+    def _angle(self, body: str, near: str, far: str) -> None:
+        """The joint of a driven body, both of whose ends are known."""
+        m, p = self.m, self.program
+        end = far if near == m.pivot(body) else near
+        crank = m.crank(body, end)
+        q, w = crank.joint, self.at[end] - crank.base
+        a, b = (
+            named_in(p, f"w{i}_{q}", w.dot(sp.Matrix(e)))
+            for i, e in enumerate((crank.along, crank.across))
+        )
+        start = len(p.body)
+        r = p.let(f"reach_{q}", sp.sqrt(a**2 + b**2), nonnegative=True)
+        none = p.vanishes(f"none_{q}", r, self.size, f"{body} has no length", (q,))
+        s, c = (choose(none, e, f) for e, f in ((0, b), (1, a)))
+        rho = real(f"rho_{q}")
+        lemma = Lemma(
+            "polar coordinates",
+            r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
+            r"\theta = \operatorname{atan2}(y, x)",
+            (rho * sp.cos(q) - a, rho * sp.sin(q) - b),
+            {q: sp.atan2(s, c), rho: r},
+            1,
+            excluded=1,
+            roles=((r"\rho", rho), (r"\theta", q), ("x", a), ("y", b)),
+        )
+        case = Degenerate((none,), {a: 0, b: 0}, q, f"{body} has no length")
+        self.links.append(
+            Link((q, rho), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=(case,))
+        )
+        self.passive.append(rho)
+        self.values[q] = lemma[q]
+        meant = self.meant[end] - crank.base
+        for e, unit in ((sp.cos(q), crank.along), (sp.sin(q), crank.across)):
+            self.equations.append(rho * e - meant.dot(sp.Matrix(unit)))
+
+    def _stretches(self, dyad: Dyad) -> list[sp.Expr]:
+        """By how much points of a dyad move more than its pin, or the angle of a follower."""
+        m, found = self.m, []
+        for body, near in zip(dyad.bodies, dyad.near, strict=True):
+            length = m.length(body, near, dyad.pin)
+            if body == m.follower:
+                found.append(self.size / length)
+                continue
+            others = [p for p in m.points[body] if p not in (near, dyad.pin)]
+            found += [sp.Max(1, m.length(body, near, p) / length) for p in others]
+        return found
+
+    def _determined(self) -> None:
+        """Whether the joints determine the posture: the dyads of the forward map."""
+        m, g = self.m, self.program
+        volumes, scales = [], []
+        for k, dyad in enumerate(m.dyads, 1):
+            a, b = (self.at[dyad.pin] - self.at[near] for near in dyad.near)
+            volumes.append(g.let(f"Delta_{k}", sp.Abs(a[0] * b[1] - a[1] * b[0]), nonnegative=True))
+            scales += self._lengths(dyad) + self._stretches(dyad)
+        missed = g.let("missed", sp.Add(*self.missed))
+        meet = "both bars of a dyad are in line"
+        g.determined(
+            sp.Mul(*volumes), sp.Mul(*scales), meet, name=r"|\det A|", missed=missed, size=self.size
+        )
+
+    def _write(self) -> None:
+        m, d, g = self.m, self.m.d, self.program
+        on_curve = bool(self.order.held)
+        d.step(
+            "Inverse: dyad by dyad, from the hand",
+            "The hand is known instead of the joints.  The bodies are found in this order, again "
+            f"dyad by dyad: {self._told()}.  "
+            + "The target has to be on the curve of the hand, which the last distance tells.  "
+            * on_curve
+            + "Near a parallel singularity rounded joints do not determine the hand.  The status "
+            "is SINGULAR if the product of the determinants of all dyads is less than 2^-10 of the "
+            f"product of the lengths of their bars.  {MISSED}",
+            {},
+            uses=[self.loop],
+            solves={"ik": ()},
+        )
+        passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
+        chosen = [(sigma, SIGN) for sigma in self.signs]
+        working = branches(*chosen) if chosen else SINGLE
+        d.branches = working.labels
+        target = {"x": tuple(m.hand)}
+        d.function(
+            "ik",
+            "The driven joints of all working modes.",
+            target,
+            {"q": [self.values[q] for q in d.actuated]},
+            program=g,
+            branches=working,
+            result="Solutions",
+            notes=(
+                "UNREACHABLE: the bodies do not meet"
+                + ", or the target is not on the curve of the hand." * on_curve
+                + "." * (not on_curve),
+                *where_free(self.found),
+                *[
+                    "SINGULAR: both circles of a dyad are the same, and its pin is free; one point "
+                    "is used, from which the hand need not reach the target."
+                ]
+                * bool(passive),
+                "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
+            ),
+        )
+        if not on_curve:
+            what = m.follower or "the hand"
+            export_reach(d, bounds_of_any(g, self.signs), {"p": tuple(m.hand)}, what)
+        for link in self.links:
+            record_lemma(d, "ik", link)
+        d.inverses.append(
+            Inverse(
+                "ik",
+                d.actuated,
+                (sp.S.Zero,) * len(self.equations),
+                tuple(self.equations),
+                images="fk",
+                links=tuple(self.links),
+                passive=tuple(self.passive),
+                angles=tuple(m.hand) if m.follower else (),
+            )
+        )
+
+    def _told(self) -> str:
+        return ", ".join(
+            " and ".join(s.bodies) if isinstance(s, Dyad) else s.body for s in self.order.steps
+        )
+
+
+__all__ = ["inverse", "known_points", "named"]

@@ -1,0 +1,345 @@
+"""What keeps a hand from turning: parallelograms, and universal joints with parallel axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
+from closedform.lemmas.parallelogram import Parallelogram, parallelogram
+from closedform.lemmas.universal import Universal
+from closedform.loops.hand import Hand, square
+from closedform.loops.modes import Exported
+from closedform.model.alike import INDEX
+from closedform.model.functions import real
+from closedform.model.step import Step
+
+LEFT_OUT = (
+    "Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in "
+    "which the hand is turned."
+)
+TURNED = "Left out: postures in which the hand is turned and the universal joints fit all the same."
+
+
+@dataclass(frozen=True)
+class Bars:
+    """A pair of bars of a leg: their parallelogram, and the points that they connect."""
+
+    given: Parallelogram
+    near: str
+    far: str
+    names: str
+    """Two letters, which the ends of the bars have in their names."""
+
+    def ends(self, middle: str) -> tuple[str, str]:
+        """The names of the ends of the bar around a point."""
+        at = middle if middle != "P" else f"C{self.near[1:]}"
+        return f"{at}{self.names[0]}", f"{at}{self.names[1]}"
+
+    def around(self, middle: str, at: sp.Matrix) -> dict[str, sp.Matrix]:
+        """The ends of the bar around a point, which is at a place."""
+        reach = self.given.half * self.given.direction
+        return dict(zip(self.ends(middle), (at + reach, at - reach), strict=True))
+
+
+def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
+    """The parallelograms of leg ``k``, whose far end is a point: of its crank, of its rod."""
+    crank, rod = getattr(leg, "length", None), leg.rod
+    found = []
+    if isinstance(crank, Parallelogram):
+        found.append(Bars(crank, f"A{k}", f"B{k}", "cd"))
+    if isinstance(rod, Parallelogram):
+        near = f"B{k}" if hasattr(leg, "joint") else f"A{k}"
+        found.append(Bars(rod, near, far, "ab"))
+    return found
+
+
+def check_held(m: Hand) -> None:
+    """Refuse a hand that could turn, and a rod that would not keep it from turning."""
+    name, n = m.d.name, len(m.hand)
+    held = [leg for _, leg in m.held]
+    _check_directions(m, held)
+    for leg in held:
+        _check_on_crank(m, leg)
+    if len(held) == 3 and not any(e for leg in held for e in _across(held[0], leg)):
+        raise ShapeError(
+            f"{name}: the bars or axes of all three legs have the same direction, about which the "
+            f"hand can always turn"
+        )
+    places = [m.place(leg) for leg in m.legs]
+    if m.flat or all(place == places[0] for place in places):
+        return
+    if len(held) < (1 if n == 2 else 3):
+        rods = "one rod has" if n == 2 else "all three rods have"
+        raise ShapeError(
+            f"{name}: the legs end in different points of the hand, and nothing keeps it from "
+            f"turning; {rods} to be a Parallelogram{' or Universal' * (n == 3)}, or take platform, "
+            f"for a hand that turns"
+        )
+
+
+def _check_directions(m: Hand, held: Sequence[Leg]) -> None:
+    """Refuse bars and axes that are no unit vectors of the plane or of space."""
+    name, n = m.d.name, len(m.hand)
+    for bars in (bars for leg in m.legs for bars in bars_of(1, leg, "P")):
+        if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
+            raise ShapeError(
+                f"{name}: the bar of a parallelogram is a unit vector with {n} entries"
+            )
+    for axis in (leg.rod.direction for leg in held if isinstance(leg.rod, Universal)):
+        if not len(axis) == n == 3 or sp.simplify(square(axis) - 1) != 0:
+            raise ShapeError(
+                f"{name}: the axis of a rod with universal joints is a unit vector in space"
+            )
+
+
+def _check_on_crank(m: Hand, leg: Leg) -> None:
+    """Refuse a bar or an axis that a crank turns."""
+    if not isinstance(leg, Crank) or isinstance(leg.length, Parallelogram):
+        return
+    turned = [leg.rod.direction.dot(vector(v)) for v in (leg.along, leg.across)]
+    if len(m.hand) == 2 or any(sp.simplify(e) != 0 for e in turned):
+        what = "axis" if isinstance(leg.rod, Universal) else "bar"
+        along = "" if len(m.hand) == 2 else f"the {what} has to be along its axis, or "
+        raise ShapeError(
+            f"{m.d.name}: the crank of {leg.joint} turns the {what} on it; {along}"
+            f"the crank has to be a Parallelogram too"
+        )
+
+
+def _across(one: Leg, other: Leg) -> sp.Matrix:
+    """A vector that vanishes if the bars or axes of two legs are parallel."""
+    return one.rod.direction.cross(other.rod.direction).applyfunc(sp.simplify)
+
+
+def _with(m: Hand, kind: type) -> list[tuple[int, Leg]]:
+    """The legs whose rods are of a kind."""
+    return [(k, leg) for k, leg in m.held if isinstance(leg.rod, kind)]
+
+
+def state_held(m: Hand, loop: Step) -> None:
+    """The steps on what keeps the hand from turning."""
+    if _with(m, Parallelogram):
+        (_in_plane if len(m.hand) == 2 else _in_space)(m, loop)
+    if _with(m, Universal):
+        _by_axes(m, loop)
+    if m.planes:
+        _by_parallel_axes(m, loop)
+
+
+def left_out(m: Hand) -> tuple[str, ...]:
+    """Notes on the postures that are left out, in which the hand is turned."""
+    notes = (LEFT_OUT, Parallelogram), (TURNED, Universal)
+    return tuple(note for note, kind in notes if _with(m, kind))
+
+
+def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[Exported]:
+    """The function that vanishes where the hand can turn, from the vectors along the rods.
+
+    There is none if the hand is a point, or if legs hold it in space and it is not known how.
+    """
+    factors = _constraint(m, rods)
+    if not factors:
+        return []
+    crossed = "unit vector along the bars times the vector along the rods"
+    if not _with(m, Universal):
+        what, how = (
+            "parallelograms",
+            f"The determinant of the normals of the parallelograms (a {crossed}).",
+        )
+    else:
+        what = "legs"
+        how = (
+            "The determinant of the directions about which the legs do not let the hand turn: the "
+            "vector along a rod without its part along the axis"
+            + f"; of a parallelogram, the {crossed}" * bool(_with(m, Parallelogram))
+            + "."
+        )
+    if len(m.hand) == 2:
+        how = "One factor for each leg with a parallelogram; the hand can turn if all vanish."
+    summary = f"The factors that vanish where the {what} do not keep the hand from turning."
+    return [("constraint", summary, {"factors": factors}, (how,))]
+
+
+def _constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
+    spans = dict(zip((k for k, _ in m.numbered), rods, strict=True))
+    if len(m.hand) == 3:
+        couples = [leg.rod.couple(spans[k]) for k, leg in m.held]
+        return [sp.Matrix.hstack(*couples).det()] if len(couples) == 3 else []
+    found = []
+    for k, leg in m.held:
+        factor = cross_in_plane(leg.rod.direction, spans[k])
+        if isinstance(leg, Crank):
+            factor *= cross_in_plane(leg.length.direction, leg.end() - leg.base)
+        found.append(factor)
+    return found
+
+
+def _in_space(m: Hand, loop: Step) -> None:
+    u, v, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
+    h, difference = real("h"), v - u
+    rods = r + h * difference, r - h * difference
+    all_three = (
+        "  Each parallelogram takes one freedom of turning from the hand: the rate omega with "
+        "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
+        "cannot turn, unless the three normals are in one plane (constraint singularity)."
+    )
+    held = _with(m, Parallelogram)
+    bars = m.as_shown([(k, leg.rod.direction) for k, leg in held])
+    one = INDEX if m.alike else "k"
+    m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in bars})
+    m.d.explain({rf"\mathbf n_{one}": f"normal of the parallelogram of leg {one}"})
+    m.d.step(
+        "The parallelograms",
+        "The rod of a leg is a parallelogram: two rods of length l between two bars of length "
+        "2*h.  The bar at the near end has the direction u and does not turn.  The bar on the hand "
+        "has the direction v, and r leads from the middle of the first to the middle of the "
+        "second.  The two rods are r + h*(v - u) and r - h*(v - u), and both have to be as long as "
+        "l.  In a parallelogram v = u, and r is as long as a rod, whatever the width.  The other "
+        "solutions are left out: the crossed one (antiparallelogram) and twisted ones."
+        f"{all_three * (len(held) == 3)}",
+        {
+            r"\mathbf r\cdot(\mathbf v - \mathbf u)": sp.S.Zero,
+            r"|\mathbf r|^2 + h^2\,|\mathbf v - \mathbf u|^2": "l^2",
+            **{rf"\mathbf u_{k}": u for k, u in bars},
+            rf"\mathbf n_{one}": rf"\mathbf u_{one}\times\mathbf r_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf n_{one}": sp.S.Zero,
+        },
+        proves="The rods fit if and only if the first two equations hold.  At v = u, the "
+        "derivative of the first equation gives the last one.  The bars are unit vectors, "
+        "and that on a crank is along its axis.",
+        equal=[
+            (square(rods[0]) - square(rods[1]), 4 * h * r.dot(difference)),
+            (square(rods[0]) + square(rods[1]), 2 * (square(r) + h**2 * square(difference))),
+            (r.dot(w.cross(u)), w.dot(u.cross(r))),
+            *_unit_and_still(held),
+        ],
+        uses=[loop],
+    )
+
+
+def _unit_and_still(held: Sequence[tuple[int, Leg]]) -> list[tuple[sp.Expr, sp.Expr]]:
+    """That bars or axes are unit vectors, and along the axis of a crank that carries them."""
+    return [
+        *((square(leg.rod.direction), sp.S.One) for _, leg in held),
+        *(
+            (leg.rod.direction.dot(vector(v)), sp.S.Zero)
+            for _, leg in held
+            if isinstance(leg, Crank) and not isinstance(leg.length, Parallelogram)
+            for v in (leg.along, leg.across)
+        ),
+    ]
+
+
+def _by_parallel_axes(m: Hand, loop: Step) -> None:
+    """The step on legs whose joints all turn the hand about one direction."""
+    a, b = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in "ab")
+    across = a.cross(b)
+    normals = [leg.normal for leg in m.planes]
+    m.d.explain({r"\mathbf a": "direction of the axes of a leg", "R": "rotation of the hand"})
+    m.d.explain({r"\mathbf b": "direction of the axes of another leg"})
+    m.d.step(
+        "The axes",
+        "All joints of a leg that turn have the same direction, so the leg turns the hand about it "
+        "alone: its rotation R keeps this direction.  It keeps those of two legs, a and b, and so "
+        "their cross product too.  The three vectors are a basis, because a and b are not "
+        "parallel.  So the hand does not turn at any posture.",
+        {
+            r"R\,\mathbf a": r"\mathbf a",
+            r"R\,\mathbf b": r"\mathbf b",
+            r"R\,(\mathbf a\times\mathbf b)": r"\mathbf a\times\mathbf b",
+            r"\det[\mathbf a\ \ \mathbf b\ \ \mathbf a\times\mathbf b]": r"|\mathbf a\times"
+            r"\mathbf b|^2",
+        },
+        proves="The determinant of the three vectors is the squared length of the cross product, "
+        "and the directions of the axes are unit vectors.",
+        equal=[
+            (sp.Matrix.hstack(a, b, across).det(), square(across)),
+            *((square(normal), sp.S.One) for normal in normals),
+        ],
+        uses=[loop],
+    )
+
+
+def _by_axes(m: Hand, loop: Step) -> None:
+    """The step on universal joints with parallel axes."""
+    u, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
+    held = _with(m, Universal)
+    axes = m.as_shown([(k, leg.rod.direction) for k, leg in held])
+    one = INDEX if m.alike else "k"
+    m.d.explain({rf"\mathbf u_{k}": "direction of the outer axes of a leg" for k, _ in axes})
+    m.d.explain({rf"\mathbf m_{one}": f"part of the rod of leg {one} across its outer axes"})
+    all_three = (
+        "  Each leg takes one freedom of turning from the hand: the rate omega with which it turns "
+        "is at right angles to m, the part of the rod across the outer axes.  So the hand cannot "
+        "turn, unless the three vectors m are in one plane (constraint singularity)."
+    )
+    m.d.step(
+        "The universal joints",
+        "A rod has universal joints at both ends.  The axis that is fixed to what moves the rod "
+        "has the direction u and does not turn; that on the hand has the direction v.  The two "
+        "axes that are fixed to the rod are parallel, and at right angles to the rod, to u and to "
+        "v.  So u, v and the vector r along the rod are in one plane.  They are if v = u, wherever "
+        "the hand is.  The other solutions, in which the hand is turned, are left out."
+        f"{all_three * (len(held) == 3)}",
+        {
+            r"(\mathbf u\times\mathbf r)\cdot\mathbf v": sp.S.Zero,
+            **{rf"\mathbf u_{k}": e for k, e in axes},
+            rf"\mathbf m_{one}": rf"\mathbf r_{one} - (\mathbf u_{one}\cdot\mathbf r_{one})\,"
+            rf"\mathbf u_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf m_{one}": sp.S.Zero,
+        },
+        proves="At v = u the first equation holds for any r, and its derivative, while the hand "
+        "turns and moves in any way, is that of the last one.  The axes are unit vectors, and one "
+        "on a crank is along the axis of the crank.",
+        equal=[
+            (u.cross(r).dot(u), sp.S.Zero),
+            (u.cross(r).dot(w.cross(u)), w.dot(u.dot(r) * u - square(u) * r)),
+            *_unit_and_still(held),
+        ],
+        uses=[loop],
+    )
+
+
+def _in_plane(m: Hand, loop: Step) -> None:
+    l, a = (real(n, positive=True) for n in ("l", "a"))
+    theta, gamma, phi, beta, sigma = (real(n) for n in ("theta", "gamma", "phi", "beta", "sigma"))
+    linkage = parallelogram((l, a), (theta, gamma), (phi, beta), sigma)
+    closed = sp.Matrix(linkage.equations).subs(linkage.solution)
+    for name, symbol, meaning in (
+        ("a", "a", "length of the bars of a parallelogram"),
+        ("gamma", r"\gamma", "angle of the bar that stands still"),
+        ("phi", r"\varphi", "turn of the bar on the hand"),
+        ("beta", r"\beta", "angle of the second rod of a parallelogram"),
+        ("theta", r"\theta", "angle of the first rod of a parallelogram"),
+    ):
+        m.d.write(name, symbol, meaning)
+    m.d.step(
+        "The parallelograms",
+        "The rod of a leg is a parallelogram: two rods of length l, at the angles theta and beta,"
+        " between two bars of length a.  The bar at the near end, at the angle gamma, does not "
+        "turn; if a crank carries it, the crank is a parallelogram too.  The bar on the hand is "
+        "turned by phi.  The loop equations have two solutions.  In the parallelogram phi = 0, "
+        "and the rods are parallel: the hand does not turn, whatever the width.  The crossed one,"
+        " an antiparallelogram, is left out.  Both are the same where rods and bars are in line."
+        "  The hand can turn only if that is so in each leg with a parallelogram, in its rod or "
+        "in its crank (constraint singularity).",
+        {
+            "0": sp.Matrix(linkage.equations),
+            r"(\varphi, \beta)_{\text{parallelogram}}": (sp.S.Zero, theta),
+            r"\varphi_{\text{crossed}}": linkage[phi].subs(sigma, -1),
+        },
+        proves="Both solutions close the linkage, and the bars are unit vectors.",
+        equal=[
+            *((closed.subs(sigma, sign), sp.zeros(2, 1)) for sign in (1, -1)),
+            (linkage[phi].subs(sigma, 1), sp.S.Zero),
+            *((square(leg.rod.direction), sp.S.One) for _, leg in m.held),
+        ],
+        uses=[loop],
+    )
+
+
+__all__ = ["LEFT_OUT", "Bars", "bars_of", "check_held", "constraint", "left_out", "state_held"]

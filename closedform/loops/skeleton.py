@@ -1,0 +1,169 @@
+"""The skeleton of a hand on legs: its points, links, joints and lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
+from closedform.lemmas.parallelogram import Parallelogram
+from closedform.lemmas.planes import Plane
+from closedform.lemmas.rails import Rail
+from closedform.loops.hand import Hand, in_space, square
+from closedform.loops.held import Bars, bars_of
+from closedform.loops.leg_by_leg import size_of
+from closedform.loops.modes import NO_MODE
+from closedform.mechanics.skeleton import skeleton
+from closedform.model.functions import Branches, Program, real
+
+ANY = sp.Matrix([real(f"w_{i}") for i in "xyz"])
+"""From the slider of a leg with two bars to the hand."""
+
+
+@dataclass
+class _Drawing:
+    """What the skeleton of a hand on legs consists of; names of points end in those of legs."""
+
+    m: Hand
+    links: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    lengths: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
+    closing: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
+    joints: dict[sp.Symbol, tuple[str, ...]] = field(default_factory=dict)
+
+    def add(self, k: int, leg: Leg, equation: sp.Expr) -> None:
+        """A leg with its equation, and the link of the hand that it holds."""
+        place = self.m.place(leg)
+        far = "P" if place.is_zero_matrix else f"C{k}"
+        if far != "P":
+            self.links[f"hand{k}"] = ("P", far)
+            self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
+        if isinstance(leg, Rail):
+            self._add_rail(k, leg, far, equation)
+            return
+        if isinstance(leg, Plane):
+            self._add_plane(k, leg, far)
+            return
+        self._add_rod(k, leg, far, equation)
+        self._add_driven(k, leg)
+        for pair in bars_of(k, leg, far):
+            self._add_bars(k, pair, equation if pair.far == far else None)
+
+    def _add_rail(self, k: int, leg: Rail, far: str, equation: sp.Expr) -> None:
+        base, end = f"A{k}", f"B{k}"
+        span = self.m.hand - self.m.centres[k - 1]
+        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
+        self.lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
+        self.closing[end, far] = equation**2
+
+    def _add_plane(self, k: int, leg: Plane, far: str) -> None:
+        """The slider and both bars, which have their lengths if the hand is in the plane."""
+        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
+        self.joints[leg.joint] = (base, end)
+        self.lengths[base, end] = leg.joint
+        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
+        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
+            self.lengths[pair], self.closing[pair] = length, off
+        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
+
+    def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
+        """The rod; of a leg that stretches it is the driven joint."""
+        near = f"A{k}" if isinstance(leg, Stretch | Strut) else f"B{k}"
+        self.lengths[near, far] = sp.sympify(leg.rod, strict=True)
+        self.closing[near, far] = equation
+        if isinstance(leg, Stretch):
+            self.joints[leg.joint] = (near, far)
+        elif not isinstance(leg.rod, Parallelogram):
+            self.links[f"rod{k}"] = (near, far)
+
+    def _add_driven(self, k: int, leg: Leg) -> None:
+        """The crank or the slider."""
+        base, end = f"A{k}", f"B{k}"
+        if isinstance(leg, Crank):
+            if not isinstance(leg.length, Parallelogram):
+                self.links[f"crank{k}"] = (base, end)
+            self.lengths[base, end] = sp.sympify(leg.length, strict=True)
+            self.joints[leg.joint] = (base,)
+        elif isinstance(leg, Slide):
+            self.lengths[base, end] = leg.joint
+            self.joints[leg.joint] = (base, end)
+
+    def _add_bars(self, k: int, pair: Bars, equation: sp.Expr | None) -> None:
+        """The bars of a parallelogram: a rod, which the equation closes, or a crank."""
+        whole = "crank" if equation is None else "rod"
+        for ends in zip(pair.ends(pair.near), pair.ends(pair.far), strict=True):
+            self.links[f"{whole}{k}{ends[0][-1]}"] = ends
+            self.lengths[ends] = sp.sympify(pair.given, strict=True)
+            if equation is not None:
+                self.closing[ends] = equation
+        for middle in (pair.near, pair.far):
+            first, second = pair.ends(middle)
+            half = pair.given.half
+            self.links[f"bar_{first}"] = (first, middle, second)
+            self.lengths |= {(first, middle): half, (middle, second): half}
+
+
+def draw(m: Hand, hand: sp.Matrix, program: Program, modes: Branches) -> None:
+    """Record the skeleton, with the hand in an assembly mode in the names of a program."""
+    drawn = _Drawing(m)
+    for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
+        drawn.add(k, leg, equation)
+    ground = tuple(f"A{k}" for k, _ in m.numbered)
+    v = Program(list(program.body), program.taken)
+    points = _points(m, hand)
+    for k, leg in m.numbered:
+        if isinstance(leg, Plane):
+            names = Naming(v, size_of(m.d, m.legs, m.joints), f"_bars{k}")
+            elbow = leg.end() + leg.named_elbow(names, hand + m.place(leg) - leg.end())
+            points[f"E{k}"] = in_space(elbow)
+    skeleton(
+        m.d,
+        points,
+        links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **drawn.links},
+        joints=drawn.joints,
+        hand="P",
+        hand_at=in_space(m.hand),
+        ground=ground,
+        lengths=drawn.lengths,
+        program=v,
+        branches=modes,
+        notes=(NO_MODE, *["The width of a parallelogram matters here alone."] * bool(m.held)),
+        at_posture=[_points(m, m.hand), *_bars(m)],
+        closing=drawn.closing,
+    )
+
+
+def _bars(m: Hand) -> list[dict[str, Sequence[sp.Expr]]]:
+    """For the proof, the bars of each leg; the hand is anywhere, as seen from the slider."""
+    found: list[dict[str, Sequence[sp.Expr]]] = []
+    for k, leg in m.numbered:
+        if isinstance(leg, Plane):
+            place = m.place(leg)
+            far = m.hand + place
+            at = {f"B{k}": far - ANY, f"E{k}": far - ANY + leg.elbow(ANY)}
+            at["P" if place.is_zero_matrix else f"C{k}"] = far
+            found.append({name: in_space(e) for name, e in at.items()})
+    return found
+
+
+def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+    """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
+    points: dict[str, Sequence[sp.Expr]] = {}
+    for k, leg in m.numbered:
+        points[f"A{k}"] = in_space(leg.base)
+        if not isinstance(leg, Stretch | Strut):
+            points[f"B{k}"] = in_space(leg.end())
+        place, far = m.place(leg), "P"
+        if not place.is_zero_matrix:
+            far = f"C{k}"
+            points[far] = in_space(hand + place)
+        at = {f"A{k}": leg.base, f"B{k}": leg.end(), far: hand + place}
+        for pair in bars_of(k, leg, far):
+            for middle in (pair.near, pair.far):
+                ends = pair.around(middle, at[middle])
+                points |= {name: in_space(end) for name, end in ends.items()}
+    return points | {"P": in_space(hand)}
+
+
+__all__ = ["draw"]

@@ -1,0 +1,1 @@
+"""Which lemmas solve an arm: one file for each structure, and the choice between them."""

@@ -1,0 +1,160 @@
+"""An arm as single joints: a turn or slide along z each, and the constant motion to the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from closedform.mechanics.arm import Serial
+from closedform.mechanics.frames import homogeneous, inverse, rotation
+from closedform.scaffold.chains.maker import Z
+
+
+@dataclass(frozen=True)
+class Single:
+    """``Rz(turn)``, then the ``shift`` and the rotation ``end`` to the frame of the next joint.
+
+    ``number`` counts the joints of the arm from 1.
+    """
+
+    number: int
+    joint: sp.Symbol
+    turn: sp.Expr
+    slides: bool
+    shift: sp.Matrix
+    end: sp.Matrix
+
+    @property
+    def sense(self) -> int:
+        """Whether a joint moves along or about its axis (1), or against it (-1)."""
+        return int((self.shift[2] if self.slides else self.turn).diff(self.joint))
+
+
+def slid(single: Single) -> sp.Expr:
+    """How far a slide moves along its axis; 0 for a joint that turns."""
+    return single.sense * single.joint if single.slides else sp.S.Zero
+
+
+@dataclass(frozen=True)
+class Singles:
+    """``lead``, the joints one by one; the tool is at ``last`` in the frame after the last one.
+
+    With ``inverted`` this is the arm from the tool to the base, and its target the inverse pose.
+    """
+
+    joints: tuple[Single, ...]
+    lead: sp.Matrix
+    inverted: bool = False
+
+    @property
+    def tool(self) -> sp.Matrix:
+        """The constant motion after the last joint."""
+        return _motion(self.joints[-1])
+
+    def reversed(self) -> Singles:
+        """The arm seen from its tool: the inverse of each motion, in the opposite order."""
+        still = [replace(s, shift=s.shift - slid(s) * Z) for s in self.joints]
+        after = [_inverse(self.lead), *(_inverse(_motion(s)) for s in still)]
+        joints = []
+        for k in range(len(self.joints) - 1, -1, -1):
+            single, motion = self.joints[k], after[k]
+            joints.append(
+                replace(
+                    single,
+                    turn=-single.turn,
+                    shift=motion[:3, 3] - slid(single) * Z,
+                    end=motion[:3, :3],
+                )
+            )
+        return Singles(tuple(joints), after[-1], not self.inverted)
+
+    def with_given(self, number: int, value: sp.Symbol) -> Singles:
+        """The arm with a joint that has a known ``value``."""
+        k = next(i for i, s in enumerate(self.joints) if s.number == number)
+        known = {self.joints[k].joint: value}
+        turned = rotation("z", self.joints[k].turn.xreplace(known)).applyfunc(sp.expand_trig)
+        fixed = sp.diag(turned, 1) * _motion(self.joints[k]).xreplace(known)
+        others = [*self.joints[:k], *self.joints[k + 1 :]]
+        if k == 0:
+            return Singles(tuple(others), _simplified(self.lead * fixed), self.inverted)
+        before = _simplified(_motion(others[k - 1]) * fixed)
+        others[k - 1] = replace(others[k - 1], shift=before[:3, 3], end=before[:3, :3])
+        return Singles(tuple(others), self.lead, self.inverted)
+
+    def met(self, first: int, count: int) -> Singles | None:
+        """The same with the origins of joints that meet in one point moved there; None if not."""
+        joints = list(self.joints)
+        lead = self.lead
+        chosen = joints[first : first + count]
+        if len(chosen) < count or any(j.slides for j in chosen):
+            return None
+        for k in range(first, first + count - 1):
+            shift, axis = joints[k].shift, joints[k].end * Z
+            across = axis[:2, 0]
+            if across.is_zero_matrix:
+                return None
+            beta = sp.simplify(across.dot(shift[:2, 0]) / across.dot(across))
+            rest = (shift - beta * axis).applyfunc(sp.simplify)
+            if not rest[:2, 0].is_zero_matrix:
+                return None
+            alpha = rest[2]
+            if alpha != 0:
+                if k > first:
+                    return None
+                if k == 0:
+                    move = lead[:3, :3] * (alpha * Z)
+                    lead = lead.copy()
+                    lead[:3, 3] = lead[:3, 3] + move
+                else:
+                    before = joints[k - 1]
+                    moved = (before.shift + before.end * (alpha * Z)).applyfunc(sp.simplify)
+                    joints[k - 1] = replace(before, shift=moved)
+            joints[k] = replace(joints[k], shift=sp.zeros(3, 1))
+            onward = (joints[k + 1].shift + beta * Z).applyfunc(sp.simplify)
+            joints[k + 1] = replace(joints[k + 1], shift=onward)
+        return Singles(tuple(joints), lead, self.inverted)
+
+
+def singles(arm: Serial) -> Singles:
+    """The joints of an arm one by one; the tool is part of the last motion."""
+    joints: list[Single] = []
+    names = iter(arm.joints)
+    for group in arm.groups:
+        for i, row in enumerate(group.rows):
+            end = group.end if i == len(group.rows) - 1 else sp.eye(3)
+            number = len(joints) + 1
+            joints.append(
+                Single(
+                    number=number,
+                    joint=next(names),
+                    turn=row.turn,
+                    slides=row.slides,
+                    shift=sp.Matrix(row.shift),
+                    end=end,
+                )
+            )
+    last = joints[-1]
+    motion = _motion(last) * arm.last
+    joints[-1] = replace(last, shift=motion[:3, 3], end=motion[:3, :3])
+    return Singles(tuple(joints), arm.lead)
+
+
+def parallel(single: Single) -> bool:
+    """Whether the axis after a joint is parallel to its own."""
+    return bool((single.end * Z)[:2, 0].applyfunc(sp.simplify).is_zero_matrix)
+
+
+def _motion(single: Single) -> sp.Matrix:
+    return homogeneous(single.end, tuple(single.shift))
+
+
+def _inverse(motion: sp.Matrix) -> sp.Matrix:
+    return inverse(motion).applyfunc(sp.expand)
+
+
+def _simplified(motion: sp.Matrix) -> sp.Matrix:
+    return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
+
+
+__all__ = ["Single", "Singles", "parallel", "singles", "slid"]

@@ -1,0 +1,297 @@
+"""Proposes the chain of lemmas for arms of known structure, as the lines that you would write.
+
+Known structures come first (``known.py``), then chains of subproblems for axes of any direction:
+wrists and shoulders (``subproblems.py``), six joints without one (``six.py``), joints that
+slide (``slides.py``).  You accept or edit the lines, and the proof decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, partial
+from typing import Any, NamedTuple
+
+from closedform.mechanics.arm import Serial
+from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
+from closedform.scaffold.chains.arm_angle import ArmAngleMaker
+from closedform.scaffold.chains.chainlinks import Single, Singles, singles
+from closedform.scaffold.chains.decoupled import DecoupledMaker
+from closedform.scaffold.chains.degree import Solutions, is_regular, solutions, solutions_of_few
+from closedform.scaffold.chains.known import KnownMaker
+from closedform.scaffold.chains.maker import Maker
+from closedform.scaffold.chains.proposal import NoChainError, Proposal, Tried
+from closedform.scaffold.chains.six import SixMaker
+from closedform.scaffold.chains.subproblems import SubproblemMaker
+from closedform.scaffold.source import GIVEN
+
+
+def propose(
+    arm: Serial,
+    given: str = "",
+    progress: Callable[[str], None] = lambda _: None,
+    refused: Sequence[Tried] = (),
+) -> Proposal:
+    """The first chain for an arm that is not ``refused``; :class:`NoChainError` if none is known.
+
+    Of an arm of seven joints one is ``given``, by default one that makes the chain short, or
+    ``arm_angle``.
+    """
+    _require_few(arm)
+    tried: list[Tried] = [*refused]
+    never = {t.name for t in refused}
+    names = {ARM_ANGLE, *(j.name for j in arm.joints)}
+    if given and (len(arm.joints) != 7 or given not in names):
+        raise NoChainError(
+            f"{given} cannot be given",
+            "Of an arm of seven joints one can be given, by its name in the table, or arm_angle.",
+        )
+    for degree in (2, 4):
+        left = {t.name for t in tried if t.error.degree == degree}
+        if degree > 2 and not left:
+            break
+        for name, maker, write in _candidates(arm, given):
+            if name in never or (degree > 2 and name not in left):
+                continue
+            progress(f"trying {name}")
+            maker.degree = degree
+            try:
+                found = write()
+            except NoChainError as error:
+                tried = [*(t for t in tried if t.name != name), Tried(name, error)]
+                continue
+            tried = [t for t in tried if t.name != name]
+            lemmas = tuple(dict.fromkeys(maker.used))
+            return Proposal(
+                name=name,
+                structure=found,
+                lines=tuple(maker.lines),
+                lemmas=lemmas,
+                branches=maker.branches,
+                tried=tuple(tried),
+            )
+    raise refused[0].error.after(tried) if refused else _refusal(arm, given, tried, progress)
+
+
+def _require_few(arm: Serial) -> None:
+    """Refuse an arm whose pose leaves more than one joint free."""
+    names = [joint.name for joint in arm.joints]
+    if (more := len(names) - 6) > 1:
+        unit = "m" if singles(arm).joints[0].slides else "rad"
+        raise NoChainError(
+            f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
+            f"one of them given",
+            f"Give values to {more - 1} of them, or to {more}: in a DH table, a line such as "
+            f"'# {names[0]} = 0.1 {unit}: held' makes a joint a parameter, an input of all printed "
+            f"functions.  Of a URDF file take the part between two links, with --base and --tool.  "
+            f"Otherwise use a numeric inverse, such as that of Pinocchio.",
+        )
+
+
+def _refusal(
+    arm: Serial, given: str, tried: Sequence[Tried], progress: Callable[[str], None]
+) -> NoChainError:
+    """Why no chain is known, with the degree of what is left if that is known or can be counted."""
+    n, whole = len(arm.joints), singles(arm)
+    error = next((t.error for t in tried if t.error.degree), tried[0].error)
+    if n == 7 and given != ARM_ANGLE:
+        single, *others = _to_give(whole, given)
+        if others:
+            other = f"Choose another joint with --given to count its solutions.  {NUMERIC}"
+            error = NoChainError(NEITHER, other)
+        progress(f"counting the solutions with {single.joint} given")
+        with_it = f"with {single.joint} given "
+        error = _counted(error, solutions(whole.with_given(single.number, GIVEN)), with_it)
+    elif n == 6 and not error.degree:
+        progress("counting the solutions")
+        error = _counted(error, solutions(whole))
+    elif n == 6 and not any(joint.slides for joint in whole.joints):
+        error = NoChainError(error.found, f"{error.needed}  {NUMERIC}", error.degree)
+    elif n < 6 and arm.coordinates() is None and not error.degree:
+        progress("counting the solutions")
+        error = _counted_few(error, solutions_of_few(whole))
+    return error.after(tried)
+
+
+NUMERIC = "Use ssik for a numeric inverse."
+NEITHER = (
+    "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and two "
+    "neighbours among the rest that are parallel or meet"
+)
+
+
+def _counted(error: NoChainError, counted: Solutions | None, given: str = "") -> NoChainError:
+    """The error with the degree of the equations for a pose, if their solutions were counted."""
+    needed = error.needed if NUMERIC in error.needed else f"{error.needed}  {NUMERIC}"
+    if counted is None:
+        return NoChainError(error.found, needed)
+    *few, last = (str(n) for n in reversed(counted.steps))
+    degrees = f"equations of degree {', '.join(few)} and {last}" if few else "one equation"
+    told = (
+        f"Two numerical counts agree that {given}a pose has {counted.number} solutions in complex "
+        f"numbers, at least, which {degrees} {'give' if few else 'gives'}"
+    )
+    if counted.solvable:
+        return NoChainError(
+            error.found, f"{told}; so a chain of your own may solve them.  {needed}"
+        )
+    found = f"{error.found}, and {given}there is no closed form: degree {counted.degree}"
+    return NoChainError(found, f"{told}; roots do not solve them.  {needed}", counted.degree)
+
+
+def _counted_few(error: NoChainError, number: int | None) -> NoChainError:
+    """The same for fewer than six joints, whose poses have a few solutions."""
+    needed = f"{error.needed}  Otherwise use a numeric inverse, such as that of Pinocchio."
+    if number is None or number > 4:
+        return NoChainError(error.found, needed)
+    some, degree = "1 solution", "1 give it"
+    if number > 1:
+        some, degree = f"{number} solutions", f"{number} or less give them"
+    told = (
+        f"Two numerical counts agree that a pose of the arm has {some} in complex numbers, at "
+        f"least.  Equations of degree {degree}, so a chain of your own may do so."
+    )
+    return NoChainError(error.found, f"{told}  {needed}", number)
+
+
+_Solve = Callable[[Any, Singles], str]
+"""A method of a maker that solves an arm, and says what was recognised."""
+
+
+class _Candidate(NamedTuple):
+    """A chain to try: ``write`` lets the maker write its lines, and says what was recognised."""
+
+    name: str
+    maker: Maker
+    write: Callable[[], str]
+
+
+def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
+    """The chains to try, the cheapest first."""
+    n, task = len(arm.joints), arm.coordinates()
+    if task is not None or n == 6:
+        known = KnownMaker(arm)
+        yield _Candidate("a known structure", known, known.whole)
+    whole = singles(arm)
+    if n == 7:
+        yield from _seven(arm, whole, given)
+    elif n == 6:
+        yield from _six(arm, whole)
+    elif task is not None:
+        yield from _with_coordinates(arm, whole, task.names)
+    else:
+        yield from _fewer_than_six(arm, whole)
+    if task is None and n <= 6 and any(joint.slides for joint in whole.joints):
+        for seen, view in (("", whole), (", from the tool", whole.reversed())):
+            decoupled = DecoupledMaker(arm)
+            write = partial(decoupled.decoupled, view)
+            yield _Candidate(f"slides apart from turns{seen}", decoupled, write)
+
+
+def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:
+    """An arm of seven joints, with the arm angle or one of them given."""
+    if given == ARM_ANGLE:
+        maker = ArmAngleMaker(arm)
+        yield _Candidate("the arm angle", maker, partial(maker.solved_by_arm_angle, whole))
+        return
+    for single in _to_give(whole, given):
+        yield from _six(arm, whole, single)
+
+
+def _to_give(whole: Singles, given: str = "") -> list[Single]:
+    """The joints of seven that may be ``given``: slides, then those that most arms repeat."""
+    joints = sorted((whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)), key=lambda j: not j.slides)
+    return [j for j in joints if given in ("", j.joint.name)]
+
+
+def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> Iterator[_Candidate]:
+    """Three joints for a point, and another one for its yaw."""
+    maker = SubproblemMaker(arm)
+    met = _met(whole, ((0, 2), (1, 2)))
+    if names == ("x", "y", "z"):
+        yield _Candidate("three joints for a point", maker, partial(maker.solved_point, met))
+    elif names == ("x", "y", "z", "yaw"):
+        write = partial(maker.solved_level, met)
+        yield _Candidate("three joints and a level tool", maker, write)
+
+
+def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
+    """Up to three joints before or after others whose axes meet."""
+    n = len(arm.joints)
+    for which, view, counts in (("last", whole, (3, 2, 1)), ("first", whole.reversed(), (3, 2))):
+        for wrist in (w for w in counts if 0 <= n - w <= 3):
+            maker = SubproblemMaker(arm)
+            name = f"the {which} {wrist} of {n} joints"
+            yield _Candidate(name, maker, partial(_fewer, maker, view, wrist))
+    if n == 5 and not any(joint.slides for joint in whole.joints):
+        maker = SubproblemMaker(arm)
+        write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
+        yield _Candidate("three parallel joints", maker, write)
+
+
+def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
+    """The arm with the origins of those neighbours that meet moved to where they do."""
+    for first, count in pairs:
+        whole = whole.met(first, count) or whole
+    return whole
+
+
+def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
+    start = len(whole.joints) - wrist
+    found = whole.met(start, wrist)
+    if found is None:
+        which = "first" if whole.inverted else "last"
+        raise NoChainError(
+            f"its {which} {wrist} axes do not meet in a point",
+            "The known chains have up to three joints before those whose axes meet in a point.",
+        )
+    structure = maker.solved(_met(found, [(k, 2) for k in range(start - 1)]), wrist)
+    joints = f"{wrist} joints that turn" if wrist > 1 else "1 joint that turns"
+    return f"{structure}, and {joints} the tool"
+
+
+def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_Candidate]:
+    """An arm of six joints that are not given, from its base and from its tool."""
+    left = whole if given is None else whole.with_given(given.number, GIVEN)
+    more = "" if given is None else f", with {given.joint} given"
+    views = (left, left.reversed())
+    regular = cache(partial(is_regular, left))
+
+    def candidate(name: str, maker: SubproblemMaker, solve: _Solve, view: Singles) -> _Candidate:
+        def write() -> str:
+            if given is not None:
+                maker.require(
+                    regular(),
+                    f"with {given.joint} given, the other joints do not move the tool in six ways",
+                    "Give another joint.",
+                )
+                maker.give(given)
+            return solve(maker, view) + more
+
+        return _Candidate(f"{name}{more}", maker, write)
+
+    for view, wrist in zip(views, ("spherical wrist", "spherical shoulder"), strict=True):
+        yield candidate(wrist, SubproblemMaker(arm), _with_wrist, view)
+    if any(joint.slides for joint in left.joints):
+        return
+    for name, solve in (
+        ("three parallel axes in the middle", SixMaker.parallel_middle),
+        ("three parallel axes at the end", SixMaker.parallel_first),
+        ("three axes in the middle that meet", SixMaker.meeting_middle),
+    ):
+        for view, seen in zip(views, ("", ", from the tool"), strict=True):
+            yield candidate(f"{name}{seen}", SixMaker(arm), solve, view)
+
+
+def _with_wrist(maker: SubproblemMaker, whole: Singles) -> str:
+    ends = [s.number for s in whole.joints[3:]]
+    found = whole.met(3, 3)
+    if found is None:
+        raise NoChainError(
+            f"axes {ends[0]}, {ends[1]} and {ends[2]} do not meet in a point",
+            "A spherical wrist or shoulder needs three axes that meet.",
+        )
+    structure = maker.solved(_met(found, ((0, 2), (1, 2))), 3)
+    return f"spherical {'shoulder' if whole.inverted else 'wrist'}, {structure}"
+
+
+__all__ = ["NoChainError", "Proposal", "propose"]

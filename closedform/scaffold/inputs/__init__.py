@@ -1,0 +1,1 @@
+"""The files that describe an arm: tables of joints, URDF and MJCF."""

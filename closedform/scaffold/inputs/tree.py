@@ -1,0 +1,466 @@
+"""A tree of links, as in files that describe robots, and the chain from a base to a tool.
+
+Such files contain rounded numbers.  Rounded angles, such as 1.5708, become the fraction of pi that
+they stand for, and noise that the arithmetic of an exporter added to lengths and axes is removed;
+the notes say so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import sympy as sp
+
+from closedform.mechanics.frames import exponential, homogeneous, rotation
+from closedform.model.functions import real
+from closedform.scaffold.inputs.exact import orthonormal, turned_on, unit_vector, without_squares
+from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, led, symbol_of
+from closedform.scaffold.inputs.tables import (
+    JOINTS,
+    Table,
+    TableError,
+    add_joint,
+    shown_name,
+    use_exact,
+)
+
+LARGEST = 2_000_000
+"""Maximum size of a file in bytes; meshes are files of their own."""
+NOISE = sp.Rational(1, 10**9)
+"""Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
+MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
+"""A length this close to a number with this many decimals stands for it; finally, nanometres."""
+ALONG = 2e-5
+"""A direction this close to an axis of coordinates, in radians, stands for it."""
+NEAR = sp.Rational(1, 2000)
+"""An angle this close to a multiple of pi/12 stands for it."""
+SHORT = 1 / 200
+"""Of the longest length of a chain: a shorter one is named if no inverse is found."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The links between which the chain is read; ``ignore`` is a length that counts as 0.
+
+    By default the chain leads from the root to the only end that has joints before it.
+    """
+
+    base: str = ""
+    tool: str = ""
+    ignore: float = 0.0
+
+
+DEFAULT = Choice()
+
+
+def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
+    """The chain of a file, as axes at home."""
+    if not joints:
+        raise TableError(f"{file}: there are no joints")
+    chain = led(_chain(joints, choice.base, choice.tool, file), joints, file)
+    table = Table(notes=[note for joint in chain for note in joint.notes])
+    as_written = chain
+    chain = _without_short(chain, choice.ignore, file, table.notes)
+    table.end = chain[-1].child
+    table.doubt = _doubt(chain)
+    if not choice.tool:
+        table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
+    found = [_Placed.of(chain, table, Displacement.of(as_written), file)]
+    if len(found[0].angles) > 1:  # sines of several angles are slow: joints may turn them back
+        found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
+    table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
+    if not table.axes:
+        raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
+    couple(mimics, table)
+    table.axes = [(joint + offsets.get(joint, 0), w, at) for joint, w, at in table.axes]
+    table.notes.append(
+        f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
+        f"{shown_name(chain[-1].child)}"
+    )
+    table.notes += moved.notes(file)
+    use_exact(table, file)
+    return table
+
+
+class _Placed(NamedTuple):
+    """A table with the axes of a chain at home, the joints that mimic others, and offsets."""
+
+    table: Table
+    moved: Displacement
+    mimics: list[Mimic]
+    offsets: dict[sp.Symbol, sp.Expr]
+
+    @classmethod
+    def of(
+        cls,
+        chain: Sequence[Joint],
+        table: Table,
+        moved: Displacement,
+        file: str,
+        *,
+        offsets: bool = False,
+    ) -> _Placed:
+        """The axes where all joints are zero; with ``offsets``, where they have turned back what
+        their origins turn them about their own axes."""
+        table, place = deepcopy(table), sp.eye(4)
+        mimics: list[Mimic] = []
+        turned: dict[sp.Symbol, sp.Expr] = {}
+        for joint in chain:
+            where = f"{file}, joint {shown_name(joint.name)}"
+            angle = _own_turn(joint) if offsets and not joint.mimics else sp.S.Zero
+            if angle != 0:
+                joint = replace(joint, origin=_turned_back(joint, angle))
+            there = _product(place, joint.origin)
+            place = _meant_turns(there, where, table.notes)
+            moved.turn(joint, between(place, there))
+            if joint.kind == "fixed":
+                continue
+            if joint.mimics:
+                mimics.append(Mimic(joint, place, len(table.axes), file))
+                place = _product(place, _offset(joint, where, table.notes))
+                continue
+            if not table.axes and not _along_axes(place):
+                # what a tilted mount does to all axes stays apart
+                table.base, place = place, sp.eye(4)
+            name = symbol_of(joint.name)
+            add_joint(table, name, MOVING[joint.kind], where)
+            axis = _unit(joint.axis, place[:3, :3], table, where)
+            direction = (place[:3, :3] * axis).applyfunc(sp.expand)
+            table.axes.append((real(name), list(direction), list(place[:3, 3])))
+            turned[real(name)] = angle
+            if name != joint.name:
+                table.notes.append(f"{where}: it is called {name}")
+            if joint.limits:
+                table.limits[name] = joint.limits
+        table.home = place
+        return cls(table, moved, mimics, turned)
+
+    @property
+    def angles(self) -> set[sp.Expr]:
+        """The angles whose sines and cosines the axes and the tool contain."""
+        vectors = [v for _, *both in self.table.axes for v in both]
+        entries = [*self.table.home, *(e for v in vectors for e in v)]
+        return {f.args[0] for e in entries for f in e.atoms(sp.sin, sp.cos)}
+
+
+def _own_turn(joint: Joint) -> sp.Expr:
+    """The angle of a turn about the axis of a joint after which its origin has no other turn.
+
+    It is 0 if there is none, and if the origin does not need it.
+    """
+    R = joint.origin[:3, :3]
+    if MOVING.get(joint.kind) != "revolute" or not R.has(sp.sin, sp.cos):
+        return sp.S.Zero
+    if not orthonormal(joint.axis):
+        return sp.S.Zero
+    held = {f.args[0] for f in R.atoms(sp.sin, sp.cos)}
+    for angle in (k * a for a in sorted(held, key=sp.default_sort_key) for k in (1, -1)):
+        if not _turned_back(joint, angle)[:3, :3].has(sp.sin, sp.cos):
+            return angle
+    return sp.S.Zero
+
+
+def _turned_back(joint: Joint, angle: sp.Expr) -> sp.Matrix:
+    """The origin of a joint, which has turned back by an angle."""
+    return _product(joint.origin, exponential(sp.Matrix([0, 0, 0, *joint.axis]), -angle))
+
+
+def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:
+    """How far a joint that mimics another is moved if that one is at zero."""
+    if joint.offset == 0:
+        return sp.eye(4)
+    if not orthonormal(joint.axis):
+        raise TableError(
+            f"{where}: it mimics {shown_name(joint.mimics)} with an offset, and its axis is not "
+            f"along the coordinates; put the offset into the origin of the next joint"
+        )
+    if MOVING[joint.kind] == "prismatic":
+        return homogeneous(sp.eye(3), tuple(joint.offset * joint.axis))
+    twist = sp.Matrix([0, 0, 0, *joint.axis])
+    return exponential(twist, meant_angle(joint.offset, f"{where}: offset", notes))
+
+
+class Displacement:
+    """How far what was taken for other numbers moves the tool, in any posture."""
+
+    def __init__(self) -> None:
+        self.turned = self.moved = 0.0
+        self.after: dict[str, float] = {}
+        self.slides = False
+
+    @classmethod
+    def of(cls, chain: Sequence[Joint]) -> Displacement:
+        found, after = cls(), 0.0
+        for joint in reversed(chain):
+            if MOVING.get(joint.kind) == "prismatic":
+                found.slides = True
+            found.after[joint.name] = after
+            if joint.written is not None:
+                place, axis = joint.written
+                found.turn(joint, between(joint.origin, place))
+                found.moved += _size(joint.origin[:3, 3] - place[:3, 3])
+                if joint.kind in MOVING:
+                    found.turn(joint, 2 * _between(joint.axis, axis))
+            after += _size(joint.origin[:3, 3])
+        return found
+
+    def turn(self, joint: Joint, angle: float) -> None:
+        """Add a turn of what comes after a joint."""
+        self.turned += angle
+        self.moved += angle * self.after[joint.name]
+
+    def notes(self, file: str) -> list[str]:
+        if max(self.turned, self.moved) < NOISE:
+            return []
+        slides = ", with its slides at 0," if self.slides else ""
+        return [
+            f"{file}: what is taken for other numbers moves the tool{slides} by at most "
+            f"{_rounded_up(self.moved)}, and turns it by at most {_rounded_up(self.turned)} rad"
+        ]
+
+
+def between(one: sp.Matrix, other: sp.Matrix) -> float:
+    """The angle of the rotation between those of two poses."""
+    if one == other:
+        return 0.0
+    return 2 * math.asin(min(1.0, _size(one[:3, :3] - other[:3, :3]) / math.sqrt(8)))
+
+
+def _between(one: sp.Matrix, other: sp.Matrix) -> float:
+    """The angle between two directions."""
+    return math.asin(min(1.0, _size(one.cross(other)) / (_size(one) * _size(other))))
+
+
+def _unit(axis: sp.Matrix, frame: sp.Matrix, table: Table, where: str) -> sp.Matrix:
+    """The unit vector that the decimals of an axis stand for, if its frame hides them later."""
+    if not frame.has(sp.sin, sp.cos) or orthonormal(axis):
+        return axis
+    seen = [(frame.T * sp.Matrix(v)).applyfunc(without_squares) for _, v, _ in table.axes]
+    unit = unit_vector(axis, [v for v in seen if not v.has(sp.sin, sp.cos)])
+    if unit is None:
+        return axis
+    table.notes.append(
+        f"{where}: the axis {_listed(axis)} is rounded; the unit vector "
+        f"({', '.join(map(str, unit))}) is used instead"
+    )
+    return unit
+
+
+def _size(value: sp.Matrix) -> float:
+    return math.sqrt(sum(float(e.evalf(30)) ** 2 for e in value))
+
+
+def _without_short(
+    chain: Sequence[Joint], ignore: float, file: str, notes: list[str]
+) -> list[Joint]:
+    """The chain with lengths of at most ``ignore`` as 0; the notes say how far that is from it."""
+    kept, moved = [], 0.0
+    for joint in chain:
+        place = joint.origin.copy()
+        short = [i for i in range(3) if 0 < abs(float(place[i, 3])) <= ignore]
+        if short:
+            lengths = [float(place[i, 3]) for i in short]
+            moved += math.hypot(*lengths)
+            notes.append(
+                f"{file}, joint {shown_name(joint.name)}: {', '.join(f'{e:.6g}' for e in lengths)} "
+                f"is taken for 0, because of --ignore"
+            )
+            for i in short:
+                place[i, 3] = sp.S.Zero
+        kept.append(replace(joint, origin=place))
+    if moved:
+        notes.append(
+            f"{file}: without these lengths the tool is at most {_rounded_up(moved)} from where "
+            f"the file has it; its orientation is the same"
+        )
+    return kept
+
+
+def _rounded_up(length: float) -> str:
+    if length < 1e-12:  # what rounding adds
+        return "0"
+    step = 10.0 ** (math.floor(math.log10(length)) - 1)
+    return f"{math.ceil(length / step - 1e-9) * step:.2g}"
+
+
+def _doubt(chain: Sequence[Joint]) -> str:
+    """What to try if no inverse is found: a sentence on lengths that may not be meant, or none."""
+    sizes = [(abs(float(e)), joint.name) for joint in chain for e in joint.origin[:3, 3] if e != 0]
+    longest = max(sizes, default=(0.0, ""))[0]
+    short = [found for found in sizes if found[0] < SHORT * longest]
+    if not short:
+        return ""
+    length, name = max(short)
+    return (
+        f"The file has lengths such as {length:.6g}, of the joint {shown_name(name)}; if they are "
+        f"not meant, leave them out with --ignore {_rounded_up(length)}."
+    )
+
+
+def _gripper(chain: Sequence[Joint]) -> str:
+    """What to try if the last joint does not carry the tool: a sentence."""
+    last = [joint for joint in chain if joint.kind in MOVING][-1:]
+    return "".join(
+        f"If the last joint, {shown_name(j.name)}, opens a hand, end the chain before it, with "
+        f"--tool {shown_name(j.parent)}."
+        for j in last
+    )
+
+
+def placed(xyz: Sequence[sp.Expr], rpy: Sequence[sp.Expr]) -> sp.Matrix:
+    """A pose from its position and from turns about the fixed axes x, y and z, in this order."""
+    x, y, z = rpy
+    return homogeneous(rotation("z", z) * rotation("y", y) * rotation("x", x), tuple(xyz))
+
+
+def meant_number(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
+    """A number, or 0 if it is noise."""
+    return value if abs(value) >= NOISE else _taken(value, sp.S.Zero, what, notes)
+
+
+def meant_length(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
+    """A length without what the arithmetic of an exporter added to it."""
+    for decimals, near in MEANT:
+        short = sp.Rational(round(value * 10**decimals), 10**decimals)
+        if abs(value - short) < near and (decimals or short == 0):
+            return _taken(value, short, what, notes)
+    return value
+
+
+def _taken(value: sp.Rational, meant: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
+    if value != meant:
+        notes.append(f"{what} {float(value)!r} is taken for {float(meant):.12g}")
+    return meant
+
+
+def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
+    """An axis: along the coordinates if it nearly is, a unit vector if its length is rational."""
+    size = max(map(abs, given))
+    others = sp.sqrt(given.dot(given) - size**2)
+    if 0 < others < ALONG * size:
+        found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
+        notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
+        return found
+    length = sp.sqrt(given.dot(given))
+    return given / length if length.is_Rational and length != 1 else given
+
+
+def _listed(vector: sp.Matrix) -> str:
+    return "(" + ", ".join(f"{float(e):.12g}" for e in vector) + ")"
+
+
+def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
+    """The multiple of pi/12 that was rounded to a number, or the number.
+
+    Right angles are written with two decimals too, as 1.57 and 3.14.
+    """
+    steps = sp.Integer(round(float(value) * 12 / math.pi))
+    exact = steps * sp.pi / 12
+    short = steps % 6 == 0 and value == sp.Rational(f"{float(exact):.2f}")
+    if value == 0 or (abs(sp.N(exact - value, 30)) > NEAR and not short):
+        return value
+    notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
+    return exact
+
+
+def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joint]:
+    """The joints from the base to the tool."""
+    above: dict[str, Joint] = {}
+    for joint in joints:
+        if joint.child in above:
+            raise TableError(
+                f"{file}: the link {shown_name(joint.child)} has two parents; closed loops are "
+                f"written with --from loop"
+            )
+        above[joint.child] = joint
+    links = {j.parent for j in joints} | set(above)
+    for given, what in ((base, "base"), (tool, "tool")):
+        if given and given not in links:
+            raise TableError(
+                f"{file}: there is no link {shown_name(given)} for the {what}; the links are "
+                f"{', '.join(sorted(map(shown_name, links)))}"
+            )
+    if not tool:
+        tool = _only_end(above, {j.parent for j in joints}, file)
+    found: list[Joint] = []
+    link = tool
+    while link != base and link in above:
+        joint = above[link]
+        if joint.kind in ("ball", "floating", "planar"):
+            raise TableError(
+                f"{file}, joint {shown_name(joint.name)}: a {joint.kind} joint has no closed "
+                f"form here; choose a base after it, such as --base {shown_name(joint.child)}"
+            )
+        if len(found) > 20 * JOINTS:
+            raise TableError(f"{file}: the links form a circle")
+        found.insert(0, joint)
+        link = joint.parent
+    if base and link != base:
+        raise TableError(
+            f"{file}: {shown_name(tool)} is not carried by {shown_name(base)}; its root is "
+            f"{shown_name(link)}"
+        )
+    return found
+
+
+def _along_axes(place: sp.Matrix) -> bool:
+    """Whether a pose turns the axes of coordinates to each other."""
+    return all(e in (-1, 0, 1) for e in place[:3, :3])
+
+
+def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
+    """The end of the only chain that moves, with the fixed links at its end."""
+    ends: dict[tuple[str, ...], list[str]] = {}
+    for link in sorted(set(above) - parents):
+        moving: list[str] = []
+        at = link
+        while at in above and len(moving) <= JOINTS:
+            if above[at].kind in MOVING:
+                moving.insert(0, above[at].name)
+            at = above[at].parent
+        ends.setdefault(tuple(moving), []).append(link)
+    longest = [m for m in ends if m and not any(m != o and m == o[: len(m)] for o in ends)]
+    if not longest:
+        raise TableError(f"{file}: no joint moves")
+    if len(longest) > 1 or len(ends[longest[0]]) > 1:
+        choices = sorted(shown_name(link) for m in longest for link in ends[m])
+        raise TableError(
+            f"{file}: there are several ends; choose one with --tool: {', '.join(choices)}"
+            f"{_parting([link for m in longest for link in ends[m]], above)}"
+        )
+    return ends[longest[0]][0]
+
+
+def _parting(ends: Sequence[str], above: Mapping[str, Joint]) -> str:
+    """A clause on the link where the chains to some ends part, if joints that move lead there."""
+    chains = []
+    for end in ends:
+        chain = [end]
+        while chain[0] in above and len(chain) <= 20 * JOINTS:
+            chain.insert(0, above[chain[0]].parent)
+        chains.append(chain)
+    common = [links[0] for links in zip(*chains, strict=False) if len(set(links)) == 1]
+    moving = [above[link].name for link in common if link in above and above[link].kind in MOVING]
+    if not moving:
+        return ""
+    joints = shown_name(moving[0])
+    if len(moving) > 1:
+        joints = f"the {len(moving)} joints {joints} to {shown_name(moving[-1])}"
+    return f"; or {shown_name(common[-1])}, where they part, after {joints}"
+
+
+def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
+    shifted = a[:3, :3] * b[:3, 3] + a[:3, 3]
+    return homogeneous(turned_on(a[:3, :3], b[:3, :3]), tuple(shifted.applyfunc(sp.expand)))
+
+
+def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
+    """A pose with the multiples of pi/12 to which angles add up, as 2.7549 and 0.3867 do."""
+    held = place.atoms(sp.sin, sp.cos)
+    sums = sorted({f.args[0] for f in held}, key=sp.default_sort_key)
+    meant = {a: meant_angle(a, f"{where}, together with the turns before it", notes) for a in sums}
+    return place.xreplace({f: f.func(meant[f.args[0]]) for f in held})

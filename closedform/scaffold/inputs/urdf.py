@@ -1,0 +1,160 @@
+"""Reads a serial arm from a URDF file: the axes of its joints at home, and the pose of a link.
+
+A URDF file is data: entities and other declarations are refused, and every number is read exactly.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError, ParserCreate
+
+import sympy as sp
+
+from closedform.algebra.formulas import FormulaError, number, shown
+from closedform.scaffold.inputs.joints import MOVING, Joint
+from closedform.scaffold.inputs.tables import Table, TableError, content_of, shown_name
+from closedform.scaffold.inputs.tree import (
+    DEFAULT,
+    LARGEST,
+    Choice,
+    meant_angle,
+    meant_axis,
+    meant_length,
+    meant_number,
+    placed,
+    table_of,
+)
+
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+"""A file that was expanded may mention macros in its comments."""
+
+
+def read_urdf(path: Path, choice: Choice = DEFAULT) -> Table:
+    """The chain of the ``choice``; by default from root to end."""
+    joints = [_joint(element, path.name) for element in _root(path).findall("joint")]
+    return table_of(joints, path.name, choice)
+
+
+def _root(path: Path) -> ElementTree.Element:
+    content = content_of(path, LARGEST, "a URDF file")
+    if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
+        raise TableError(f"{path.name}: declarations such as <!ENTITY> are not read")
+    try:
+        root = _parsed(content)
+    except (ExpatError, ValueError, LookupError) as error:
+        raise TableError(f"{path.name} is not valid XML: {error}") from error
+    if root.tag != "robot":
+        raise TableError(f"{path.name}: the file is not URDF, which begins with <robot>")
+    if b"xmlns:xacro" in content and b"<xacro:" in COMMENT.sub(b"", content):
+        raise TableError(f"{path.name}: expand it first: xacro {path.name} > robot.urdf")
+    return root
+
+
+def _parsed(content: bytes) -> ElementTree.Element:
+    """The root element; prefixes that are not declared, as in parts for Gazebo, are left alone."""
+    tree, parser = ElementTree.TreeBuilder(), ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = tree.start, tree.end
+    parser.Parse(content, True)
+    return tree.close()
+
+
+def _joint(element: ElementTree.Element, file: str) -> Joint:
+    notes: list[str] = []
+    name, kind = element.get("name", ""), element.get("type", "")
+    where = f"{file}, joint {shown_name(name)}"
+    if not name:
+        raise TableError(f"{file}: a joint has no name")
+    if kind not in (*MOVING, "fixed", "floating", "planar"):
+        raise TableError(f"{where}: its type is {shown(kind)}, which URDF does not know")
+    links = []
+    for end in ("parent", "child"):
+        found = element.find(end)
+        if found is None or not found.get("link"):
+            raise TableError(f"{where}: it has no {end} link")
+        links.append(found.get("link", ""))
+    origin, axis = element.find("origin"), element.find("axis")
+    xyz, rpy, direction = (
+        _numbers(element, key, default, where)
+        for element, key, default in (
+            (origin, "xyz", (0, 0, 0)),
+            (origin, "rpy", (0, 0, 0)),
+            (axis, "xyz", (1, 0, 0)),
+        )
+    )
+    written = (placed(xyz, rpy), sp.Matrix(direction))
+    xyz = [meant_length(e, f"{where}: xyz", notes) for e in xyz]
+    rpy = [meant_number(e, f"{where}: rpy", notes) for e in rpy]
+    direction = sp.Matrix([meant_number(e, f"{where}: xyz", notes) for e in direction])
+    rpy = [meant_angle(e, where, notes) for e in rpy]
+    if kind in MOVING and direction.is_zero_matrix:
+        raise TableError(f"{where}: its axis is zero")
+    if kind in MOVING:
+        direction = meant_axis(direction, where, notes)
+    mimic = element.find("mimic")
+    meant = placed(xyz, rpy)
+    limits = None if kind == "continuous" else _limits(element.find("limit"), where, notes)
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=links[0],
+        child=links[1],
+        origin=meant,
+        axis=direction,
+        limits=limits,
+        mimics="" if mimic is None else mimic.get("joint", "another joint"),
+        factor=_number(mimic, "multiplier", 1, where),
+        offset=_number(mimic, "offset", 0, where),
+        written=None if written == (meant, direction) else written,
+        notes=tuple(notes),
+    )
+
+
+def _number(element: ElementTree.Element | None, key: str, default: int, where: str) -> sp.Rational:
+    text = None if element is None else element.get(key)
+    if text is None:
+        return sp.Integer(default)
+    try:
+        fraction = number(text.strip())
+    except FormulaError as error:
+        raise TableError(f"{where}: {key}: {error}") from error
+    return sp.Rational(fraction.numerator, fraction.denominator)
+
+
+def _limits(
+    limit: ElementTree.Element | None, where: str, notes: list[str]
+) -> tuple[str, str] | None:
+    """The least and the largest value, as they are written; None if the file has none."""
+    if limit is None or not ("lower" in limit.attrib or "upper" in limit.attrib):
+        return None
+    least, most = (limit.get(side, "0").strip() for side in ("lower", "upper"))
+    try:
+        if number(least) <= number(most):
+            return least, most
+        fault = f"{least} is larger than {most}"
+    except FormulaError as error:
+        fault = str(error)
+    notes.append(f"{where}: its limits are left out: {fault}")
+    return None
+
+
+def _numbers(
+    element: ElementTree.Element | None, key: str, default: Sequence[int], where: str
+) -> list[sp.Rational]:
+    """Three exact numbers."""
+    text = None if element is None else element.get(key)
+    if text is None:
+        return [sp.Integer(e) for e in default]
+    words = text.split()
+    if len(words) != 3:
+        raise TableError(f"{where}: {key} needs three numbers, not {shown(text)}")
+    found = []
+    for word in words:
+        try:
+            fraction = number(word)
+        except FormulaError as error:
+            raise TableError(f"{where}: {key}: {error}") from error
+        found.append(sp.Rational(fraction.numerator, fraction.denominator))
+    return found

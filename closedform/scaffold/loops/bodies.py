@@ -1,0 +1,60 @@
+"""The bodies of a closed loop, and the joints between them, as a file has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from closedform.scaffold.inputs.tables import TableError
+
+GROUND = "ground"
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of the file."""
+
+    name: str
+    kind: str
+    between: tuple[str, str]
+    at: str
+    axis: sp.Matrix | None
+    driven: bool
+
+    def other(self, body: str) -> str:
+        return self.between[1] if self.between[0] == body else self.between[0]
+
+
+@dataclass
+class Loop:
+    """The content of a file: the bodies with their points, and the joints."""
+
+    file: str
+    dimensions: int
+    hand: str
+    bodies: dict[str, dict[str, sp.Matrix]] = field(default_factory=dict)
+    rods: dict[str, sp.Expr] = field(default_factory=dict)
+    parallelograms: dict[str, sp.Matrix] = field(default_factory=dict)
+    """The rods and cranks that are parallelograms, with a vector along their short sides."""
+    joints: dict[str, Joint] = field(default_factory=dict)
+    parameters: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    def of(self, body: str) -> list[Joint]:
+        return [j for j in self.joints.values() if body in j.between]
+
+    @property
+    def symbols(self) -> set[str]:
+        """The names in the expressions."""
+        entries = [e for body in self.bodies.values() for at in body.values() for e in at]
+        entries += self.rods.values()
+        entries += [e for bar in self.parallelograms.values() for e in bar]
+        entries += [e for j in self.joints.values() if j.axis is not None for e in j.axis]
+        return {s.name for e in entries for s in e.free_symbols}
+
+    def error(self, text: str) -> TableError:
+        return TableError(f"{self.file}: {text}")
+
+
+__all__ = ["AXES", "GROUND", "Joint", "Loop"]

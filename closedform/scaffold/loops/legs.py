@@ -1,0 +1,404 @@
+"""Finds the legs of a closed loop: what each of them is, from the ground to the hand.
+
+The loops are cut at the rods: each keeps the distance of its ends.  A rod between the ground and
+the hand is a strut, which has no driven joint.  A hand that may turn, because its rods end in
+several points and are not parallelograms, needs three driven joints in a plane and six in space.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.source import source
+
+TURNING = {2: 3, 3: 6}
+"""The number of driven joints of a hand that turns, in a plane and in space."""
+
+
+@dataclass(frozen=True)
+class LoopLeg:
+    """A leg as lines of the script: what makes it, and what it is in words."""
+
+    joint: Joint
+    call: str
+    words: str
+    place: sp.Matrix
+    """Where it ends, as seen from the point that is the hand."""
+    passive: str = ""
+    """The passive slide of a rail."""
+
+
+class Legs:
+    """Finds the legs of a loop, from the ground to the hand."""
+
+    def __init__(self, loop: Loop):
+        self.loop = loop
+        self.turning = ""
+        """The body that is the hand, if it may turn."""
+        self.used: set[str] = set()
+        """The joints that legs consist of."""
+        self.arm = ""
+        """The rod that has the point of the hand, if the hand is not where rods end."""
+        self.end = "the hand"
+        """What a rod joins a leg to."""
+        self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
+        """Coordinates in the plane of a leg, while the leg of a tripod is written."""
+        angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
+        self.positive = {
+            sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in loop.symbols - set(angles)
+        }
+
+    def length(self, v: sp.Matrix) -> sp.Expr:
+        """The length of a vector, for positive parameters."""
+        square = sp.trigsimp(sp.expand(v.dot(v)).xreplace(self.positive))
+        found = sp.sqrt(sp.factor(square))
+        return found.xreplace({b: a for a, b in self.positive.items()})
+
+    def at(self, v: sp.Matrix) -> str:
+        """A point or a direction as it is written."""
+        return _tuple(self.upright(v) if self.upright else v)
+
+    def tail(self, place: sp.Matrix) -> str:
+        """The last argument of a leg, left out if its rod ends in the point of the hand."""
+        plain = self.upright or self.arm or not any(place)
+        return "" if plain else f", on_hand={_tuple(place)}"
+
+    def bar(self, body: str, length: sp.Expr) -> str:
+        """The length of a rod or a crank, or the parallelogram that it is."""
+        side = self.loop.parallelograms.get(body)
+        if side is None:
+            return source(length)
+        width = self.length(side)
+        if width == 0:
+            raise self.loop.error(f"{body}: the short sides of a parallelogram need a length")
+        way = _tuple(self.direction(side, width))
+        return f"Parallelogram({source(length)}, {way}, {source(width)})"
+
+    def rod(self, rod: str, near: Joint) -> str:
+        """The length of a rod, or what it is if it keeps the hand from turning."""
+        length = self.loop.rods[rod]
+        far = [j for j in self.loop.of(rod) if j is not near]
+        axis = self.axis_of(near, far[0]) if far else None
+        if axis is None:
+            return self.bar(rod, length)
+        if rod in self.loop.parallelograms:
+            raise self.loop.error(
+                f"{rod} is a parallelogram, so {near.name} and {far[0].name} need no axis"
+            )
+        return f"Universal({source(length)}, {self.at(axis)})"
+
+    def axis_of(self, near: Joint, far: Joint) -> sp.Matrix | None:
+        """The direction of the outer axes of the universal joints at the ends of a leg."""
+        ends = [(j, j.axis) for j in (near, far) if j.kind == "universal" and j.axis is not None]
+        if not ends:
+            return None
+        if len(ends) == 1 or self.loop.dimensions == 2:
+            raise self.loop.error(
+                f"{ends[0][0].name} has an axis; universal joints keep {self.end} from turning if "
+                f"a leg in space has them at both ends, each with the axis that is not fixed to "
+                f"the leg"
+            )
+        (_, first), (_, second) = ends
+        if any(sp.simplify(e) for e in first.cross(second)):
+            raise self.loop.error(
+                f"the axes of {near.name} and {far.name} have to be parallel, or the leg turns "
+                f"{self.end}; for a hand that turns leave both out"
+            )
+        return first
+
+    def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:
+        return (v / length).applyfunc(sp.simplify)
+
+    def driven(self) -> list[Joint]:
+        return [j for j in self.loop.joints.values() if j.driven]
+
+    def legs(self) -> list[LoopLeg]:
+        loop = self.loop
+        driven = self.driven()
+        if not driven:
+            raise loop.error("no joint is driven; set driven = true")
+        return [self.leg(j) for j in driven]
+
+    def check_all_used(self) -> None:
+        """Refuse joints that are part of no leg, and bodies without a joint."""
+        if left := [name for name in self.loop.joints if name not in self.used]:
+            raise self.loop.error(
+                f"no leg contains {listed(left)}; a leg leads from the ground to {self.end} and "
+                f"has a driven joint, and only a rod may lead there without one"
+            )
+        held = {body for joint in self.loop.joints.values() for body in joint.between}
+        if loose := [name for name in self.loop.bodies if name not in {*held, GROUND}]:
+            raise self.loop.error(f"no joint holds {listed(loose)}")
+
+    def struts(self) -> list[LoopLeg]:
+        """The rods from the ground to the hand, which no joint drives."""
+        loop = self.loop
+        found: list[LoopLeg] = []
+        for joint in loop.of(GROUND):
+            rod = joint.other(GROUND)
+            if joint.driven or rod not in loop.rods:
+                continue
+            if loop.dimensions == 2 or found:
+                raise loop.error(
+                    f"the rod {rod} leads from the ground to the hand; only one may, and only in "
+                    "space, with two driven joints"
+                )
+            self.used.add(joint.name)
+            length, place = self.bar(rod, loop.rods[rod]), self.place_on_hand(rod, joint)
+            base = self.point(GROUND, joint)
+            found.append(
+                LoopLeg(
+                    joint,
+                    f"Strut({length}, {self.at(base)}{self.tail(place)})",
+                    f"a strut of length {loop.rods[rod]} leads from the ground to the hand",
+                    place,
+                )
+            )
+        return found
+
+    def leg(self, joint: Joint) -> LoopLeg:
+        loop = self.loop
+        if GROUND not in joint.between:
+            return self.stretch(joint)
+        body = joint.other(GROUND)
+        self.used.add(joint.name)
+        onward = [j for j in loop.of(body) if j is not joint]
+        rods = [(j, j.other(body)) for j in onward if j.other(body) in loop.rods]
+        slides = [j for j in onward if j.kind == "prismatic"]
+        if joint.kind == "prismatic" and len(slides) == 1 and not rods:
+            return self.rail(joint, body, slides[0])
+        if joint.kind == "revolute" and slides and not rods:
+            raise loop.error(
+                f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
+                f"known on a driven slider, not on a driven crank"
+            )
+        if len(rods) != 1 or len(onward) != 1:
+            carried = listed([j.other(body) for j in onward]) or "nothing else"
+            raise loop.error(
+                f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
+                f"length, or to one body by a passive slide; it is joined to {carried}"
+            )
+        if joint.kind == "prismatic":
+            return self.slider(joint, *rods[0])
+        if joint.kind == "revolute":
+            return self.crank(joint, *rods[0])
+        raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
+
+    def slider(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
+        """A driven slider with a rod, which is ``near`` where the slider carries it."""
+        if joint.axis is None:
+            raise self.loop.error(f"{joint.name} slides; say in which direction with axis")
+        beyond = [j for j in self.loop.of(rod) if j is not near and j.at != self.loop.hand]
+        if len(beyond) == 1 and beyond[0].other(rod) in self.loop.rods:
+            return self.plane(joint, near, beyond[0])
+        place, length = self.place_on_hand(rod, near), self.loop.rods[rod]
+        end = self.point(joint.other(GROUND), near)
+        return LoopLeg(
+            joint,
+            f"Slide({joint.name}, {self.rod(rod, near)}, {self.at(end)}, "
+            f"{self.at(joint.axis)}{self.tail(place)})",
+            f"{joint.name} moves a slider, which a rod of length {length} joins to {self.end}",
+            place,
+        )
+
+    def plane(self, joint: Joint, near: Joint, elbow: Joint) -> LoopLeg:
+        """A slider with two rods; ``near`` is on the slider, and ``elbow`` between the rods."""
+        loop = self.loop
+        first = near.other(joint.other(GROUND))
+        second = elbow.other(first)
+        far = [j for j in loop.of(second) if j is not elbow]
+        turning = [near, elbow, *far]
+        axes = [j.axis for j in turning if j.axis is not None and j.kind == "revolute"]
+        if (
+            len(turning) != 3
+            or len(axes) != 3
+            or any(axes[0].cross(axis) != sp.zeros(3, 1) for axis in axes)
+        ):
+            raise loop.error(
+                f"{joint.name} moves two rods one after the other; this is known if three revolute "
+                f"joints with parallel axes join the slider, the rods {first} and {second} and the "
+                f"hand: give each its axis"
+            )
+        assert joint.axis is not None
+        advance = sp.simplify(axes[0].dot(joint.axis))
+        if not advance.is_number or advance == 0:
+            raise loop.error(
+                f"the axis of {joint.name} must not be at right angles to that of {near.name}, and "
+                f"both are given in numbers"
+            )
+        place = self.place_of(far[0], second, held=True)
+        self.used |= {j.name for j in turning}
+        bars = f"({source(loop.rods[first])}, {source(loop.rods[second])})"
+        return LoopLeg(
+            joint,
+            f"Plane({joint.name}, {bars}, {self.at(self.point(joint.other(GROUND), near))}, "
+            f"{self.at(joint.axis)}, {self.at(axes[0])}{self.tail(place)})",
+            f"{joint.name} moves a slider, which two rods of length {loop.rods[first]} and "
+            f"{loop.rods[second]} with parallel axes join to {self.end}",
+            place,
+        )
+
+    def crank(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
+        """A driven crank with a rod, which is ``near`` where the crank carries it."""
+        loop, name, body = self.loop, joint.name, joint.other(GROUND)
+        place = self.place_on_hand(rod, near)
+        end = self.point(body, near)
+        length, tail = self.rod(rod, near), self.tail(place)
+        start = self.pivot(joint)
+        arm = end - start
+        if loop.dimensions == 3:
+            if joint.axis is None:
+                raise loop.error(f"{name} turns in space; say about which axis")
+            along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
+            start, arm = start + along_axis, (arm - along_axis).applyfunc(sp.simplify)
+        crank = self.length(arm)
+        if crank == 0:
+            raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
+        along = self.direction(arm, crank)
+        across = (
+            joint.axis.cross(along)
+            if joint.axis is not None and loop.dimensions == 3
+            else sp.Matrix([-along[1], along[0]])
+        )
+        return LoopLeg(
+            joint,
+            f"Crank({name}, {self.bar(body, crank)}, {length}, {self.at(start)}, "
+            f"{self.at(along)}, {self.at(across)}{tail})",
+            f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
+            f"joins to {self.end}",
+            place,
+        )
+
+    def rail(self, joint: Joint, body: str, slide: Joint) -> LoopLeg:
+        """A slider with a rail, along which a body slides that has the point of the hand."""
+        loop, far = self.loop, slide.other(body)
+        if loop.dimensions == 3 or slide.driven:
+            raise loop.error(f"{slide.name} slides on {body}; this is known for a passive slide "
+                             f"in a plane only")  # fmt: skip
+        for j in (joint, slide):
+            if j.axis is None:
+                raise loop.error(f"{j.name} slides; say in which direction with axis")
+            if not all(e.is_number for e in j.axis):
+                raise loop.error(f"{j.name} has a direction with parameters; use numbers")
+        assert joint.axis is not None
+        assert slide.axis is not None
+        if joint.axis[0] * slide.axis[1] == joint.axis[1] * slide.axis[0]:
+            raise loop.error(f"{joint.name} and {slide.name} slide in the same direction")
+        self.used.add(slide.name)
+        points, place = loop.bodies[far], sp.zeros(2, 1)
+        if loop.hand in points:
+            place = points.get(slide.at, points[loop.hand]) - points[loop.hand]
+        else:
+            pins = [
+                j
+                for j in loop.of(far)
+                if j is not slide
+                and (j.at == loop.hand or any(loop.hand in loop.bodies[b] for b in j.between))
+            ]
+            if not pins:
+                raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
+            self.used |= {pin.name for pin in pins}
+            place = self.place_of(pins[0], far)
+        return LoopLeg(
+            joint,
+            f"Rail({joint.name}, {slide.name}, {self.at(self.point(body, slide))}, "
+            f"{self.at(joint.axis)}, {self.at(slide.axis)}{self.tail(place)})",
+            f"{joint.name} moves a slider with a rail, along which the hand slides",
+            place,
+            slide.name,
+        )
+
+    def point(self, body: str, joint: Joint) -> sp.Matrix:
+        """Where a joint is on a body."""
+        points = self.loop.bodies[body]
+        if joint.at not in points:
+            raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is")
+        return points[joint.at]
+
+    def pivot(self, joint: Joint) -> sp.Matrix:
+        """Where a body turns about the ground, which is the same point of both at the angle 0."""
+        name, body, at = joint.name, joint.other(GROUND), self.point(GROUND, joint)
+        if any(sp.simplify(e) != 0 for e in self.loop.bodies[body].get(joint.at, at) - at):
+            raise self.loop.error(
+                f"{joint.at}, where {name} is, has different coordinates on the ground and on "
+                f"{body}; the points of {body} are where they are when {name} is zero"
+            )
+        return at
+
+    def stretch(self, joint: Joint) -> LoopLeg:
+        """A leg of two bodies that slide along each other."""
+        loop = self.loop
+        if joint.kind != "prismatic":
+            raise loop.error(
+                f"{joint.name} is driven, so it must be between the ground and a body, or slide "
+                f"the two halves of a leg"
+            )
+        ends: dict[bool, Joint] = {}
+        for half in joint.between:
+            others = [j for j in loop.of(half) if j is not joint]
+            if len(others) != 1:
+                raise loop.error(f"{half} is half of a leg, so it needs one more joint")
+            ends[GROUND in others[0].between] = others[0]
+        if len(ends) != 2:
+            raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
+        self.used |= {joint.name, *(end.name for end in ends.values())}
+        base = self.point(GROUND, ends[True])
+        place = self.place_of(ends[False])
+        axis = self.axis_of(ends[True], ends[False])
+        held = "" if axis is None else f", axis={self.at(axis)}"
+        return LoopLeg(
+            joint,
+            f"Stretch({joint.name}, {self.at(base)}{self.tail(place)}{held})",
+            f"{joint.name} is the length of a leg from the ground to {self.end}",
+            place,
+        )
+
+    def place_on_hand(self, rod: str, near: Joint) -> sp.Matrix:
+        """Where a rod ends, seen from the point that is the hand."""
+        far = [j for j in self.loop.of(rod) if j is not near]
+        if rod == self.arm:
+            self.used.add(near.name)
+            return sp.zeros(2, 1)
+        if not far or (len(far) > 1 and any(j.at != self.loop.hand for j in far)):
+            raise self.loop.error(
+                f"the rod {rod} must have two ends, one of them on {self.end}; it is joined to "
+                f"{listed([near.other(rod), *(j.other(rod) for j in far)])}"
+            )
+        self.used |= {near.name, *(j.name for j in far)}
+        return self.place_of(far[0], rod)
+
+    def place_of(self, far: Joint, rod: str = "", *, held: bool = False) -> sp.Matrix:
+        """Where a leg ends on the hand, which may turn unless the leg keeps it from turning."""
+        loop = self.loop
+        held |= rod in loop.parallelograms or (far.kind == "universal" and far.axis is not None)
+        if far.at == loop.hand:
+            return sp.zeros(loop.dimensions, 1)
+        body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
+        if not body:
+            other = far.other(rod) if rod in far.between else " and ".join(far.between)
+            raise loop.error(
+                f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
+                f"{self.end}; a leg has one rod, and the hand is one body"
+            )
+        if far.at not in loop.bodies[body]:
+            raise loop.error(f"{body} has no point {far.at}, where {far.name} is")
+        if not held:
+            self.turning = body
+        return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
+
+
+def listed(names: Sequence[str]) -> str:
+    """``a, b and c``."""
+    *first, last = names or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _tuple(v: sp.Matrix) -> str:
+    return f"({', '.join(map(source, v))})"
+
+
+__all__ = ["TURNING", "Legs", "LoopLeg", "listed"]

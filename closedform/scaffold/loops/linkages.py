@@ -1,0 +1,169 @@
+"""Recognises a planar linkage of pinned bodies that is solved dyad by dyad."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.mechanics.assur import Dyad, Order, freedoms, order
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.legs import listed
+from closedform.scaffold.source import literal, source
+
+FEW = {1: 3, 2: 4}
+"""The number of moving bodies of a single loop, for as many driven joints."""
+
+
+@dataclass(frozen=True)
+class LinkageLines:
+    """The linkage as it is written: its bodies, its hand, and what it is in words."""
+
+    bodies: tuple[str, ...]
+    hand: str
+    words: str
+
+
+def linkage(loop: Loop) -> LinkageLines | None:
+    """The lines of a linkage; None if the file is of another kind."""
+    driven = [j for j in loop.joints.values() if j.driven]
+    follower = loop.joints.get(loop.hand)
+    moving = len(loop.bodies) - 1
+    _check_slides(loop, driven, moving)
+    if (
+        loop.dimensions != 2
+        or len(driven) not in FEW
+        or any(j.kind != "revolute" for j in loop.joints.values())
+        or any(GROUND not in j.between for j in driven)
+        or loop.parallelograms
+        or (follower and (follower.driven or GROUND not in follower.between))
+    ):
+        return None
+    point_of_one = len(driven) == 1 and not follower
+    if moving < FEW[len(driven)] or (moving == FEW[len(driven)] and not point_of_one):
+        return None
+    if len(driven) == 2 and any(_without(loop, name) for name in loop.bodies):
+        return None  # a leg may leave out where its body is joined, and its messages say more
+    points = _points(loop)
+    _check_pins(loop, points)
+    turning = {j.other(GROUND): j for j in driven}
+    found = _ordered(loop, points, turning)
+    if follower:
+        turning[follower.other(GROUND)] = follower
+    elif not any(loop.hand in at for at in points.values()):
+        raise loop.error(f"the hand {loop.hand} is neither a point of a body nor a joint")
+    bodies = tuple(_line(loop, name, at, turning) for name, at in points.items())
+    return LinkageLines(bodies, "" if follower else _safe(loop.hand), _words(driven, found))
+
+
+def _check_slides(loop: Loop, driven: Sequence[Joint], moving: int) -> None:
+    """Refuse slides in a linkage of one driven joint that is more than a single loop."""
+    slides = [j.name for j in loop.joints.values() if j.kind == "prismatic"]
+    if loop.dimensions == 2 and len(driven) == 1 and moving > FEW[1] and slides:
+        raise loop.error(
+            f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
+            f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is known with "
+            f"revolute joints alone.  If a slide only ends the linkage, leave it and its rod out, "
+            f"and take the point that drives the rod as the hand"
+        )
+
+
+def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
+    """The points of all bodies; a rod has one at each end."""
+    found: dict[str, dict[str, sp.Matrix]] = {}
+    for name, points in loop.bodies.items():
+        if name not in loop.rods:
+            found[name] = {_safe(p): at for p, at in points.items()}
+            if missing := _without(loop, name):
+                raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
+            continue
+        ends = list(dict.fromkeys(_safe(j.at) for j in loop.of(name)))
+        if len(ends) != 2:
+            raise loop.error(
+                f"the rod {name} must be joined at its two ends, and is at {listed(ends) or 'none'}"
+            )
+        found[name] = dict(
+            zip(ends, (sp.zeros(2, 1), sp.Matrix([loop.rods[name], 0])), strict=True)
+        )
+    return found
+
+
+def _without(loop: Loop, name: str) -> list[Joint]:
+    """The joints of a body, unless it is a rod, at which it has no point."""
+    if name in loop.rods:
+        return []
+    return [j for j in loop.of(name) if j.at not in loop.bodies[name]]
+
+
+def _check_pins(loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]]) -> None:
+    """Refuse a point that two bodies have, if no joint holds them together there."""
+    for point in dict.fromkeys(p for at in points.values() for p in at):
+        holders = [name for name, at in points.items() if point in at]
+        held = {holders[0]}
+        pins = [j for j in loop.joints.values() if _safe(j.at) == point]
+        for _ in pins:
+            held |= {b for j in pins if held & {*j.between} for b in j.between}
+        if apart := [name for name in holders if name not in held]:
+            raise loop.error(
+                f"{point} is a point of {holders[0]} and of {apart[0]}, but no joint holds them "
+                f"together there; give one of them another name"
+            )
+
+
+def _ordered(
+    loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]], turning: Mapping[str, Joint]
+) -> Order:
+    """The dyads of the linkage, if there are no other groups."""
+    free = freedoms(points)
+    if free != len(turning):
+        raise loop.error(
+            f"{listed([j.name for j in turning.values()])} drive this linkage, but by the count of "
+            f"its bodies and pins it has {free} freedoms"
+        )
+    found = order(points, [GROUND, *turning])
+    for step in found.held:
+        raise loop.error(
+            f"{step.body} is joined to {listed(step.points)}, which the driven joints and the "
+            f"bodies before it place already, so they could not move"
+        )
+    if not found.left:
+        return found
+    degree = ", which leads to an equation of degree 6" if len(found.left) == 4 else ""
+    others = [
+        j.name
+        for j in loop.of(GROUND)
+        if len(turning) == 1 and not order(points, [GROUND, j.other(GROUND)]).left
+    ]
+    instead = f"; it can be solved if {' or '.join(others)} is driven" if others else ""
+    raise loop.error(
+        f"this is a planar linkage, but no two of the bodies {listed(found.left)} are a dyad (two "
+        f"bodies with a common pin, each with one more point that is known); they are a group of "
+        f"a higher class{degree}{instead}"
+    )
+
+
+def _line(
+    loop: Loop, name: str, points: Mapping[str, sp.Matrix], turning: Mapping[str, Joint]
+) -> str:
+    places = ", ".join(f'"{p}": ({", ".join(map(source, at))})' for p, at in points.items())
+    joint = f", {turning[name].name}" if name in turning else ""
+    return f"{literal(_safe(name))}: Body({{{places}}}{joint})"
+
+
+def _words(driven: Sequence[Joint], found: Order) -> str:
+    turned = listed([f"{j.name} turns {_safe(j.other(GROUND))}" for j in driven])
+    dyads = (
+        f"{_safe(s.bodies[0])} and {_safe(s.bodies[1])} meet in {s.pin}"
+        for s in found.steps
+        if isinstance(s, Dyad)
+    )
+    return f"Joint {turned}.  Then {', '.join(dyads)}."
+
+
+def _safe(name: str) -> str:
+    """A name as it may stand in names of variables."""
+    return name.replace("-", "_")
+
+
+__all__ = ["LinkageLines", "linkage"]

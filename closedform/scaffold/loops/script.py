@@ -1,0 +1,302 @@
+"""Writes the derivation of a closed loop from the legs that were found in its file."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.algebra.formulas import number
+from closedform.scaffold.inputs.tables import Table, add_joint
+from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
+from closedform.scaffold.loops.guides import GuideLine, guide
+from closedform.scaffold.loops.legs import TURNING, Legs, LoopLeg, listed
+from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.on_rod import on_rod
+from closedform.scaffold.loops.slotted import slotted
+from closedform.scaffold.loops.uprights import HINGED, uprights
+from closedform.scaffold.source import file_name, literal
+
+UNSAID = "say what it measures"
+DEGREES = {1: 6, 2: 4}
+"""Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
+BY_HAND = (
+    "For another mechanism write its equations in Python; velocity_matrices and lemmas such as "
+    "three_spheres take them."
+)
+ON_AXES = "If it is universal joints that keep it from turning, give both of each leg their axis."
+FUNCTIONS = {"Rational", "Abs"}
+"""What a leg calls of SymPy that begins with a capital letter."""
+
+
+def loop_script(name: str, loop: Loop, origin: str) -> str:
+    """The derivation of a loop, as Python."""
+    origin, way, table = file_name(origin), _way(Legs(loop)), Table()
+    for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
+        if joint.driven:
+            kind = "prismatic" if joint.kind == "prismatic" else "revolute"
+            add_joint(table, joint.name, kind, loop.file)
+    return "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
+
+
+def _way(found: Legs) -> _Way:
+    """What derives the loop, by the first of the kinds that it is of."""
+    loop = found.loop
+    follower = loop.joints.get(loop.hand)
+    if lines := linkage(loop):
+        if follower:
+            return _Way([], [loop.hand], linkage=lines)
+        return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+    if follower and not follower.driven and (turning := slotted(found, follower)):
+        found.check_all_used()
+        return _Way(turning, [loop.hand])
+    if follower and not follower.driven:
+        return _Way(_coupled(found, follower), [loop.hand])
+    if carried := on_rod(found):
+        found.check_all_used()
+        return _Way(carried[0], list(AXES[:2]), carried[1])
+    points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
+    if follower:
+        raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
+    if loop.hand not in points:
+        raise loop.error(
+            f"the hand {loop.hand} is not a point of a body, nor where a joint is, nor a joint"
+        )
+    return _on_legs(found)
+
+
+def _on_legs(found: Legs) -> _Way:
+    """A hand that legs carry."""
+    loop, driven, struts = found.loop, found.legs(), found.struts()
+    passive = None if loop.parallelograms else guide(found)
+    found.check_all_used()
+    _check_ends(found)
+    if passive:
+        return _Way(driven, [], guide=passive)
+    legs = [*struts, *driven]
+    if found.turning and not (loop.dimensions == 2 and _held(loop)):
+        upright = [] if struts or loop.parallelograms else uprights(found)
+        if not upright:
+            _check_turning(found, driven, struts)
+        return _Way(upright or legs, [])
+    if len(legs) != loop.dimensions:
+        on_sphere = " beside its strut" if struts else ""
+        rods = [f"; the parallelogram {rod} keeps it from turning" for rod in _held(loop)]
+        raise loop.error(
+            f"{len(driven)} joints are driven, but a hand that does not turn needs "
+            f"{loop.dimensions - len(struts)}{on_sphere}{''.join(rods[:1])}"
+        )
+    return _Way(legs, list(AXES[: loop.dimensions]))
+
+
+def _held(loop: Loop) -> list[str]:
+    """The rods that are parallelograms; in a plane one of them keeps the hand from turning."""
+    return [rod for rod in loop.rods if rod in loop.parallelograms]
+
+
+def _check_ends(found: Legs) -> None:
+    """Refuse legs in space that hold a hand that may turn by the axis of a revolute joint."""
+    loop, body = found.loop, found.turning
+    if not body or loop.dimensions == 2:
+        return
+    fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
+    if fixed:
+        raise loop.error(
+            f"{listed(fixed)} would hold {body} by an axis; a leg is known to end on a hand that "
+            f"turns in a spherical or a universal joint.  {BY_HAND}"
+        )
+
+
+def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> None:
+    """Refuse a hand that may turn with too few driven joints, or too many."""
+    loop, body = found.loop, found.turning
+    rails = sum(bool(leg.passive) for leg in legs)
+    if rails and not rails == len(legs) == TURNING[2]:
+        degree = DEGREES.get(rails) if len(legs) == TURNING[2] else None
+        raise loop.error(
+            f"{body} may turn; this is not known for a hand on a rail"
+            + f", and leads to an equation of degree {degree}" * (degree is not None)
+        )
+    if loop.parallelograms:
+        these = "one" if loop.dimensions == 2 else "all"
+        raise loop.error(
+            f"{body} may turn; either {these} of its rods must be parallelograms, or no body"
+        )
+    if held := [j.name for j in loop.of(body) if j.kind == "universal" and j.axis is not None]:
+        raise loop.error(
+            f"{body} may turn, although {listed(held)} has an axis; either all of its rods must "
+            f"have universal joints with an axis at both ends, or none"
+        )
+    hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
+    on_axes = f"  {ON_AXES}" if loop.dimensions == 3 else ""
+    needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
+    if struts or len(legs) != needed:
+        instead = "a strut carries it" if struts else f"there are {len(legs)}"
+        raise loop.error(
+            f"{body} may turn, so it needs {needed} driven joints in {where}, and {instead}.  "
+            f"If the rods are parallelograms, which keep it from turning, give each "
+            f"parallelogram = [...], a vector along its short sides.{on_axes}{hinged}"
+        )
+
+
+def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
+    """The driver and the follower of a single loop."""
+    loop, hand = found.loop, found.loop.hand
+    drivers = found.driven()
+    if len(drivers) != 1 or GROUND not in follower.between:
+        raise loop.error("a loop with one driven joint needs a follower that is on the ground")
+    (driver,), found.end = drivers, "the other leg"
+    far = _beyond(loop, follower)
+    loop.hand = far.at
+    first = found.leg(driver)
+    if GROUND in driver.between:
+        loop.hand = _beyond(loop, driver).at
+    else:  # the leg that stretches is the rod
+        half = far.other(follower.other(GROUND))
+        if half not in driver.between:
+            raise loop.error(f"{half} must be a rod, or half of the leg that {driver.name} moves")
+        loop.rods[half], loop.hand = sp.Symbol(driver.name, real=True), driver.at
+    legs = [first, found.leg(follower)]
+    loop.hand = hand
+    found.check_all_used()
+    if any(leg.passive for leg in legs):
+        raise loop.error("a single loop with a rail is not known; a rod has to close it")
+    return legs
+
+
+def _beyond(loop: Loop, joint: Joint) -> Joint:
+    """The joint at the other end of a body on the ground."""
+    body = joint.other(GROUND)
+    near = next((j for j in loop.of(body) if j is not joint), None)
+    if near is None:
+        raise loop.error(f"{body} is joined to the ground alone")
+    return near
+
+
+@dataclass(frozen=True)
+class _Way:
+    """What derives the loop: its legs, its task, and where the second rod ends on the first.
+
+    A linkage has bodies instead of legs.  A passive leg may rule the motion of the hand.
+    """
+
+    legs: Sequence[LoopLeg]
+    task: Sequence[str]
+    at: str = ""
+    linkage: LinkageLines | None = None
+    guide: GuideLine | None = None
+
+    @property
+    def name(self) -> str:
+        """The function that is called; a hand that turns sets its task itself."""
+        if self.linkage:
+            return "linkage"
+        if self.guide:
+            return "guided"
+        if self.legs[0].call.startswith("Upright"):
+            return "tripod"
+        if len(self.task) == 1 and any(leg.passive for leg in self.legs):
+            return "slotted"
+        if self.at:
+            return "on_rod"
+        return {0: "platform", 1: "coupled"}.get(len(self.task), "parallel")
+
+    @property
+    def arguments(self) -> list[str]:
+        """Those after the derivation and the task."""
+        if self.linkage:
+            bodies = [f"        {body}," for body in self.linkage.bodies]
+            return ["    {", *bodies, "    },", *[f"    {self.at},"] * bool(self.at)]
+        legs = [leg.call for leg in self.legs]
+        if self.name in ("coupled", "slotted", "on_rod"):
+            return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
+        first = [f"    {self.guide.call},"] if self.guide else []
+        return [*first, "    [", *(f"        {leg}," for leg in legs), "    ],"]
+
+    @property
+    def parts(self) -> Sequence[str]:
+        """The legs or the bodies, as they are written."""
+        if self.linkage:
+            return self.linkage.bodies
+        return [*([self.guide.call] if self.guide else []), *(leg.call for leg in self.legs)]
+
+    @property
+    def words(self) -> str:
+        """What the mechanism consists of."""
+        if self.linkage:
+            return self.linkage.words
+        passive = [self.guide.words] if self.guide else []
+        return "  ".join([*passive, *(f"{_sentence(leg)}." for leg in self.legs)])
+
+
+def _sentence(leg: LoopLeg) -> str:
+    """What a leg is; the name of a joint keeps its letters."""
+    if leg.words.startswith(f"{leg.joint.name} "):
+        return f"Joint {leg.words}"
+    return f"{leg.words[0].upper()}{leg.words[1:]}"
+
+
+def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
+    task = way.task
+    title = name.replace("_", " ").capitalize()
+    calls = sorted({c for e in way.parts for c in re.findall(r"\b([A-Z]\w+)\(", e)} - FUNCTIONS)
+    names = sorted([*calls, "Derivation", "Paper", way.name, *["real"] * bool(task)])
+    fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
+    used = " ".join([*way.parts, way.at]) + "Rational(" * any(f.denominator != 1 for f in fractions)
+    functions = [f for f in ("Abs", "Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
+    functions += ["pi"] * bool(re.search(r"\bpi\b", used))
+    lines = [
+        f'"""{title}: a derivation from {origin}."""',
+        "",
+        *([f"from sympy import {', '.join(sorted(functions))}", ""] if functions else []),
+        f"from closedform import {', '.join(names)}",
+        "",
+        "d = Derivation(",
+        f'    "{name}",',
+        f'    "{title}",',
+        f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
+        *wrapped_literal(way.words),
+        *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
+        ")",
+    ]
+    for symbol, given in loop.parameters.items():
+        value = number(given.get("value") or "1")
+        exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
+        angle = given.get("unit") == "rad" or (given.get("value") or "1").startswith("-")
+        sign = ", nonnegative=False" if angle else ""
+        lines.append(
+            f'{symbol} = d.parameter("{symbol}", value={exact}, '
+            f"unit={literal(given.get('unit') or 'm')}, "
+            f'meaning={literal(given.get("meaning") or UNSAID)}, source="{origin}"{sign})'
+        )
+    return lines
+
+
+def wrapped_literal(text: str) -> list[str]:
+    """A text as an argument in several lines, each a literal."""
+    rows = textwrap.wrap(text, 88, drop_whitespace=False)
+    return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
+
+
+def _body(table: Table, way: _Way) -> list[str]:
+    lines = []
+    for joint, kind in table.joints.items():
+        argument = ', "prismatic"' if kind == "prismatic" else ""
+        lines.append(f'{joint} = d.joint("{joint}"{argument})')
+    passive = [leg.passive for leg in way.legs if leg.passive]
+    passive += [way.guide.slide] if way.guide else []
+    lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
+    if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
+        (x,) = way.task
+        hand = [f"    ({x},),"] * bool(way.linkage)
+        lines += [f'{x} = real("{x}")', f"{way.name}(", "    d,", *hand]
+    else:
+        coordinates = ", ".join(f"real({literal(x)})" for x in way.task)
+        lines += [f"{way.name}(", "    d,", *[f"    ({coordinates}),"] * bool(way.task)]
+    return [*lines, *way.arguments, ")"]
+
+
+__all__ = ["loop_script"]

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
 MOST = 5
 PACKAGE = ("closedform", "derivations")
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda

@@ -1,4 +1,4 @@
-/* The header's functions over arrays, for tests/test_c_header.py to call through ctypes. */
+/* The header's functions over arrays, for tests/emit/test_c_header.py to call through ctypes. */
 #include "closedform.h"
 
 size_t real_size(void);

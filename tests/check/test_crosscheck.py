@@ -1,0 +1,164 @@
+"""Generated code against the symbolic source in Arb, in every back end; the check can fail."""
+
+import importlib
+from collections.abc import Iterator
+
+import libraries
+import numpy as np
+import pytest
+from places import ROOT
+
+from closedform.check import runners
+from closedform.check.clibrary import CLibrary
+from closedform.check.crosscheck import (
+    Backend,
+    Finding,
+    check_boolean,
+    check_forward,
+    check_inverse,
+    crosscheck,
+    float_backend,
+    module_backend,
+)
+from closedform.check.failures import UnavailableError
+from closedform.emit.backends import load, names
+from closedform.model.derivation import Derivation
+from closedform.model.tolerances import DOUBLE
+
+ROBOTS = (
+    "agile_wrist",
+    "delta",
+    "five_bar",
+    "four_bar",
+    "franka_arm",
+    "h6ar",
+    "h6ar_loop_closed",
+    "hybrid_five_bar",
+    "irb2400",
+    "irb260",
+    "linear_delta",
+    "opw_arm",
+    "orthoglide",
+    "planar_2r",
+    "puma560",
+    "rpr_planar",
+    "scara",
+    "slider_crank",
+    "spherical_five_bar",
+    "spherical_wrist",
+    "srs_arm",
+    "stanford_arm",
+    "ur_arm",
+)
+all_robots = pytest.mark.parametrize("robot", ROBOTS, scope="module")
+"""Robot by robot: what is compared with is evaluated once."""
+GENERATED = ROOT / "generated"
+MODULES = ("numpy", "c")
+OTHERS = tuple(name for name in names() if load(name).runner and name not in MODULES)
+"""Languages whose code is run as after ``closedform derive``, and not imported."""
+
+
+def derivation(robot: str) -> Derivation:
+    return importlib.import_module(f"closedform.derivations.{robot}").d
+
+
+def backends(name: str, robot: str, factory: pytest.TempPathFactory) -> Iterator[Backend]:
+    if name == "c float":
+        folder, built = factory.mktemp(robot), None
+        if libraries.compiles() and libraries.runs():
+            built, _ = libraries.library(factory, robot, single=True)
+        library = CLibrary(derivation(robot), GENERATED / "c", folder, single=True, built=built)
+        yield float_backend(library.function)
+    elif name in MODULES:
+        module = importlib.import_module(f"closedform.generated.{name}.{robot}")
+        yield module_backend(name, module)
+    else:
+        run = runners.load(load(name).runner)
+        try:
+            yield from run(name, derivation(robot), GENERATED / name, factory.mktemp(robot))
+        except UnavailableError as error:
+            pytest.skip(f"{error}: {name} is not checked")
+
+
+@pytest.mark.parametrize("name", [*MODULES, "c float", *OTHERS])
+@all_robots
+def test_against_the_symbolic_source(
+    robot: str, name: str, tmp_path_factory: pytest.TempPathFactory, findings: list[Finding]
+) -> None:
+    for backend in backends(name, robot, tmp_path_factory):
+        found = crosscheck(derivation(robot), backend)
+        findings += found
+        assert not [failure for f in found for failure in f.failures]
+        assert all(f.compared for f in found)
+
+
+def broken(robot: str, function: str, change) -> list[str]:
+    """The failures that are reported when one function of the NumPy module is changed."""
+    module = importlib.import_module(f"closedform.generated.numpy.{robot}")
+
+    def lookup(name: str):
+        original = getattr(module, name)
+        return (lambda *a: change(original(*a))) if name == function else original
+
+    d, backend = derivation(robot), Backend("broken", lookup, np.float64, DOUBLE)
+    inverse = next((i for i in d.inverses if i.function == function), None)
+    if inverse:
+        return check_inverse(d, d[function], inverse, backend).failures
+    check = check_boolean if d[function].boolean else check_forward
+    return check(d, d[function], backend).failures
+
+
+def swapped_sign(solutions):
+    return solutions._replace(q=-solutions.q)
+
+
+def first_branch_only(solutions):
+    return solutions._replace(q=np.repeat(solutions.q[:, :1], solutions.q.shape[1], axis=1))
+
+
+def slightly_off(x):
+    """Values wrong by ulps are found; in a closed loop, checked by round trips, by 1e-11."""
+    return x._replace(p=x.p * (1 + 1e-11)) if isinstance(x, tuple) else x * (1 + 1e-14)
+
+
+def never_reachable(solutions):
+    nan = np.full_like(solutions.q, np.nan)
+    return solutions._replace(q=nan, status=np.ones_like(solutions.status))
+
+
+@pytest.mark.parametrize("change", [swapped_sign, never_reachable])
+@all_robots
+def test_a_wrong_inverse_is_found(robot: str, change) -> None:
+    assert broken(robot, "ik", change)
+
+
+@all_robots
+def test_a_missing_branch_is_found(robot: str) -> None:
+    if robot == "rpr_planar":
+        pytest.skip("it has one branch")
+    assert broken(robot, "ik", first_branch_only)
+
+
+def never_singular(solutions):
+    return solutions._replace(status=np.where(solutions.status == 2, 0, solutions.status))
+
+
+@pytest.mark.parametrize(
+    "robot", ["h6ar", "h6ar_loop_closed", "hybrid_five_bar", "rpr_planar"], scope="module"
+)
+def test_an_answer_that_joints_do_not_determine_is_found(robot: str) -> None:
+    found = broken(robot, "ik", never_singular)
+    assert any("is OK, but fk misses by" in failure for failure in found)
+
+
+@all_robots
+def test_a_wrong_value_is_found(robot: str) -> None:
+    assert broken(robot, "fk", slightly_off)
+    off = 1e-9 if robot == "hybrid_five_bar" else 1e-13  # long products have a large natural scale
+    square = any(f.name == "determinant" for f in derivation(robot).functions)
+    name = "determinant" if square else "jacobian"
+    assert broken(robot, name, lambda x: x + off * (1 + np.abs(x)))
+
+
+def test_a_wrong_truth_value_is_found() -> None:
+    assert broken("hybrid_five_bar", "workspace_contains", np.logical_not)

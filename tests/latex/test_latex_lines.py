@@ -1,0 +1,174 @@
+"""The lines of an algorithm: what they use is defined before them, and what they define is used."""
+
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from places import ROOT
+
+from closedform.emit.backends.latex.article import Page, document
+from closedform.emit.backends.latex.formulas import Printer
+from closedform.emit.backends.latex.listing import parts_first
+from closedform.emit.backends.latex.names import Quantities
+from closedform.emit.backends.latex.twins import twins
+from closedform.emit.backends.latex.wide import unit_circles
+from closedform.lemmas.two_link import two_link_arm
+from closedform.model.functions import Bound, Let, Program, Vanishes, real, substitute
+from closedform.proof.prove import Proof
+
+GENERATED = ROOT / "generated" / "latex"
+ARTICLES = sorted(p for p in GENERATED.glob("*.tex") if p.stem != "closedform")
+BOX = re.compile(r"\\begin\{algorithm\}\{(.*?)\}\n(.*?)\\end\{algorithm\}", re.S)
+STEP = re.compile(r"\\algorithmstep\{\d\}\{(.*)\}\{.*\}")
+RESULT = re.compile(r"\\(?:theta|rho|psi|phi|alpha)_|[JTABdp]_")
+"""Names of joints and of entries of what a function returns."""
+
+
+def page(name: str) -> Page:
+    d = import_module(f"closedform.derivations.{name}").d
+    return Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+
+
+@pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
+def test_names_are_defined_before_they_are_used_and_used_at_all(tex: Path) -> None:
+    text = tex.read_text("utf-8")
+    boxes = list(BOX.finditer(text))
+    assert boxes
+    for box in boxes:
+        items = [i for line in STEP.findall(box[2]) for i in line.split(r",\quad ")]
+        made = [m[1] if (m := re.match(r"\$\\displaystyle (.*?) = ", i)) else "" for i in items]
+        for name, item in zip(made, items, strict=True):
+            left, right = (re.sub("[{}$]", "", s) for s in (name, item.rpartition(" = ")[2]))
+            assert left != right, (box[1], item)
+        for k, name in enumerate(made):
+            if "_{" not in name:
+                continue
+            pairs = zip(items[:k], made[:k], strict=True)
+            before = [i.removeprefix(rf"$\displaystyle {n} = ") for i, n in pairs]
+            assert not any(name in i for i in before), (box[1], name)
+            later = " ".join(items[k + 1 :]) + text[box.end() :]
+            entry = re.fullmatch(r"(M)_\{\d\d\}", name)  # of a rotation in a product
+            assert name in later or RESULT.match(name) or (entry and entry[1] in later), name
+
+
+def test_the_part_of_a_part_stands_first() -> None:
+    texts = [r"$\displaystyle x = u_{1}$", *(rf"$\displaystyle {n} = {e}$" for n, e in (
+        ("u_{1}", "a u_{3} + u_{2}"), ("u_{2}", "b + u_{3}"), ("u_{3}", "c"),
+    ))]  # fmt: skip
+    names = ["u_{1}", "u_{2}", "u_{3}"]
+    found = [re.sub(r"\$\\displaystyle (.*?) = .*", r"\1", t) for t in parts_first(names, texts)]
+    assert found == ["u_{3}", "u_{2}", "u_{1}", "x"]
+
+
+def test_a_function_is_told_in_the_names_of_the_steps() -> None:
+    context = document(page("h6ar").derivation, Proof("h6ar", "", (), 0, ()))
+    fk = next(f for f in context["functions"] if f["name"] == "fk")
+    text = " ".join(line.text for line in fk["lines"])
+    assert r"x = r_W \mathrm{c}_{1} - L_\theta \mathrm{s}_{1}" in text
+    assert all(name in fk["borrowed"] for name in ("$r_W$", r"$L_\theta$", r"\eqref"))
+
+
+def test_a_narrow_quantity_is_found_inside_another_one() -> None:
+    a, b, c = map(real, "abc")
+    quantities = Quantities(Printer(set()), ())
+    quantities.define("s", a + b)
+    quantities.define("t", sp.sin(c) * real("s") + c)
+    own = {"a": a, "b": b, "c": c}
+    (t,) = quantities.of_a_function((a + b) * sp.sin(c) + c, (), own).free_symbols
+    assert str(t) == "t " and quantities.in_value(t) == {"t"}
+    assert quantities(a + b) == a + b  # a step does not shorten what is short
+
+
+def test_the_sine_of_a_difference_takes_a_minus_in() -> None:
+    a, b, c = map(real, "abc")
+    math = Printer(set()).math
+    assert math(-c * sp.sin(a - b)) == r"c \sin (b - a)"
+    assert math(-c / sp.sin(a - b)) == r"\frac{c}{\sin (b - a)}"
+    assert math(-c * sp.sin(a + b)) == r"- c \sin (a + b)"
+    assert math(-c * sp.cos(a - b)) == r"- c \cos (a - b)"
+
+
+# Two parts that differ in names alone
+
+
+def test_two_equal_arms_are_told_once() -> None:
+    found = page("h6ar_loop_closed")
+    algorithm = found.algorithm(found.derivation["ik"])
+    pair = algorithm.twins
+    assert pair is not None and pair.indices == ("R", "L")
+    flags = {s.symbol: sp.false for s in algorithm.function.body if isinstance(s, Vanishes)}
+    values = {
+        s.symbol: substitute(s.value, flags)
+        for s in algorithm.function.body
+        if isinstance(s, Let | Bound)
+    }
+    told = [s for s in pair.alike if s in values]
+    assert len(told) >= 5
+    for s in told:
+        assert values[s].xreplace(dict(pair.symbols)) == values[pair.symbols[s]]
+    assert {str(s) for s in pair.apart} == {"r_right", "h_right", "sigma_right"}
+    texts = [line.text for line in algorithm.lines()]
+    assert sum(r"\theta_2^i = " in t for t in texts) == 1
+    assert not any(rf"\theta_2^{side} = " in t for t in texts for side in "RL")
+    assert sum("r_R = " in t for t in texts) == sum("r_L = " in t for t in texts) == 1
+
+
+def two_arms(lengths: tuple[str, str], names: tuple[str, str]) -> tuple[object, ...]:
+    """Two arms of two links; the last length of each, and what the names of each end in."""
+    p = Program()
+    arms = []
+    for side, last, name in zip("RL", lengths, names, strict=True):
+        ends = tuple(p.let(f"{k}_{name}", real(f"{k}0") ** 2) for k in "rh")
+        pair = (real(f"theta2{side}"), real(f"theta3{side}"))
+        sigma = p.let(f"sigma_{name}", real("tau"))
+        links = (real("l_1"), real("l_2"), real(last))
+        arms.append(two_link_arm(p, links, ends, pair, sigma, suffix=f"_{name}"))
+    flags = {s.symbol: s for s in p.body if isinstance(s, Vanishes)}
+    usual = dict.fromkeys(flags, sp.false)
+    values = {s.symbol: substitute(s.value, usual) for s in p.body if isinstance(s, Let | Bound)}
+    for arm in arms:
+        angles = {**arm.solution, **arm.plainly}
+        values |= {u: substitute(e, usual) for u, e in angles.items()}
+    return twins(arms, values, flags), *arms
+
+
+def test_twins_are_found_by_what_their_names_stand_for() -> None:
+    found, one, other = two_arms(("l_3", "l_3"), ("a", "left_behind"))
+    assert found is not None and found.lemmas == (one, other) and found.indices == ("R", "L")
+    assert real("r_left_behind") in found.symbols.values()
+
+
+def test_lemmas_with_other_lengths_are_no_twins() -> None:
+    assert two_arms(("l_3", "l_4"), ("R", "L"))[0] is None
+
+
+def test_squares_of_a_sine_and_a_cosine_are_added() -> None:
+    a, b, c, x = map(real, "abcx")
+    circle = (a * c - b * sp.cos(x)) * sp.cos(x) + (a * b - b * sp.sin(x)) * sp.sin(x)
+    shorter = list(unit_circles(circle))
+    assert any(sp.expand(e + b - a * c * sp.cos(x) - a * b * sp.sin(x)) == 0 for e in shorter)
+    assert not list(unit_circles(a * sp.cos(x) + b * sp.sin(x)))
+    value = (a * sp.sin(x) + b) * sp.sin(x) + (a * sp.cos(x) + c) * sp.cos(x)
+    assert page("delta").lines.tidy(value) == a + b * sp.sin(x) + c * sp.cos(x)
+
+
+def test_a_distance_in_a_table_has_the_difference_of_its_angles() -> None:
+    a, b = map(real, "ab")
+    distance = sp.sqrt(2 * (1 - sp.sin(a) * sp.sin(b) - sp.cos(a) * sp.cos(b)))
+    assert r"\cos (a - b)" in page("delta").cell(distance)
+
+
+def test_a_product_of_sums_is_not_multiplied_out() -> None:
+    a, b, m, n = map(real, "abmn")
+    value = m * (a + b) + n * (a - b)
+    assert page("planar_2r").lines.tidy(value) == value
+
+
+def test_a_direction_less_an_angle_is_told_as_such() -> None:
+    context = document(page("planar_2r").derivation, Proof("planar_2r", "", (), 0, ()))
+    ik = next(f for f in context["inverses"] if f["name"] == "ik")
+    text = " ".join(line.text for line in ik["lines"])
+    assert r"\theta_{1} = \operatorname{atan2}(p_{y},\ p_{x}) - \alpha" in text
+    assert any("eq:planar_2r:17" in s["seen"] for s in ik["stages"])  # which defines alpha

@@ -1,0 +1,320 @@
+"""What was seen on the pages of the book and mended; no TeX is needed."""
+
+import re
+from functools import cache
+from importlib import import_module
+
+import numpy as np
+import pytest
+import sympy as sp
+from closedform.generated.numpy import puma560
+from places import ROOT
+
+from closedform.algebra.normal_form import equal
+from closedform.emit.backends.latex import symbols
+from closedform.emit.backends.latex.angles import same_angle
+from closedform.emit.backends.latex.article import Page, document, indexed, tied
+from closedform.emit.backends.latex.claims import Claims
+from closedform.emit.backends.latex.equations import Numbered, Numbers
+from closedform.emit.backends.latex.formulas import FITS, Printer, measure
+from closedform.emit.backends.latex.lemmas import clauses, packed
+from closedform.emit.backends.latex.prose import Prose, escape, quoted
+from closedform.emit.backends.latex.sheet import Block
+from closedform.emit.backends.latex.wide import Lines
+from closedform.emit.render import render
+from closedform.mechanics import by_axes
+from closedform.mechanics.arm import from_dh
+from closedform.model.derivation import Derivation, Paper
+from closedform.model.functions import real
+from closedform.proof.prove import Proof
+
+t1, t2 = (real(f"theta{k}") for k in (1, 2))
+x, y = real("x"), real("y")
+
+
+@cache
+def derivation(name: str) -> Derivation:
+    found: Derivation = import_module(f"closedform.derivations.{name}").d
+    return found
+
+
+@cache
+def context(name: str) -> dict:
+    d = derivation(name)
+    return document(d, Proof(d.name, d.paper.key, (), 0, ()))
+
+
+def test_a_length_is_not_printed_as_a_cosine() -> None:
+    """c1 of the paper is a length: its sign is not that of cos(theta1)."""
+    d = derivation("opw_arm")
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    cosine = page.math(sp.cos(d.joints[0].symbol))
+    lengths = [page.math(p.symbol) for p in d.parameters]
+    assert cosine == r"\mathrm{c}_{1}" and cosine not in lengths
+    assert len(set(lengths)) == len(lengths)
+
+
+def test_a_parameter_that_looks_like_a_cosine_is_an_error() -> None:
+    d = Derivation("awkward", "Awkward", derivation("scara").paper, "A link.")
+    d.parameter("c1", value=sp.Integer(1), unit="m", meaning="length", source="example")
+    theta = d.joint("theta1")
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    page.math(sp.cos(theta))
+    with pytest.raises(ValueError, match="cannot be told apart"):
+        symbols.require_distinct(d, page.math, page.legend())
+
+
+@pytest.mark.parametrize("name", ["puma560", "scara"])
+def test_statements_of_lemmas_break_between_formulas(name: str) -> None:
+    """Each line fits, and no formula is torn: brackets balance and no line ends with a sign."""
+    for inverse in context(name)["inverses"]:
+        for stage in inverse["stages"]:
+            for line in stage["statement"]:
+                assert measure(line) <= FITS + 3
+                assert line.count("(") == line.count(")")
+                assert not re.search(r"[-+=]$", line.strip())
+
+
+def test_clauses_end_at_the_spaces_outside_of_brackets() -> None:
+    text = r"(a,\ b) = \frac{1}{(c,\ d)},\ e = f,\quad g = 1;\quad h"
+    assert clauses(text) == [r"(a,\ b) = \frac{1}{(c,\ d)},", "e = f,", "g = 1;", "h"]
+    assert packed("", ["a" * 50, "b" * 50]) == ["a" * 50, "b" * 50]
+    assert packed("", ["a", "b"]) == [r"a\quad b"]
+
+
+def test_symbols_of_a_kind_share_a_row() -> None:
+    rows = [(f"A_{{{k}}}", rf"see \eqref{{eq:r:{k}}}") for k in (1, 2, 3)]
+    rows += [("f", r"see \eqref{eq:r:9}"), ("x", "task coordinate"), ("y", "task coordinate")]
+    assert symbols.joined(rows) == [
+        (r"A_{1},\ \ldots,\ A_{3}", r"see \eqref{eq:r:1}--\eqref{eq:r:3}"),
+        ("f", r"see \eqref{eq:r:9}"),
+        (r"x,\ y", "task coordinates"),
+    ]
+
+
+def test_a_function_refers_to_the_matrix_that_a_step_shows() -> None:
+    """The Jacobians of the IRB 260 hold rho, which has a name, and stood on the page twice."""
+    functions = {f["name"]: f for f in context("irb260")["functions"]}
+    for name in (r"jacobian", r"jacobian\_space", r"jacobian\_body", "determinant"):
+        assert functions[name]["evaluates"].startswith(r"\eqref") and not functions[name]["blocks"]
+
+
+def test_a_coordinate_is_not_told_by_itself() -> None:
+    functions = {f["name"]: f for f in context("scara")["functions"]}
+    [block] = functions["fk"]["blocks"]
+    assert all(row.left not in row.right for row in block.rows if row.left == r"\psi")
+
+
+def test_a_condition_is_called_not_equated() -> None:
+    numbers = Numbers("r")
+    [row] = numbers.number([[(r"\psi = 0:", "x = 1")]])
+    assert row.called and not numbers.defined
+    assert r"\psi = 0: \quad" in str(Block((row,)))
+    assert Numbered("x", "1").text == "x = 1"
+
+
+def test_names_of_parts_are_not_given_twice() -> None:
+    lines = Lines(Printer(set()), ())
+    wide = sp.expand((x + y) ** 9) / (1 + sp.expand((x - 2 * y) ** 9))
+    first = {left for left, _ in lines.equations("F", wide) if left.startswith("u")}
+    lines.clear(spend=True)
+    second = {left for left, _ in lines.equations("G", wide + 1) if left.startswith("u")}
+    assert first and second and not first & second
+
+
+@pytest.mark.parametrize(
+    ("evidence", "text"),
+    [
+        (r"$\frac{\pi}{2}$", r"\pi/2"),
+        (r"$\frac{3 \sqrt{23}}{2}$", r"3 \sqrt{23}/2"),
+        (r"$\frac{a + b}{2}$", r"\frac{a + b}{2}"),
+        ("L0 <= 2 L1: proved", r"L_{0} \le  2 L_{1}$: proved"),
+        ("for k = 1, 2", "for k = 1, 2"),
+        ("depends on theta2", r"depends on $\displaystyle \theta_{2}$"),
+    ],
+)
+def test_evidence_stands_in_a_line(evidence: str, text: str) -> None:
+    d = derivation("hybrid_five_bar")
+    assert text in Claims(d, Proof(d.name, d.paper.key, (), 0, ())).told(evidence)
+
+
+@pytest.mark.parametrize(
+    ("robot", "text", "latex"),
+    [
+        ("irb260", "here elbow_up means", r"here \texttt{elbow\_up} means"),
+        ("irb260", "where ik has a branch", r"where \texttt{ik} has a branch"),
+        ("puma560", "and [p]_× the matrix", r"and $[p]_\times$ the matrix"),
+        ("slider_crank", "reaches the point B1 with", r"point $\mathbf{B}_{1}$ with"),
+    ],
+)
+def test_code_and_points_in_a_sentence(robot: str, text: str, latex: str) -> None:
+    assert latex in Prose(derivation(robot))(text)
+
+
+def test_angles_in_a_table_stand_in_a_line() -> None:
+    table = next(s["rows"] for s in context("puma560")["steps"] if s["rows"])
+    assert table[1][2] == r"$\displaystyle \pi/2$" and len(table) == 7
+
+
+def test_an_angle_whose_name_is_a_word_is_a_symbol_in_sentences() -> None:
+    steps = context("opw_arm")["inverses"][0]["stages"]
+    told = " ".join(s["degenerate"] for s in steps)
+    assert r"the axis of $\varphi$" in told and "axis of lower" not in told
+
+
+def test_a_vector_called_by_its_coordinates_has_them_as_names() -> None:
+    lines = Lines(Printer(set()), ())
+    wide = [sum(sp.sin(n * x + k) * y**n for n in range(12)) for k in (1, 2)]
+    rows = lines.equations("(r, h)_T", sp.Matrix(wide))
+    assert [left for left, _ in rows if left] == ["r_{T}", "h_{T}"]
+
+
+def test_tall_rows_have_space_between_them() -> None:
+    tall = Numbered("A", r"\begin{bmatrix} 1 \\ 2 \end{bmatrix}")
+    fraction, flat = Numbered("a", r"\frac{b}{c}"), Numbered("b", "c")
+    gaps = re.findall(r"\\\\(\[\dpt\])?\n", str(Block((tall, flat, flat, fraction))))
+    assert gaps == ["[4pt]", "", "[2pt]"]
+
+
+def test_an_arm_of_six_joints_tells_its_twists_by_the_geometric_jacobian() -> None:
+    """The article says how J_s and J_b follow from J; the printed functions agree with it."""
+    shown = dict(next(s for s in derivation("puma560").steps if s.title == "Jacobians").shown)
+    assert isinstance(shown["J_s"], str) and isinstance(shown["J"], sp.MatrixBase)
+    q = np.array([0.3, -0.7, 1.1, 0.4, 0.9, -1.3])
+    J, T = puma560.jacobian(q), puma560.pose(q)
+    R, (px, py, pz) = T[:3, :3], T[:3, 3]
+    cross = np.array([[0, -pz, py], [pz, 0, -px], [-py, px, 0]])
+    shift = np.block([[np.eye(3), cross], [np.zeros((3, 3)), np.eye(3)]])
+    turn = np.block([[R.T, np.zeros((3, 3))], [np.zeros((3, 3)), R.T]])
+    assert np.allclose(puma560.jacobian_space(q), shift @ J, rtol=0, atol=1e-14)
+    assert np.allclose(puma560.jacobian_body(q), turn @ J, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("modified", "sign", "last"), [(0, 1, "i-1"), (1, 1, "i"), (0, -1, "")])
+def test_columns_follow_from_axes_that_the_motions_turn_about(modified, sign, last, monkeypatch):
+    """Of a joint that turns against its axis, the column has another sign."""
+    monkeypatch.setattr(by_axes, "ENTRIES", 0)
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    q = [d.joint("theta1"), d.joint("theta2")]
+    rows = [(1, sp.pi / 3, 2, sign * q[0]), (3, sp.pi / 5, 1, sign * q[1])]
+    arm = from_dh(d, rows, modified=bool(modified))
+    found = by_axes.by_axes(d, arm.pose, arm.moves, q)
+    assert (found is not None) == bool(last)
+    if found:
+        assert found.jacobian[by_axes.AXIS].endswith(rf"A_{{{last}}}")
+        assert all(bool(equal(a, b)) for a, b in found.equal(arm.pose, arm.geometric))
+
+
+def test_the_book_explains_a_status_once() -> None:
+    chapter = render("latex/robot.tex.jinja", context("scara"))
+    as_article, _, rest = chapter.partition(r"\begin{document}")
+    assert r"\textsc{unreachable} & the target" in as_article
+    assert r"\textsc{unreachable} & the target" not in rest and r"\statuses" in rest
+
+
+def test_a_function_that_an_equation_defines_is_not_listed() -> None:
+    """Its statements are those of a program; the equations of the step say what it computes."""
+    told = context("three_prs")
+    shown = {f["name"].replace("\\", ""): f for f in told["functions"]}
+    for name in ("jacobian_parallel", "jacobian_serial", "jacobian", "determinant"):
+        assert shown[name]["evaluates"].startswith(r"\eqref{") and not shown[name]["lines"]
+    assert not told["singular"]["lines"] and len(told["singular"]["rank"]) == 5
+
+
+TEX = ROOT / "generated" / "latex"
+
+
+def test_a_row_of_the_notation_says_what_its_symbol_is() -> None:
+    rows = [
+        line
+        for path in TEX.glob("*.tex")
+        for line in path.read_text("utf-8").splitlines()
+        if re.match(r"\$.*\$ & see ", line)
+    ]
+    assert rows == []
+
+
+def test_symbols_with_one_meaning_keep_it_in_their_row() -> None:
+    rows = [(f"A_{{{k}}}", rf"a motion, see \eqref{{eq:r:{k}}}") for k in (1, 2, 3)]
+    rows += [("B_{1}", r"a force, see \eqref{eq:r:4}"), ("B_{2}", r"a torque, see \eqref{eq:r:5}")]
+    assert symbols.joined(rows) == [
+        (r"A_{1},\ \ldots,\ A_{3}", r"a motion, see \eqref{eq:r:1}--\eqref{eq:r:3}"),
+        *rows[3:],
+    ]
+
+
+def test_no_distance_of_two_points_is_an_equation() -> None:
+    """The skeleton was printed as ``|base - corner1| = h``."""
+    for path in TEX.glob("*.tex"):
+        assert r"|\text{" not in path.read_text("utf-8"), path.name
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("the *singularity locus* of P", r"the \emph{singularity locus} of P"),
+        ("as *i*) it is", r"as \emph{i}) it is"),
+        ("A*T*B and 4*4", "A*T*B and 4*4"),
+        ("Link a^i θ^i", r"Link $a^{i}$ $\theta^{i}$"),
+        ("0p_n is the position", "${}^0p_{n}$ is the position"),
+        ("the coordinates (x, y, z)_R are", "the coordinates $(x, y, z)_{R}$ are"),
+    ],
+)
+def test_a_quotation_is_set_as_the_paper_prints_it(text: str, latex: str) -> None:
+    assert quoted(text) == latex
+
+
+def test_the_size_of_a_matrix_has_a_cross() -> None:
+    assert escape("a 4x4 matrix, and 0x10") == r"a 4$\times$4 matrix, and 0x10"
+
+
+def test_the_rate_of_a_target_is_a_differential() -> None:
+    assert Prose(derivation("delta"))("It is A*dp = B*dq.") == (
+        r"It is $A\,\mathrm{d}\mathbf p = B\,\mathrm{d}q$."
+    )
+
+
+def test_a_vector_of_the_formulas_is_bold_in_sentences() -> None:
+    told = Prose(derivation("rpr_planar"))("A2 is at b, and p - b_1 has the length rho1.")
+    assert r"at $b$, and $\mathbf p - \mathbf b_1$ has" in told  # b is also a parameter
+
+
+def test_an_angle_that_is_another_one_is_told_once() -> None:
+    a, b = real("a"), real("b")
+    assert same_angle([sp.sin(a), sp.cos(a)], [sp.sin(b), sp.cos(b)]) == b
+    assert same_angle([sp.sin(a), sp.cos(a)], [sp.cos(b), sp.sin(b)]) is None
+    assert same_angle([sp.sin(a)], [sp.sin(b)]) is None
+
+
+def test_a_sum_of_products_is_grouped() -> None:
+    """k_1 of the planar arm was M*l1 + M*l2 + N*l1 - N*l2."""
+    l1, l2, M, N = (real(n) for n in ("l1", "l2", "M", "N"))
+    tidied = Lines(Printer(()), ()).tidy(M * l1 + M * l2 + N * l1 - N * l2)
+    assert tidied in (M * (l1 + l2) + N * (l1 - l2), l1 * (M + N) + l2 * (M - N))
+
+
+def test_the_entries_of_a_diagonal_share_a_row() -> None:
+    rows = [(f"B_{{{k}{k}}}", rf"entry, see \eqref{{eq:x:{k}}}") for k in (1, 2, 3)]
+    whole = [(r"B_{11},\ \ldots,\ B_{33}", r"entry, see \eqref{eq:x:1}--\eqref{eq:x:3}")]
+    assert symbols.joined(rows) == whole
+    assert symbols.joined([rows[0], rows[2]]) == [rows[0], rows[2]]
+
+
+@pytest.mark.parametrize(
+    ("title", "entry"),
+    [
+        ("The loop", "loop"),
+        ("Inverse: the elbow", "inverse!elbow"),
+        ("Centre of the wrist", "centre of the wrist"),
+        ("Jacobian and its determinant", "Jacobian and its determinant"),
+        ("Velocity: A and B", "velocity!A and B"),
+        ("Forward: P from two circles", "forward!P from two circles"),
+    ],
+)
+def test_no_entry_of_the_index_starts_with_an_article(title: str, entry: str) -> None:
+    assert indexed(title) == entry
+
+
+def test_the_number_of_a_model_stays_on_its_line_in_a_title() -> None:
+    assert tied("ABB IRB 260 palletiser") == "ABB IRB~260 palletiser"
+    assert tied("Planar 2R arm") == "Planar 2R arm"

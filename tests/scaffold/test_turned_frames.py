@@ -1,0 +1,87 @@
+"""Arms whose frames are turned by angles without square roots, which may add up to right angles."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+from arms import misses
+from chains import printed
+from places import ROOT
+from test_urdf import arm_of, forward
+
+from closedform.model.functions import real
+from closedform.pipeline import scripts
+from closedform.pipeline.trial import fault
+from closedform.scaffold.chains.recognise import recognised
+from closedform.scaffold.inputs.urdf import read_urdf
+from closedform.scaffold.new import InverseSearch, new
+
+PANTHERA = ROOT / "benchmarks" / "arms" / "panthera.urdf"
+BACK = "-0.306676319401685"
+"""A turn that the file takes back: with the one before it makes pi."""
+
+
+@pytest.mark.parametrize("back", [BACK, "-0.2"])
+def test_the_printed_inverse_returns_to_every_posture(back: str, tmp_path: Path) -> None:
+    text = PANTHERA.read_text("utf-8")
+    assert BACK in text
+    urdf = tmp_path / "turned.urdf"
+    urdf.write_text(text.replace(BACK, back), "utf-8")
+    script = new("turned", "urdf", urdf, search=InverseSearch(fault=fault))
+    assert script.structure == "turret, three parallel joints and two more (UR)"
+    path = tmp_path / "turned.py"
+    path.write_text(script.text, "utf-8")
+    (source,) = scripts.find([str(path)])
+    module = printed(scripts.load(source), tmp_path / "printed")
+    q = np.random.default_rng(4).uniform(-3, 3, (500, 6))
+    T = np.array([forward(urdf.read_text("utf-8"), row) for row in q])
+    np.testing.assert_allclose(module.pose(q), T, atol=2e-5)  # 1.5708 stands for pi/2
+    T = module.pose(q)
+    answers, status = module.ik(T)
+    away, turned = misses(module.pose(answers), T, status)
+    assert away < 1e-12 and turned < 1e-12
+    same = np.abs(np.exp(1j * answers) - np.exp(1j * q[:, None])).max(axis=-1)
+    assert np.nanmin(same, axis=-1).max() < 1e-9
+
+
+def test_angles_that_add_up_to_a_right_angle_are_taken_for_it(tmp_path: Path) -> None:
+    turns = ("0", "2.7549", "0.3867")
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="0.1 0 0" rpy="0 {turn} 0"/><axis xyz="0 1 0"/></joint>'
+        for k, turn in enumerate(turns)
+    )
+    path = tmp_path / "sums.urdf"
+    path.write_text(f'<robot name="sums">{joints}</robot>', "utf-8")
+    table = read_urdf(path)
+    (note,) = (n for n in table.notes if "together with the turns before it" in n)
+    assert note.endswith("the angle 3.1416000 is taken for pi")
+    assert "joint q2" in note
+    sums = arm_of(path).pose[:3, :3]
+    assert sums == sp.Matrix(sums).xreplace({real("angle1"): sp.S.Zero})
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("0.26726 0.53452 0.80178", (1, 2, 3)), ("0.70710678 0 0.70710678", (1, 0, 1))],
+)
+def test_a_decimal_axis_behind_a_turned_frame_keeps_its_digits(
+    written: str, meant: tuple, tmp_path: Path
+) -> None:
+    """The same axis twice is parallel to itself; the last digit is that written."""
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="0.1 0 0.2" rpy="0 {turn} 0"/><axis xyz="{axis}"/></joint>'
+        for k, (turn, axis) in enumerate([("0", "0 1 0"), ("0.1359", written), ("0", written)])
+    )
+    path = tmp_path / "tilted.urdf"
+    path.write_text(f'<robot name="tilted">{joints}</robot>', "utf-8")
+    table = read_urdf(path)
+    c, s = np.cos(0.1359), np.sin(0.1359)
+    turned = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ meant / np.linalg.norm(meant)
+    place = 10.0 ** -len(written.split()[0].partition(".")[2])
+    for _, direction, _ in table.axes[1:]:
+        found = [float(e.subs(real("angle1"), sp.Rational(1359, 10000))) for e in direction]
+        np.testing.assert_allclose(found, turned, atol=1.5 * place)
+    assert "axes 2 and 3 are parallel" in recognised(arm_of(path))

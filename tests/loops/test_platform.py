@@ -18,7 +18,7 @@ from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot
 from closedform.scaffold.inputs.tables import TableError
 
-GUIDE = (ROOT / "docs" / "adding-a-mechanism.md").read_text("utf-8")
+GUIDE = (ROOT / "docs" / "closed-loops.md").read_text("utf-8")
 [STAGE] = re.findall(r"```toml stage.toml\n(.*?)```", GUIDE, re.DOTALL)
 [HEXAPOD] = re.findall(r"```python hexapod.py\n(.*?)```", GUIDE, re.DOTALL)
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)

@@ -16,7 +16,7 @@ from closedform.cli.commands import main
 from closedform.robots import Robot
 from closedform.scaffold.inputs.tables import TableError
 
-GUIDE = (ROOT / "docs" / "adding-a-mechanism.md").read_text("utf-8")
+GUIDE = (ROOT / "docs" / "closed-loops.md").read_text("utf-8")
 [FROM_FILE] = re.findall(r"```toml head.toml\n(.*?)```", GUIDE, re.DOTALL)
 [SPRINT] = re.findall(r"```python sprint.py\n(.*?)```", GUIDE, re.DOTALL)
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)

@@ -68,6 +68,16 @@ def test_parts_of_a_formula_follow_by_their_numbers(tex: Path) -> None:
 
 
 @each
+def test_a_part_of_a_formula_has_one_meaning(tex: Path) -> None:
+    steps = re.sub(
+        r"\\begin\{algorithm\}.*?\\end\{algorithm\}", "", tex.read_text("utf-8"), flags=re.S
+    )
+    rows = re.findall(r"^(u_\{\d+\}) &= (.*?)(?: \\label.*| \\\\.*)?$", steps, re.M)
+    rows += re.findall(r"\\longformula\{(u_\{\d+\}) = (.*)\}", steps)
+    assert len({*rows}) == len({name for name, _ in rows}), rows
+
+
+@each
 def test_no_angle_of_a_vector_along_the_axis_is_returned(tex: Path) -> None:
     assert r"\operatorname{atan2}(0" not in tex.read_text("utf-8").replace(r"\bigl", "")
 

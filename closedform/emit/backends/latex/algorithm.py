@@ -264,7 +264,10 @@ class Algorithm:
         if not isinstance(value, sp.Expr):
             return value
         # a step may have named what sums of angles make of it
-        return self.in_names_of_steps(self.short(self.in_names_of_steps(value)))
+        named = self.in_names_of_steps(self.short(self.in_names_of_steps(value)))
+        if not self.function.has_status:
+            self.borrowed |= self.page.quantities.in_value(named)
+        return named
 
     def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
         """A value of the joints in names that the steps of the derivation have defined."""
@@ -274,7 +277,6 @@ class Algorithm:
         named = self.page.quantities.of_a_function(value, (), own)
         if named.is_Symbol and value in self.values.values():
             return value  # which has a name in the algorithm
-        self.borrowed |= self.page.quantities.in_value(named)
         return named
 
     def short(self, value: sp.Expr) -> sp.Expr:

@@ -203,9 +203,12 @@ ROWS = re.compile(r"\\begin\{(cases|aligned)\}.*?\\end\{\1\}", re.DOTALL)
 
 
 def _roomy(found: re.Match[str]) -> str:
-    """Rows of formulas, with some space between those that have fractions."""
-    rows = found[0]
-    return rows.replace(r"\\ ", r"\\[6pt] ") if r"\frac" in rows else rows
+    """Rows of formulas, with some space between those that have fractions.
+
+    The space of cases is measured from the base of a line, so that it contains the fraction.
+    """
+    rows, space = found[0], "15pt" if found[1] == "cases" else "6pt"
+    return rows.replace(r"\\ ", rf"\\[{space}] ") if r"\frac" in rows else rows
 
 
 STIFF = 36

@@ -146,7 +146,7 @@ class Stages:
     def stage(self, number: int, step: Sequence[Solving]) -> dict[str, Any]:
         """One step: from which equations, what the lemma gives, where it degenerates."""
         page, lemma = self.page, step[0].lemma
-        page.lines.clear()
+        page.lines.clear(spend=True)
         self.seen.clear()
         earlier = [s for s in self.steps[: number - 1] if s[0].lemma.name == lemma.name]
         solved, shown = list[list[Equation]](), list[sp.Expr]()

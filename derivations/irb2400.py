@@ -10,6 +10,7 @@ from closedform import (
     Derivation,
     from_dh,
     parallelogram_drive,
+    real,
     rotation,
     turn,
     turned,
@@ -59,6 +60,7 @@ d.explain(
         "X": "how far the centre of the wrist is ahead of the base axis",
         "Z": "height of the centre of the wrist",
         "f": "length of the forearm, from the elbow to the centre of the wrist",
+        "r": "distance of the centre of the wrist from the shoulder, in the plane of the arm",
         "w": "centre of the wrist",
     }
 )
@@ -128,11 +130,22 @@ out = ik.let("out", shoulder.ahead - a1)
 lift, bend = ik.solve(
     two_links, (lower, angle), (out, -up), (a2, f), {-1: "up", +1: "down"}, mirrored=shoulder.side
 )
+fore, bent = sqrt(a3**2 + d4**2), theta3 + atan2(d4, a3)
 d.step(
     "Inverse: the elbow",
-    "The upper arm a2, the forearm f and the line from the shoulder to the wrist form a triangle. "
-    "Its angle at the elbow is theta3 plus the constant angle between the forearm and its frame.",
-    {"f": sqrt(a3**2 + d4**2), r"\theta_3": angle - atan2(d4, a3)},
+    "The upper arm a2, the forearm f and the line r from the shoulder to the wrist form a "
+    "triangle.  The turn eta at the elbow follows from its sides.  theta3 is eta less the constant "
+    "angle between the forearm and its frame.",
+    {
+        "f": fore,
+        "r": sqrt((real("X") - a1) ** 2 + (real("Z") - d1) ** 2),
+        r"a_2^2 + f^2 + 2 a_2 f\cos\eta": real("r") ** 2,
+        r"\theta_3": angle - atan2(d4, a3),
+    },
+    proves="The centre of the wrist of the forward map is at the end of this triangle.",
+    equal=[
+        ((X - a1) ** 2 + (Z - d1) ** 2, a2**2 + fore**2 + 2 * a2 * fore * cos(bent)),
+    ],
     solves={"ik": [angle]},
 )
 in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)

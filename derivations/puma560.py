@@ -140,17 +140,33 @@ lift, bend = ik.solve(
     {+1: "up", -1: "down"},
     mirrored=shoulder.side,
 )
+fore, bent = sqrt(a3**2 + d4**2), theta3 + atan2(d4, a3)
+ahead = arm.position[0] * cos(theta1) + arm.position[1] * sin(theta1)
+height = arm.position[2]
 d.step(
     "Inverse: the elbow",
-    "The upper arm a2, the forearm f and the line from the shoulder to the wrist form a "
-    "triangle.  Its angle at the elbow is theta3 plus the constant angle between the forearm and "
-    "its frame.  up: the elbow is above the line from the shoulder to the wrist; down: below.",
+    "The upper arm a2, the forearm f and the line r from the shoulder to the wrist form a "
+    "triangle.  The turn eta at the elbow follows from its sides, and so does the angle alpha "
+    "between the upper arm and the line r.  theta3 is eta less the constant angle between the "
+    "forearm and its frame.  up: the elbow is above the line from the shoulder to the wrist; down: "
+    "below.",
     {
-        "f": sqrt(a3**2 + d4**2),
+        "f": fore,
         "r": sqrt(X**2 + pz**2),
+        r"a_2^2 + f^2 + 2 a_2 f\cos\eta": real("r") ** 2,
+        r"r\cos\alpha": a2 + f * cos(angle),
+        r"r\sin\alpha": f * sin(angle),
         r"\theta_3": angle - atan2(d4, a3),
         r"\theta_2": atan2(pz, real("X")) - real("alpha"),
     },
+    proves="The wrist of the forward map is at the end of this triangle: the squares of its "
+    "coordinates in the plane of the arm add up to the cosine law, and its parts along the upper "
+    "arm and across it are those of the forearm.",
+    equal=[
+        (ahead**2 + height**2, a2**2 + fore**2 + 2 * a2 * fore * cos(bent)),
+        (ahead * cos(theta2) + height * sin(theta2), a2 + fore * cos(bent)),
+        (height * cos(theta2) - ahead * sin(theta2), fore * sin(bent)),
+    ],
     solves={"ik": [theta2]},
 )
 in_plane = ik.matrix("R1", rotation("x", -pi / 2) * turned(shoulder).T * ik.R)

@@ -68,6 +68,26 @@ def test_parts_of_a_formula_follow_by_their_numbers(tex: Path) -> None:
 
 
 @each
+def test_halves_of_symbols_are_one_fraction(tex: Path) -> None:
+    half = r"\\frac\{[^{}]*(?:\{[^{}]*\})?[^{}]*\}\{2\}"
+    text = re.sub(r"\\pi", "", tex.read_text("utf-8"))
+    assert not re.search(rf"[^ ] [+-] {half} [+-] {half}", text)
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"),
+    [
+        (x + a / 2 + b / 2, r"\frac{a + b}{2} + x"),
+        (x - a / 2 - b / 2, r"x - \frac{a + b}{2}"),
+        (x - a / 2 + b / 2, r"\frac{b - a}{2} + x"),
+        (x + a / 2 + b / 3, r"\frac{a}{2} + \frac{b}{3} + x"),
+    ],
+)
+def test_halves_are_added_above_one_line(value: sp.Expr, printed: str) -> None:
+    assert Printer(set()).doprint(value) == printed
+
+
+@each
 def test_a_part_of_a_formula_has_one_meaning(tex: Path) -> None:
     steps = re.sub(
         r"\\begin\{algorithm\}.*?\\end\{algorithm\}", "", tex.read_text("utf-8"), flags=re.S

@@ -116,7 +116,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             terms.sort(key=lambda term: not (term.is_number and term.is_positive))
         if any(e.is_Symbol and SIGN.match(e.name) for e in terms[0].args):
             terms.sort(key=lambda term: not isinstance(term, sp.atan2))
-        return terms
+        return _with_common_fractions(terms)
 
     def _called(self, symbol: sp.Symbol) -> str:
         """How a symbol is written if that does not follow from its name."""
@@ -337,6 +337,21 @@ def _turned(factors: Sequence[sp.Expr]) -> list[sp.Expr] | None:
 
 def _factors(expr: sp.Expr) -> list[sp.Expr]:
     return list(sp.Mul.make_args(expr))
+
+
+def _with_common_fractions(terms: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """The terms of a sum, with halves (or thirds, ...) of symbols as one: ``x + (a + b)/2``."""
+    numbers = [t.as_coeff_Mul() for t in terms]
+    parts = [(n, s) for n, s in numbers if s.is_Symbol and abs(n.p) == 1 and n.q != 1]
+    q = parts[0][0].q if parts else 1
+    if not 2 <= len(parts) < len(terms) or any(n.q != q for n, _ in parts):
+        return list(terms)
+    parts.sort(key=lambda part: bool(part[0].is_negative))
+    sign = -1 if parts[0][0].is_negative else 1
+    whole = sp.Add(*(sign * n * q * s for n, s in parts))
+    at = next(k for k, number in enumerate(numbers) if number in parts)
+    rest = [t for t, number in zip(terms, numbers, strict=True) if number not in parts]
+    return [*rest[:at], sp.Mul(sp.Rational(sign, q), whole, evaluate=False), *rest[at:]]
 
 
 def _sides(

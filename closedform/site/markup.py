@@ -88,6 +88,8 @@ class Markdown:
         if part == r"\[":
             end = text.index(r"\]", at)
             return displayed(text[at:end]), end + 2
+        if part == r"\newline":
+            return "<br>", at
         if part in self.commands:
             inner, at = argument(text, at)
             return self.commands[part](inner), at

@@ -75,6 +75,7 @@ def test_the_examples_of_the_home_page_run(tmp_path: Path) -> None:
         (r"a \textsc{singular} one", 'a <span class="status">SINGULAR</span> one'),
         (r"50\,\% of \{1, 2\}", "50\N{THIN SPACE}% of {1, 2}"),
         (r"2 * 3 < 4 [a](b)", r"2 \* 3 \< 4 \[a\](b)"),
+        (r"we get \newline $x$", r"we get <br> {math}`x`"),
         (
             r"$x = \begin{cases} 1 & \text{if $a > 0$} \end{cases}$ holds",
             r"{math}`x = \begin{cases} 1 & \text{if $a > 0$} \end{cases}` holds",

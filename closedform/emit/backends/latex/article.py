@@ -126,7 +126,9 @@ class Page(Sheet):
             glue = inverse.glue if inverse else None
             joints = glue.joints if isinstance(glue, Combination) else {}
             known = set() if function.has_status else self.quantities.values
-            read = plain(subject.function, lemmas, free, known, returned, joints)
+            read = plain(
+                subject.function, lemmas, free, known=known, results=returned, joints=joints
+            )
             written = {n: w for lemma in lemmas for n, w in lemma.written.items()}
             vectors = in_vectors(read.function, written) if written else None
             if vectors:

@@ -39,14 +39,27 @@ def plain(
     function: Function,
     lemmas: Sequence[Lemma],
     letters: Sequence[str] = (),
+    *,
     known: Set[sp.Expr] = frozenset(),
     results: Sequence[sp.Symbol] = (),
     joints: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Plain:
     """The function in the angles that its lemmas give, without what differs within rounding.
 
-    ``letters`` are for parts of sums of angles, except those that are ``known`` by a name, and
-    ``results`` the symbols of the outputs, some of which ``joints`` gives in the angles.
+    Parameters
+    ----------
+    function
+        as its program computes it
+    lemmas
+        those of its inverse
+    letters
+        names for parts of sums of angles
+    known
+        the parts that have a name already
+    results
+        the symbols of the outputs
+    joints
+        some of the outputs, in the angles
     """
     body, same, numbers = _exact(function.body)
     body = _known_directly(body, lemmas)

@@ -25,6 +25,7 @@ from closedform.scaffold.new import new
 from .outcome import Failure, Outcome
 
 NAME = "tables"
+HELD_OUT = Path(__file__).parents[1] / "held_out_loops"
 TABLES = 60
 PATIENCE = 20
 """Seconds that one table may take."""
@@ -140,6 +141,10 @@ BASES = (
     ("loop", LOOP),
     ("loop", SLIDER),
     ("loop", LINKAGE),
+    *(
+        ("loop", (HELD_OUT / f"{name}.toml").read_text("utf-8"))
+        for name in ("hexa", "tsai", "tripteron", "tricept")
+    ),
 )
 
 FRAGMENTS = (

@@ -258,8 +258,27 @@ class Crank:
         return Solution(link, lemma[q], w - away, chain.let("missed", missed))
 
 
+class Slider:
+    """Where a slider is: the joint moves it from ``start`` along the unit vector ``direction``."""
+
+    joint: sp.Symbol
+    start: Sequence[Any]
+    direction: Sequence[Any]
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.start)
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return vector(self.direction)
+
+    def end(self) -> sp.Matrix:
+        return self.base + self.joint * self.rate
+
+
 @dataclass(frozen=True)
-class Slide:
+class Slide(Slider):
     """A slider that moves from ``start`` along the unit vector ``direction``, at one end of a rod.
 
     The rod leads to the point ``on_hand``, as seen from the point that is the hand.  It may be a
@@ -273,19 +292,8 @@ class Slide:
     on_hand: Sequence[Any] = ()
     signs: int = 2
 
-    @property
-    def base(self) -> sp.Matrix:
-        return vector(self.start)
-
-    @property
-    def rate(self) -> sp.Matrix:
-        return vector(self.direction)
-
     def rate_at(self, end: sp.Matrix) -> sp.Matrix:
         return self.rate
-
-    def end(self) -> sp.Matrix:
-        return self.base + self.joint * self.rate
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         p, q, s = chain.program, self.joint, self.rate
@@ -395,6 +403,7 @@ __all__ = [
     "Leg",
     "Naming",
     "Slide",
+    "Slider",
     "Solution",
     "Stretch",
     "Strut",

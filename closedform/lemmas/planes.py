@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Naming, Solution, vector
+from closedform.lemmas.legs import Naming, Slider, Solution, vector
 from closedform.lemmas.missed import MOVED
 from closedform.lemmas.rails import Rail, named_number
 from closedform.lemmas.registry import theorem
@@ -50,7 +50,7 @@ is not zero, the three vectors are a basis, and $R = I$.""",
 
 
 @dataclass(frozen=True)
-class Plane:
+class Plane(Slider):
     """A slider that carries two bars, which turn about parallel axes; in space.
 
     The joint moves the slider from ``start`` along the unit vector ``direction``.  The three axes,
@@ -79,14 +79,6 @@ class Plane:
             )
 
     @property
-    def base(self) -> sp.Matrix:
-        return vector(self.start)
-
-    @property
-    def rate(self) -> sp.Matrix:
-        return vector(self.direction)
-
-    @property
     def normal(self) -> sp.Matrix:
         return vector(self.axis)
 
@@ -99,9 +91,6 @@ class Plane:
     def lengths(self) -> tuple[sp.Expr, sp.Expr]:
         first, second = (sp.sympify(bar, strict=True) for bar in self.bars)
         return first, second
-
-    def end(self) -> sp.Matrix:
-        return self.base + self.joint * self.rate
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         q = self.joint

@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Naming, Solution, cross_in_plane, vector
+from closedform.lemmas.legs import Naming, Slider, Solution, cross_in_plane, vector
 from closedform.lemmas.missed import MOVED
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.spheres import Meeting
@@ -29,7 +29,7 @@ them.""",
 
 
 @dataclass(frozen=True)
-class Rail:
+class Rail(Slider):
     """A slider that carries a rail, along which the hand slides; in a plane.
 
     The joint moves the slider from ``start`` along the unit vector ``direction``, and the rail has
@@ -58,14 +58,6 @@ class Rail:
             )
 
     @property
-    def base(self) -> sp.Matrix:
-        return vector(self.start)
-
-    @property
-    def rate(self) -> sp.Matrix:
-        return vector(self.direction)
-
-    @property
     def way(self) -> sp.Matrix:
         """The direction of the rail."""
         return vector(self.along)
@@ -74,9 +66,6 @@ class Rail:
     def normal(self) -> sp.Matrix:
         """The direction of the rail, turned by a right angle to the left."""
         return sp.Matrix([-self.way[1], self.way[0]])
-
-    def end(self) -> sp.Matrix:
-        return self.base + self.joint * self.rate
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         q, cross = self.joint, sp.simplify(cross_in_plane(self.rate, self.way))

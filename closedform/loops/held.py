@@ -82,7 +82,7 @@ def check_held(m: Hand) -> None:
 
 
 def _check_directions(m: Hand, held: Sequence[Leg]) -> None:
-    """Refuse bars and axes that are no unit vectors of the plane or of space."""
+    """Refuse bars and axes that are not unit vectors of the plane or of space."""
     name, n = m.d.name, len(m.hand)
     for bars in (bars for leg in m.legs for bars in bars_of(1, leg, "P")):
         if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:

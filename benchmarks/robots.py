@@ -25,6 +25,7 @@ from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
 from closedform.proof.prove import prove
 from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
+from closedform.scaffold.inputs.tree import Choice
 from closedform.scaffold.new import InverseSearch, Script, new
 
 from .native import LOOP, compiled, processor, running
@@ -41,7 +42,8 @@ The lengths are nominal; compare them with the linked source before you rely on 
 numbers here, so what is proved is proved for these numbers; the derivations `puma560`, `ur_arm`,
 `stanford_arm` and `scara` have the lengths as parameters, and their proofs hold for any lengths. A
 robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
-given is an input of the inverse, and so is an arm angle (`--given arm_angle`).
+given is an input of the inverse, and so is an arm angle (`--given arm_angle`). Short lengths that are
+left out (`--ignore`) come from a file that has rounded angles.
 
 The seconds are those of one core for `closedform new`, which proves the inverse that it proposes,
 and for `closedform derive`, which proves it again, without printing. The nanoseconds are those of
@@ -71,6 +73,7 @@ class Robot:
     title: str
     source: str
     modified: bool
+    ignore: str
 
     @classmethod
     def read(cls, path: Path) -> Robot:
@@ -80,12 +83,16 @@ class Robot:
             key, colon, value = head.partition(": ")
             if head != line and colon:
                 said[key] = value
-        return cls(path, said["robot"], said["source"], said.get("convention") == "modified")
+        modified = said.get("convention") == "modified"
+        return cls(path, said["robot"], said["source"], modified, said.get("ignore", "0"))
 
     def script(self, given: str = "") -> Script:
         kind = "urdf" if self.path.suffix == ".urdf" else "dh"
         search = InverseSearch(given=given, fault=fault)
-        return new(self.path.stem, kind, self.path, modified=self.modified, search=search)
+        choice = Choice(ignore=float(self.ignore))
+        return new(
+            self.path.stem, kind, self.path, modified=self.modified, choice=choice, search=search
+        )
 
 
 def seconds_of_computing() -> float:
@@ -121,7 +128,10 @@ def row(robot: Robot, script: Script, start: float) -> str:
         taken = nanoseconds(d, Path(folder, "c"))
     (inverse,) = proof.inverses
     lemmas = ", ".join(f"`{lemma}`" for lemma in script.lemmas)
-    cells = (name, script.structure, inverse.branches, lemmas, f"{seconds:.1f}", taken)
+    structure = script.structure
+    if robot.ignore != "0":
+        structure += f"; lengths up to {robot.ignore} left out"
+    cells = (name, structure, inverse.branches, lemmas, f"{seconds:.1f}", taken)
     return f"| {' | '.join(map(str, cells))} |"
 
 

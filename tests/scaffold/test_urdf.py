@@ -185,6 +185,14 @@ def test_what_an_exporter_added_to_lengths_and_axes_is_dropped(ur5: Path) -> Non
         assert part in notes
 
 
+def test_axes_that_a_rounded_right_angle_turned_are_straight() -> None:
+    """A file in which rpy="1.571 0 0" was multiplied out, into axes and short lengths."""
+    path = ARMS / "m0609.urdf"
+    script = new("m0609", "urdf", path, choice=Choice(ignore=8.4e-5))
+    assert "an inverse with 8 branches is proposed" in script.inverse
+    assert any("is taken for (0, 1, 0)" in note for note in script.notes)
+
+
 @pytest.mark.parametrize("length", ["0.089159", "0.089159001", "0.00002", "-0.1234567"])
 def test_a_length_that_may_be_meant_is_kept(ur5: Path, length: str) -> None:
     ur5.write_text(UR5.replace("0.089159", length), "utf-8")

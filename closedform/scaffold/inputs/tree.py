@@ -34,10 +34,8 @@ NOISE = sp.Rational(1, 10**9)
 """Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
 MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
 """A length this close to a number with this many decimals stands for it; finally, nanometres."""
-ALONG = 2e-5
-"""A direction this close to an axis of coordinates, in radians, stands for it."""
 NEAR = sp.Rational(1, 2000)
-"""An angle this close to a multiple of pi/12 stands for it."""
+"""An angle this close to a multiple of pi/12 stands for it, and a direction to a coordinate axis."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
 
@@ -341,7 +339,7 @@ def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
     """An axis: along the coordinates if it nearly is, a unit vector if its length is rational."""
     size = max(map(abs, given))
     others = sp.sqrt(given.dot(given) - size**2)
-    if 0 < others < ALONG * size:
+    if 0 < others < NEAR * size:
         found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
         notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
         return found

@@ -19,8 +19,9 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.loops.hand import check_order, check_plain, in_space, rate_of, square
+from closedform.loops.hand import check_order, check_plain, rate_of, square
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
+from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.frames import rotation
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -107,6 +108,11 @@ class Guided:
     @property
     def numbered(self) -> list[tuple[int, Leg]]:
         return [*enumerate(self.legs, 1)]
+
+    @property
+    def far(self) -> list[str]:
+        """The names of these ends in the drawing."""
+        return ["P" if e.is_zero_matrix else f"C{k}" for k, e in enumerate(self.places, 1)]
 
     def placed(self, p: Program) -> Placed:
         """Name the hand at a target in a program."""
@@ -386,48 +392,30 @@ def _draw(m: Guided) -> None:
     def points(placed: Placed) -> dict[str, Sequence[Any]]:
         hand = m.pivot + m.target[2] * placed.ahead
         found: dict[str, Sequence[Any]] = {"O": [*m.pivot], "P": [*hand]}
-        for (k, leg), arm, place in zip(m.numbered, placed.arms, m.places, strict=True):
-            found[f"A{k}"] = in_space(leg.base)
-            if not isinstance(leg, Stretch):
-                found[f"B{k}"] = in_space(leg.end())
-            if not place.is_zero_matrix:
-                found[f"C{k}"] = in_space(m.pivot + arm)
+        for (k, leg), arm, far in zip(m.numbered, placed.arms, m.far, strict=True):
+            found |= points_of(k, leg, far, m.pivot + arm)
         return found
 
-    links: dict[str, tuple[str, ...]] = {"ground": ("A1", "A2", "A3", "A1")}
-    lengths: dict[tuple[str, str], sp.Expr] = {}
-    closing: dict[tuple[str, str], sp.Expr] = {}
-    joints: dict[sp.Symbol, tuple[str, ...]] = {m.guide.slide: ("O", "P")}
-    lengths["O", "P"] = m.target[2]
-    for (k, leg), place, equation in zip(m.numbered, m.places, m.loop, strict=True):
-        base, far = f"A{k}", "P" if place.is_zero_matrix else f"C{k}"
-        near = base if isinstance(leg, Stretch) else f"B{k}"
-        lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
+    drawn = Drawing({"ground": ("A1", "A2", "A3", "A1")}, {("O", "P"): m.target[2]})
+    drawn.joints[m.guide.slide] = ("O", "P")
+    for (k, leg), place, far, equation in zip(m.numbered, m.places, m.far, m.loop, strict=True):
+        drawn.add_leg(k, leg, far, equation)
         if far != "P":
-            links[f"hand{k}"] = ("P", far)
-            lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
-        joints[leg.joint] = (base,) if isinstance(leg, Crank) else (base, near)
-        if isinstance(leg, Stretch):
-            joints[leg.joint] = (base, far)
-            continue
-        links[f"rod{k}"] = (near, far)
-        lengths[base, near] = leg.joint
-        if isinstance(leg, Crank):
-            links[f"crank{k}"] = (base, near)
-            lengths[base, near] = sp.sympify(leg.length, strict=True)
+            drawn.links[f"hand{k}"] = ("P", far)
+            drawn.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
     skeleton(
         d,
         points(placed),
-        links=links,
-        joints=joints,
+        links=drawn.links,
+        joints=drawn.joints,
         hand="P",
         ground=("O", "A1", "A2", "A3"),
-        lengths=lengths,
+        lengths=drawn.lengths,
         pose={"x": tuple(m.target)},
         program=p,
         notes=(TOGETHER,),
         at_posture=[points(at)],
-        closing=closing,
+        closing=drawn.closing,
     )
 
 

@@ -23,49 +23,20 @@ ANY = sp.Matrix([real(f"w_{i}") for i in "xyz"])
 
 
 @dataclass
-class _Drawing:
-    """What the skeleton of a hand on legs consists of; names of points end in those of legs."""
+class Drawing:
+    """What the skeleton of legs consists of; names of points end in those of legs."""
 
-    m: Hand
     links: dict[str, tuple[str, ...]] = field(default_factory=dict)
     lengths: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
     closing: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
     joints: dict[sp.Symbol, tuple[str, ...]] = field(default_factory=dict)
 
-    def add(self, k: int, leg: Leg, equation: sp.Expr) -> None:
-        """A leg with its equation, and the link of the hand that it holds."""
-        place = self.m.place(leg)
-        far = "P" if place.is_zero_matrix else f"C{k}"
-        if far != "P":
-            self.links[f"hand{k}"] = ("P", far)
-            self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
-        if isinstance(leg, Rail):
-            self._add_rail(k, leg, far, equation)
-            return
-        if isinstance(leg, Plane):
-            self._add_plane(k, leg, far)
-            return
+    def add_leg(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
+        """A leg with its equation, whose rod ends at the point ``far``."""
         self._add_rod(k, leg, far, equation)
         self._add_driven(k, leg)
         for pair in bars_of(k, leg, far):
             self._add_bars(k, pair, equation if pair.far == far else None)
-
-    def _add_rail(self, k: int, leg: Rail, far: str, equation: sp.Expr) -> None:
-        base, end = f"A{k}", f"B{k}"
-        span = self.m.hand - self.m.centres[k - 1]
-        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
-        self.lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
-        self.closing[end, far] = equation**2
-
-    def _add_plane(self, k: int, leg: Plane, far: str) -> None:
-        """The slider and both bars, which have their lengths if the hand is in the plane."""
-        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
-        self.joints[leg.joint] = (base, end)
-        self.lengths[base, end] = leg.joint
-        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
-        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
-            self.lengths[pair], self.closing[pair] = length, off
-        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
@@ -104,11 +75,46 @@ class _Drawing:
             self.lengths |= {(first, middle): half, (middle, second): half}
 
 
+@dataclass
+class _OnHand(Drawing):
+    """The legs of a hand that does not turn, and the links of the hand that they hold."""
+
+    def add(self, m: Hand, k: int, leg: Leg, equation: sp.Expr) -> None:
+        place = m.place(leg)
+        far = "P" if place.is_zero_matrix else f"C{k}"
+        if far != "P":
+            self.links[f"hand{k}"] = ("P", far)
+            self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
+        if isinstance(leg, Rail):
+            span = m.hand - m.centres[k - 1]
+            self._add_rail(k, leg, far, leg.way.dot(span), equation)
+        elif isinstance(leg, Plane):
+            self._add_plane(k, leg, far)
+        else:
+            self.add_leg(k, leg, far, equation)
+
+    def _add_rail(self, k: int, leg: Rail, far: str, slid: sp.Expr, equation: sp.Expr) -> None:
+        base, end = f"A{k}", f"B{k}"
+        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
+        self.lengths |= {(base, end): leg.joint, (end, far): slid}
+        self.closing[end, far] = equation**2
+
+    def _add_plane(self, k: int, leg: Plane, far: str) -> None:
+        """The slider and both bars, which have their lengths if the hand is in the plane."""
+        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
+        self.joints[leg.joint] = (base, end)
+        self.lengths[base, end] = leg.joint
+        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
+        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
+            self.lengths[pair], self.closing[pair] = length, off
+        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
+
+
 def draw(m: Hand, hand: sp.Matrix, program: Program, modes: Branches) -> None:
     """Record the skeleton, with the hand in an assembly mode in the names of a program."""
-    drawn = _Drawing(m)
+    drawn = _OnHand()
     for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
-        drawn.add(k, leg, equation)
+        drawn.add(m, k, leg, equation)
     ground = tuple(f"A{k}" for k, _ in m.numbered)
     v = Program(list(program.body), program.taken)
     points = _points(m, hand)
@@ -148,22 +154,27 @@ def _bars(m: Hand) -> list[dict[str, Sequence[sp.Expr]]]:
 
 
 def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
-    """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
+    """The points of the skeleton: those of each leg, and the hand P."""
     points: dict[str, Sequence[sp.Expr]] = {}
     for k, leg in m.numbered:
-        points[f"A{k}"] = in_space(leg.base)
-        if not isinstance(leg, Stretch | Strut):
-            points[f"B{k}"] = in_space(leg.end())
-        place, far = m.place(leg), "P"
-        if not place.is_zero_matrix:
-            far = f"C{k}"
-            points[far] = in_space(hand + place)
-        at = {f"A{k}": leg.base, f"B{k}": leg.end(), far: hand + place}
-        for pair in bars_of(k, leg, far):
-            for middle in (pair.near, pair.far):
-                ends = pair.around(middle, at[middle])
-                points |= {name: in_space(end) for name, end in ends.items()}
+        place = m.place(leg)
+        points |= points_of(k, leg, "P" if place.is_zero_matrix else f"C{k}", hand + place)
     return points | {"P": in_space(hand)}
 
 
-__all__ = ["draw"]
+def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+    """The base A and the near end B of a leg, its far end, and the ends of its bars."""
+    at = {f"A{k}": leg.base}
+    if not isinstance(leg, Stretch | Strut):
+        at[f"B{k}"] = leg.end()
+    if far != "P":
+        at[far] = place
+    points: dict[str, Sequence[sp.Expr]] = {name: in_space(e) for name, e in at.items()}
+    for pair in bars_of(k, leg, far):
+        for middle in (pair.near, pair.far):
+            ends = pair.around(middle, place if middle == far else at[middle])
+            points |= {name: in_space(end) for name, end in ends.items()}
+    return points
+
+
+__all__ = ["Drawing", "draw", "points_of"]

@@ -35,7 +35,7 @@ NOISE = sp.Rational(1, 10**9)
 MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
 """A length this close to a number with this many decimals stands for it; finally, nanometres."""
 NEAR = sp.Rational(1, 2000)
-"""An angle this close to a multiple of pi/12 stands for it, and a direction to a coordinate axis."""
+"""An angle this close to a multiple of pi/12 stands for it; so does a direction to an axis."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
 

@@ -12,8 +12,10 @@ from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
 from closedform.lemmas.parallelogram import Parallelogram, parallelogram
 from closedform.lemmas.universal import Universal
 from closedform.loops.hand import Hand, square
+from closedform.loops.letters import letters
 from closedform.loops.modes import Exported
 from closedform.model.alike import INDEX
+from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 from closedform.model.step import Step
 
@@ -61,9 +63,7 @@ def check_held(m: Hand) -> None:
     """Refuse a hand that could turn, and a rod that would not keep it from turning."""
     name, n = m.d.name, len(m.hand)
     held = [leg for _, leg in m.held]
-    _check_directions(m, held)
-    for leg in held:
-        _check_on_crank(m, leg)
+    check_directions(name, n, m.legs)
     if len(held) == 3 and not any(e for leg in held for e in _across(held[0], leg)):
         raise ShapeError(
             f"{name}: the bars or axes of all three legs have the same direction, about which the "
@@ -81,31 +81,33 @@ def check_held(m: Hand) -> None:
         )
 
 
-def _check_directions(m: Hand, held: Sequence[Leg]) -> None:
-    """Refuse bars and axes that are not unit vectors of the plane or of space."""
-    name, n = m.d.name, len(m.hand)
-    for bars in (bars for leg in m.legs for bars in bars_of(1, leg, "P")):
+def check_directions(name: str, n: int, legs: Sequence[Leg]) -> None:
+    """Refuse bars and axes that are not unit vectors, or that a crank turns."""
+    for bars in (bars for leg in legs for bars in bars_of(1, leg, "P")):
         if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
             raise ShapeError(
                 f"{name}: the bar of a parallelogram is a unit vector with {n} entries"
             )
-    for axis in (leg.rod.direction for leg in held if isinstance(leg.rod, Universal)):
+    for axis in (leg.rod.direction for leg in legs if isinstance(leg.rod, Universal)):
         if not len(axis) == n == 3 or sp.simplify(square(axis) - 1) != 0:
             raise ShapeError(
                 f"{name}: the axis of a rod with universal joints is a unit vector in space"
             )
+    for leg in legs:
+        if isinstance(leg.rod, Parallelogram | Universal):
+            _check_on_crank(name, n, leg)
 
 
-def _check_on_crank(m: Hand, leg: Leg) -> None:
+def _check_on_crank(name: str, n: int, leg: Leg) -> None:
     """Refuse a bar or an axis that a crank turns."""
     if not isinstance(leg, Crank) or isinstance(leg.length, Parallelogram):
         return
     turned = [leg.rod.direction.dot(vector(v)) for v in (leg.along, leg.across)]
-    if len(m.hand) == 2 or any(sp.simplify(e) != 0 for e in turned):
+    if n == 2 or any(sp.simplify(e) != 0 for e in turned):
         what = "axis" if isinstance(leg.rod, Universal) else "bar"
-        along = "" if len(m.hand) == 2 else f"the {what} has to be along its axis, or "
+        along = "" if n == 2 else f"the {what} has to be along its axis, or "
         raise ShapeError(
-            f"{m.d.name}: the crank of {leg.joint} turns the {what} on it; {along}"
+            f"{name}: the crank of {leg.joint} turns the {what} on it; {along}"
             f"the crank has to be a Parallelogram too"
         )
 
@@ -179,42 +181,80 @@ def _constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
 
 
 def _in_space(m: Hand, loop: Step) -> None:
-    u, v, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
-    h, difference = real("h"), v - u
-    rods = r + h * difference, r - h * difference
+    (normal,) = letters(m.d, "n")
     all_three = (
         "  Each parallelogram takes one freedom of turning from the hand: the rate omega with "
-        "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
-        "cannot turn, unless the three normals are in one plane (constraint singularity)."
+        f"which it turns is at right angles to the normal {normal} of the parallelogram.  So the "
+        "hand cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
     held = _with(m, Parallelogram)
     bars = m.as_shown([(k, leg.rod.direction) for k, leg in held])
     one = INDEX if m.alike else "k"
-    m.d.explain({rf"\mathbf u_{k}": "direction of the bars of a leg" for k, _ in bars})
-    m.d.explain({rf"\mathbf n_{one}": f"normal of the parallelogram of leg {one}"})
-    m.d.step(
+    state_parallelograms(m.d, held, bars, loop, then=all_three * (len(held) == 3), one=one)
+
+
+def state_parallelograms(
+    d: Derivation,
+    held: Sequence[tuple[int, Leg]],
+    bars: Sequence[tuple[int | str, sp.Matrix]],
+    loop: Step,
+    *,
+    then: str,
+    one: str = "k",
+) -> None:
+    """The step on parallelograms in space.
+
+    Parameters
+    ----------
+    d
+        the derivation
+    held
+        the legs that have them
+    bars
+        the directions of their bars as they are shown
+    loop
+        the step on the loop
+    then
+        what follows for the hand: a sentence
+    one
+        how any of the legs is called
+    """
+    any_vectors = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
+    first, second, along, rate = any_vectors
+    half, difference = real("h"), second - first
+    rods = along + half * difference, along - half * difference
+    u, v, r, n, h, letter = letters(d, "uvrnhl")
+    of_rods = {sp.sympify(leg.rod, strict=True) for _, leg in held}
+    same = next(iter(of_rods)) if len(of_rods) == 1 else sp.S.Zero
+    l, squared = (same, same**2) if same.is_Symbol else (letter, f"{letter}^2")
+    d.explain({rf"\mathbf {u}_{k}": "direction of the bars of a leg" for k, _ in bars})
+    d.explain({rf"\mathbf {n}_{one}": f"normal of the parallelogram of leg {one}"})
+    d.step(
         "The parallelograms",
-        "The rod of a leg is a parallelogram: two rods of length l between two bars of length "
-        "2*h.  The bar at the near end has the direction u and does not turn.  The bar on the hand "
-        "has the direction v, and r leads from the middle of the first to the middle of the "
-        "second.  The two rods are r + h*(v - u) and r - h*(v - u), and both have to be as long as "
-        "l.  In a parallelogram v = u, and r is as long as a rod, whatever the width.  The other "
-        "solutions are left out: the crossed one (antiparallelogram) and twisted ones."
-        f"{all_three * (len(held) == 3)}",
+        f"The rod of a leg is a parallelogram: two rods of length {l} between two bars of length "
+        f"2*{h}.  The bar at the near end has the direction {u} and does not turn.  The bar on the "
+        f"hand has the direction {v}, and {r} leads from the middle of the first to the middle of "
+        f"the second.  The two rods are {r} + {h}*({v} - {u}) and {r} - {h}*({v} - {u}), and both "
+        f"have to be as long as {l}.  In a parallelogram {v} = {u}, and {r} is as long as a rod, "
+        "whatever the width.  The other solutions are left out: the crossed one "
+        f"(antiparallelogram) and twisted ones.{then}",
         {
-            r"\mathbf r\cdot(\mathbf v - \mathbf u)": sp.S.Zero,
-            r"|\mathbf r|^2 + h^2\,|\mathbf v - \mathbf u|^2": "l^2",
-            **{rf"\mathbf u_{k}": u for k, u in bars},
-            rf"\mathbf n_{one}": rf"\mathbf u_{one}\times\mathbf r_{one}",
-            rf"\boldsymbol\omega\cdot\mathbf n_{one}": sp.S.Zero,
+            rf"\mathbf {r}\cdot(\mathbf {v} - \mathbf {u})": sp.S.Zero,
+            rf"|\mathbf {r}|^2 + {h}^2\,|\mathbf {v} - \mathbf {u}|^2": squared,
+            **{rf"\mathbf {u}_{k}": direction for k, direction in bars},
+            rf"\mathbf {n}_{one}": rf"\mathbf {u}_{one}\times\mathbf {r}_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf {n}_{one}": sp.S.Zero,
         },
-        proves="The rods fit if and only if the first two equations hold.  At v = u, the "
+        proves=f"The rods fit if and only if the first two equations hold.  At {v} = {u}, the "
         "derivative of the first equation gives the last one.  The bars are unit vectors, "
         "and that on a crank is along its axis.",
         equal=[
-            (square(rods[0]) - square(rods[1]), 4 * h * r.dot(difference)),
-            (square(rods[0]) + square(rods[1]), 2 * (square(r) + h**2 * square(difference))),
-            (r.dot(w.cross(u)), w.dot(u.cross(r))),
+            (square(rods[0]) - square(rods[1]), 4 * half * along.dot(difference)),
+            (
+                square(rods[0]) + square(rods[1]),
+                2 * (square(along) + half**2 * square(difference)),
+            ),
+            (along.dot(rate.cross(first)), rate.dot(first.cross(along))),
             *_unit_and_still(held),
         ],
         uses=[loop],
@@ -266,38 +306,72 @@ def _by_parallel_axes(m: Hand, loop: Step) -> None:
 
 def _by_axes(m: Hand, loop: Step) -> None:
     """The step on universal joints with parallel axes."""
-    u, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
     held = _with(m, Universal)
     axes = m.as_shown([(k, leg.rod.direction) for k, leg in held])
     one = INDEX if m.alike else "k"
-    m.d.explain({rf"\mathbf u_{k}": "direction of the outer axes of a leg" for k, _ in axes})
-    m.d.explain({rf"\mathbf m_{one}": f"part of the rod of leg {one} across its outer axes"})
+    (part,) = letters(m.d, "m")
     all_three = (
         "  Each leg takes one freedom of turning from the hand: the rate omega with which it turns "
-        "is at right angles to m, the part of the rod across the outer axes.  So the hand cannot "
-        "turn, unless the three vectors m are in one plane (constraint singularity)."
+        f"is at right angles to {part}, the part of the rod across the outer axes.  So the hand "
+        f"cannot turn, unless the three vectors {part} are in one plane (constraint singularity)."
     )
-    m.d.step(
+    state_universals(m.d, held, axes, loop, then=all_three * (len(held) == 3), one=one)
+
+
+def state_universals(
+    d: Derivation,
+    held: Sequence[tuple[int, Leg]],
+    axes: Sequence[tuple[int | str, sp.Matrix]],
+    loop: Step,
+    *,
+    then: str,
+    one: str = "k",
+) -> None:
+    """The step on universal joints with parallel axes.
+
+    Parameters
+    ----------
+    d
+        the derivation
+    held
+        the legs that have them
+    axes
+        the directions of their outer axes as they are shown
+    loop
+        the step on the loop
+    then
+        what follows for the hand: a sentence
+    one
+        how any of the legs is called
+    """
+    first, along, rate = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
+    u, v, r, part = letters(d, "uvrm")
+    d.explain({rf"\mathbf {u}_{k}": "direction of the outer axes of a leg" for k, _ in axes})
+    d.explain({rf"\mathbf {part}_{one}": f"part of the rod of leg {one} across its outer axes"})
+    d.step(
         "The universal joints",
         "A rod has universal joints at both ends.  The axis that is fixed to what moves the rod "
-        "has the direction u and does not turn; that on the hand has the direction v.  The two "
-        "axes that are fixed to the rod are parallel, and at right angles to the rod, to u and to "
-        "v.  So u, v and the vector r along the rod are in one plane.  They are if v = u, wherever "
-        "the hand is.  The other solutions, in which the hand is turned, are left out."
-        f"{all_three * (len(held) == 3)}",
+        f"has the direction {u} and does not turn; that on the hand has the direction {v}.  The "
+        "two axes that are fixed to the rod are parallel, and at right angles to the rod, to "
+        f"{u} and to {v}.  So {u}, {v} and the vector {r} along the rod are in one plane.  They "
+        f"are if {v} = {u}, wherever the hand is.  The other solutions, in which the hand is "
+        f"turned, are left out.{then}",
         {
-            r"(\mathbf u\times\mathbf r)\cdot\mathbf v": sp.S.Zero,
-            **{rf"\mathbf u_{k}": e for k, e in axes},
-            rf"\mathbf m_{one}": rf"\mathbf r_{one} - (\mathbf u_{one}\cdot\mathbf r_{one})\,"
-            rf"\mathbf u_{one}",
-            rf"\boldsymbol\omega\cdot\mathbf m_{one}": sp.S.Zero,
+            rf"(\mathbf {u}\times\mathbf {r})\cdot\mathbf {v}": sp.S.Zero,
+            **{rf"\mathbf {u}_{k}": e for k, e in axes},
+            rf"\mathbf {part}_{one}": rf"\mathbf {r}_{one} - "
+            rf"(\mathbf {u}_{one}\cdot\mathbf {r}_{one})\,\mathbf {u}_{one}",
+            rf"\boldsymbol\omega\cdot\mathbf {part}_{one}": sp.S.Zero,
         },
-        proves="At v = u the first equation holds for any r, and its derivative, while the hand "
-        "turns and moves in any way, is that of the last one.  The axes are unit vectors, and one "
-        "on a crank is along the axis of the crank.",
+        proves=f"At {v} = {u} the first equation holds for any {r}, and its derivative, while the "
+        "hand turns and moves in any way, is that of the last one.  The axes are unit vectors, and "
+        "one on a crank is along the axis of the crank.",
         equal=[
-            (u.cross(r).dot(u), sp.S.Zero),
-            (u.cross(r).dot(w.cross(u)), w.dot(u.dot(r) * u - square(u) * r)),
+            (first.cross(along).dot(first), sp.S.Zero),
+            (
+                first.cross(along).dot(rate.cross(first)),
+                rate.dot(first.dot(along) * first - square(first) * along),
+            ),
             *_unit_and_still(held),
         ],
         uses=[loop],
@@ -342,4 +416,16 @@ def _in_plane(m: Hand, loop: Step) -> None:
     )
 
 
-__all__ = ["LEFT_OUT", "Bars", "bars_of", "check_held", "constraint", "left_out", "state_held"]
+__all__ = [
+    "LEFT_OUT",
+    "TURNED",
+    "Bars",
+    "bars_of",
+    "check_directions",
+    "check_held",
+    "constraint",
+    "left_out",
+    "state_held",
+    "state_parallelograms",
+    "state_universals",
+]

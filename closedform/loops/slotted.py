@@ -21,6 +21,7 @@ from closedform.lemmas.rails import Rail
 from closedform.loops.coupled import POSITION, export_rates
 from closedform.loops.hand import check_plain, in_space
 from closedform.loops.leg_by_leg import MISSED, SIGN, Choice, record_lemma, size_of, where_free
+from closedform.loops.letters import letters
 from closedform.loops.modes import NO_MODE
 from closedform.loops.reached import bounds_of, export_reach
 from closedform.mechanics.loops import velocity_matrices
@@ -105,17 +106,18 @@ def slotted(
     else:
         where, carrier = "start", "slider.  The slider starts at"
         distance = m.normal.dot(m.line.rate) * m.line.joint
+    (n,) = letters(d, "n")
     d.loop = loop = d.step(
         "The loop",
         "The crank turns about A1 and determines the point P of the pin, which is on the line of "
-        f"the {carrier} A2, and n is the unit normal of its line.",
+        f"the {carrier} A2, and {n} is the unit normal of its line.",
         {
             r"\mathbf P": m.crank.end(),
-            r"\mathbf n": m.line.normal,
-            r"\mathbf n\cdot(\mathbf P - \mathbf A_2)": distance,
+            rf"\mathbf {n}": m.line.normal,
+            rf"\mathbf {n}\cdot(\mathbf P - \mathbf A_2)": distance,
         },
     )
-    d.explain({r"\mathbf P": "pin", r"\mathbf n": "unit normal of the line of the pin"})
+    d.explain({r"\mathbf P": "pin", rf"\mathbf {n}": "unit normal of the line of the pin"})
     d.explain({r"\mathbf A_2": f"{where} of the body with the line"})
     at = _forward(m, modes, loop)
     _draw(m, at)

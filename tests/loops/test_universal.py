@@ -1,5 +1,6 @@
 """Universal joints that keep a hand from turning: a 3-UPU, against the chains of its joints."""
 
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -18,9 +19,12 @@ from closedform import (
     Universal,
     parallel,
     platform,
+    prove,
     real,
 )
 from closedform.algebra.shapes import ShapeError
+from closedform.emit.pages import pages
+from closedform.loops.letters import VECTORS
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
@@ -232,3 +236,14 @@ def test_cranks_carry_universal_joints(tmp_path: Path) -> None:
     script = script_of("ruu", text.replace("q1", "theta1"), tmp_path)
     assert "Crank(theta1, Rational(3, 10), Universal(r, (0, 1, 0))," in script
     assert len(read_script(script).branches) == 8
+
+
+@pytest.mark.parametrize("letter", ["r", "u", "v", "m", "n"])
+def test_lengths_may_have_the_letters_of_the_vectors(letter: str, tmp_path: Path) -> None:
+    """The article takes another letter for the vector."""
+    text = re.sub(r"\bc\b", letter, TSAI)
+    d = read_script(script_of("tsai", text, tmp_path))
+    (article,) = pages(d, prove(d), ["latex"]).files.values()
+    step = article.partition(r"\subsection{The universal joints}")[2].partition(r"\subsection")[0]
+    assert rf"\mathbf {letter}" not in step
+    assert letter == "n" or rf"\mathbf {VECTORS[letter]}" in step

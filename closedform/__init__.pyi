@@ -76,6 +76,7 @@ from closedform.loops.linkage import Body as Body
 from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel
 from closedform.loops.platform import platform as platform
+from closedform.loops.platform_legs import Half as Half
 from closedform.loops.slotted import Lever as Lever
 from closedform.loops.slotted import slotted as slotted
 from closedform.loops.tripod import tripod as tripod

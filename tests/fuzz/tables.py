@@ -26,6 +26,7 @@ from .outcome import Failure, Outcome
 
 NAME = "tables"
 HELD_OUT = Path(__file__).parents[1] / "held_out_loops"
+GUIDE = (Path(__file__).parents[2] / "docs" / "closed-loops.md").read_text("utf-8")
 TABLES = 60
 PATIENCE = 20
 """Seconds that one table may take."""
@@ -145,6 +146,7 @@ BASES = (
         ("loop", (HELD_OUT / f"{name}.toml").read_text("utf-8"))
         for name in ("hexa", "tsai", "tripteron", "tricept")
     ),
+    ("loop", GUIDE.partition("```toml par4.toml\n")[2].partition("```")[0]),
 )
 
 FRAGMENTS = (

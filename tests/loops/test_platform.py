@@ -13,7 +13,7 @@ from places import ROOT
 from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import Backend, check_forward, crosscheck, module_backend
-from closedform.loops.platform import Platform, degree_in_plane
+from closedform.loops.platform_legs import Platform, counted_degree
 from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot
 from closedform.scaffold.inputs.tables import TableError
@@ -297,13 +297,13 @@ def test_the_degree_of_the_forward_problem_is_counted(hand: tuple, degree: int) 
     d, joints = a_derivation(3, "prismatic")
     bases = ((0, 0), (3, 0), (1, 4))
     legs = [Stretch(q, b, on_hand=c) for q, b, c in zip(joints, bases, hand, strict=True)]
-    assert degree_in_plane(Platform(d, tuple(legs))) == degree
+    assert counted_degree(Platform(d, tuple(legs))) == degree
 
 
 def test_legs_that_do_not_fit_say_why() -> None:
     d, joints = a_derivation(3)
     legs = [Stretch(q, (k, 0), on_hand=(k, 1)) for k, q in enumerate(joints)]
-    with pytest.raises(ShapeError, match="three legs in a plane or six in space"):
+    with pytest.raises(ShapeError, match="in space it has six, or four"):
         platform(d, legs[:2])
     with pytest.raises(ShapeError, match="give the legs in this order"):
         platform(d, legs[::-1])

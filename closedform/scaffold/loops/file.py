@@ -57,6 +57,7 @@ USED |= {
     "Body",
     "Crank",
     "Guide",
+    "Half",
     "Lever",
     "Parallelogram",
     "Plane",

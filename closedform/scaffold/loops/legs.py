@@ -8,11 +8,12 @@ several points and are not parallelograms, needs three driven joints in a plane 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.source import source
 
 TURNING = {2: 3, 3: 6}
@@ -45,6 +46,10 @@ class Legs:
         """The rod that has the point of the hand, if the hand is not where rods end."""
         self.end = "the hand"
         """What a rod joins a leg to."""
+        self.halves = halves(loop)
+        """The halves of the hand, if it has two."""
+        self.offset: sp.Matrix | None = None
+        """From the pin of a half to the end of a leg, while the leg is written."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
         """Coordinates in the plane of a leg, while the leg of a tripod is written."""
         angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
@@ -121,7 +126,17 @@ class Legs:
         driven = self.driven()
         if not driven:
             raise loop.error("no joint is driven; set driven = true")
+        if self.halves:
+            bars = {joint.name for half in self.halves for joint in loop.of(half)}
+            self.used |= {name for name in bars if loop.joints[name].kind == "revolute"}
+            return [self.on_half(j) for j in driven]
         return [self.leg(j) for j in driven]
+
+    def on_half(self, joint: Joint) -> LoopLeg:
+        """A leg that ends on one of the halves of the hand."""
+        leg = self.leg(joint)
+        assert self.offset is not None
+        return replace(leg, call=f"Half({leg.call}, {self.at(self.offset)})")
 
     def check_all_used(self) -> None:
         """Refuse joints that are part of no leg, and bodies without a joint."""
@@ -377,6 +392,8 @@ class Legs:
         held |= rod in loop.parallelograms or (far.kind == "universal" and far.axis is not None)
         if far.at == loop.hand:
             return sp.zeros(loop.dimensions, 1)
+        if half := next((b for b in far.between if b != rod and b in self.halves), ""):
+            return self.place_on_half(far, half)
         body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
         if not body:
             other = far.other(rod) if rod in far.between else " and ".join(far.between)
@@ -389,6 +406,13 @@ class Legs:
         if not held:
             self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
+
+    def place_on_half(self, far: Joint, half: str) -> sp.Matrix:
+        """The pin of the half that a leg holds, seen from the point of the hand."""
+        loop, pin = self.loop, self.halves[half]
+        self.offset = self.point(half, far) - pin.on_half
+        (hand,) = (points[loop.hand] for points in loop.bodies.values() if loop.hand in points)
+        return pin.on_bar - hand
 
 
 def listed(names: Sequence[str]) -> str:

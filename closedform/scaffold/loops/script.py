@@ -21,13 +21,18 @@ from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
 UNSAID = "say what it measures"
+UPRIGHT = 4
+"""The number of driven joints of a hand in space that turns about the z axis alone."""
 DEGREES = {1: 6, 2: 4}
 """Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
 BY_HAND = (
     "For another mechanism write its equations in Python; velocity_matrices and lemmas such as "
     "three_spheres take them."
 )
-ON_AXES = "If it is universal joints that keep it from turning, give both of each leg their axis."
+ON_AXES = (
+    "If it is universal joints that keep it from turning, give both of each leg their axis.  With "
+    "four legs and vertical axes it turns about z alone."
+)
 FUNCTIONS = {"Rational", "Abs"}
 """What a leg calls of SymPy that begins with a capital letter."""
 
@@ -82,6 +87,14 @@ def _on_legs(found: Legs) -> _Way:
         if not upright:
             _check_turning(found, driven, struts)
         return _Way(upright or legs, [])
+    kept = bool(found.halves) or not (struts or loop.parallelograms)
+    if loop.dimensions == 3 and len(legs) == UPRIGHT and kept:
+        return _Way(legs, [])
+    if found.halves:
+        raise loop.error(
+            f"{len(driven)} joints are driven, but a hand of two halves needs {UPRIGHT}, two on "
+            f"each half"
+        )
     if len(legs) != loop.dimensions:
         on_sphere = " beside its strut" if struts else ""
         rods = [f"; the parallelogram {rod} keeps it from turning" for rod in _held(loop)]

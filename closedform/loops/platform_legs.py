@@ -1,0 +1,234 @@
+"""The legs of a hand that turns: which motion they leave it, and where they end on it."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.algebra.solutions import count_solutions
+from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
+from closedform.lemmas.rails import Rail
+from closedform.loops.hand import check_order, check_plain, square
+from closedform.mechanics.frames import hat, pose_symbols, rotation
+from closedform.model.derivation import Derivation
+from closedform.model.functions import real
+
+LEGS = {2: (3,), 3: (4, 6)}
+"""How many legs carry a hand that turns in a plane, and in space."""
+UPRIGHT = 4
+"""The number of legs of a hand in space that turns about the z axis alone."""
+TASKS = {3: ("x", "y", "yaw"), UPRIGHT: ("x", "y", "z", "yaw")}
+"""The coordinates of a hand that turns about one axis, by the number of its legs."""
+DIGITS = 50
+
+
+@dataclass(frozen=True)
+class Half:
+    """A leg that ends on one half of a hand of two bodies, as that of a Par 4.
+
+    Two equal, parallel bars join the halves by pins with vertical axes.  So the bars turn, and the
+    halves keep their direction.  The rod of the ``leg`` is a
+    :class:`~closedform.lemmas.parallelogram.Parallelogram`.  Its ``on_hand`` is the pin, in the
+    frame of the bars, as seen from the point that is the hand.  ``offset`` leads from there to the
+    end of the rod, and does not turn.
+    """
+
+    leg: Leg
+    offset: Sequence[Any]
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A hand that turns, and its legs."""
+
+    d: Derivation
+    given: tuple[Leg | Half, ...]
+
+    def __post_init__(self) -> None:
+        name, n = self.d.name, len(self.legs)
+        if n not in LEGS.get(self.dimensions, ()):
+            raise ShapeError(
+                f"{name}: {n} legs in {self.dimensions} dimensions; a hand that turns has three "
+                f"legs in a plane; in space it has six, or four if they keep it upright"
+            )
+        for leg in self.legs:
+            if isinstance(leg, Strut):
+                raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
+        check_order(self.d, self.legs)
+        if self.halves and n != UPRIGHT:
+            raise ShapeError(f"{name}: a hand of two halves has four legs in space")
+        if n != UPRIGHT:
+            check_plain(self.d, self.legs)
+        task = list(TASKS.get(n, map(str, self.pose)))
+        if list(self.d.task) not in ([], task):
+            raise ShapeError(f"{name}: the task of this hand is {', '.join(task)}")
+        self.d.task = task
+        if self.spread == 0:
+            same = "above each other on" if n == UPRIGHT else "in the same point of"
+            raise ShapeError(f"{name}: all legs end {same} the hand; it turns freely")
+        if any(isinstance(leg, Rail) for leg in self.legs):
+            raise ShapeError(
+                f"{name}: a rail cannot carry a hand that turns; the forward problem is of degree "
+                f"{counted_degree(self)}, and no formula is derived for it"
+            )
+
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        return tuple(e.leg if isinstance(e, Half) else e for e in self.given)
+
+    @property
+    def halves(self) -> list[Half]:
+        return [e for e in self.given if isinstance(e, Half)]
+
+    @property
+    def dimensions(self) -> int:
+        return len(self.legs[0].base)
+
+    @property
+    def tilts(self) -> bool:
+        """Whether the hand turns about all axes, and not about z alone."""
+        return len(self.legs) not in TASKS
+
+    @property
+    def meet(self) -> str:
+        """What the rods do where A is singular."""
+        if self.tilts:
+            return "the lines of the rods belong to one linear complex"
+        if self.dimensions == 3:
+            return "the rods do not hold the hand"
+        return "the rods pass through one point or are parallel"
+
+    @property
+    def numbered(self) -> list[tuple[int, Leg]]:
+        return [*enumerate(self.legs, 1)]
+
+    @cached_property
+    def pose(self) -> sp.Matrix:
+        """The target: the position and yaw, or a homogeneous transform."""
+        return pose_symbols() if self.tilts else sp.Matrix([*map(real, TASKS[len(self.legs)])])
+
+    @property
+    def target(self) -> dict[str, Any]:
+        """The input that is the target, under its name."""
+        return {"T": self.pose} if self.tilts else {"x": tuple(self.pose)}
+
+    @property
+    def position(self) -> sp.Matrix:
+        return self.pose[: self.dimensions, 3 if self.tilts else 0]
+
+    @property
+    def rotation(self) -> sp.Matrix:
+        if self.tilts:
+            return self.pose[:3, :3]
+        return rotation("z", self.pose[self.dimensions])[: self.dimensions, : self.dimensions]
+
+    @cached_property
+    def places(self) -> list[sp.Matrix]:
+        """Where the rods end, or the pins of their halves are, in the frame of the hand."""
+        return [vector(leg.on_hand or [0] * self.dimensions) for leg in self.legs]
+
+    @cached_property
+    def offsets(self) -> list[sp.Matrix]:
+        """The part of the places of the ends that does not turn."""
+        none = sp.zeros(self.dimensions, 1)
+        return [vector(e.offset) if isinstance(e, Half) else none for e in self.given]
+
+    @property
+    def whole(self) -> list[Leg]:
+        """The legs, with the places where they end on a hand that is not turned."""
+        ends = zip(self.legs, self.places, self.offsets, strict=True)
+        return [replace(leg, on_hand=tuple(e + aside)) for leg, e, aside in ends]  # type: ignore[type-var]
+
+    @property
+    def spread(self) -> sp.Expr:
+        """The mean squared distance of the places from their centre, across the axes of turning."""
+        n = len(self.places)
+        centre = sum(self.places, sp.zeros(self.dimensions, 1)) / n
+        across = 3 if self.tilts else 2
+        away = [(place - centre)[:across, 0] for place in self.places]
+        return sp.factor(sp.expand(sum(map(square, away)) / n))
+
+    @cached_property
+    def arms(self) -> list[sp.Matrix]:
+        """The places, from the point that is the hand, in the frame of the base."""
+        return [self.rotation * place for place in self.places]
+
+    @cached_property
+    def spans(self) -> list[sp.Matrix]:
+        """The vectors from the near ends of the rods to the point that is the hand.
+
+        A rod is a span and an arm.
+        """
+        return [
+            self.position + offset - leg.end()
+            for leg, offset in zip(self.legs, self.offsets, strict=True)
+        ]
+
+    @cached_property
+    def rods(self) -> list[sp.Matrix]:
+        """The vectors along the rods, from their near ends to the hand."""
+        return [span + arm for span, arm in zip(self.spans, self.arms, strict=True)]
+
+    @cached_property
+    def loop(self) -> tuple[sp.Expr, ...]:
+        """The equations of the loop: each rod keeps its length."""
+        return tuple(
+            square(rod) - sp.sympify(leg.rod, strict=True) ** 2
+            for leg, rod in zip(self.legs, self.rods, strict=True)
+        )
+
+    def moment(self, arm: sp.Matrix, force: sp.Matrix) -> sp.Matrix:
+        """The moment of a vector at the end of an arm, about the axes of turning."""
+        if self.tilts:
+            return arm.cross(force)
+        return sp.Matrix([cross_in_plane(arm, force)])
+
+
+def check_holds(m: Platform) -> None:
+    """Refuse legs that hold the hand in no posture, because A is singular everywhere.
+
+    This is tried with 50 digits at a posture and lengths that are drawn at random.
+    """
+    draw = random.Random(len(m.legs))
+    rows = zip(m.arms, m.rods, strict=True)
+    A = sp.Matrix.vstack(*(rod.col_join(m.moment(arm, rod)).T for arm, rod in rows))
+    at = {s: sp.Rational(draw.randint(50, 999), 100) for s in sorted(A.free_symbols, key=str)}
+    if m.tilts:
+        half = hat(sp.Matrix([sp.Rational(draw.randint(50, 999), 100) for _ in "xyz"]))
+        at |= dict(zip(m.rotation, (sp.eye(3) + half) * (sp.eye(3) - half).inv(), strict=True))
+    placed = A.subs(at).evalf(DIGITS)
+    largest = sp.Mul(*(placed.row(i).norm() for i in range(len(m.legs))))
+    if abs(placed.det()) < largest / 10 ** (DIGITS // 2):
+        raise ShapeError(
+            f"{m.d.name}: the legs do not hold the hand; the matrix A is singular in every posture"
+        )
+
+
+def counted_degree(m: Platform) -> int:
+    """The number of complex poses for the same joints, at generic lengths and joints.
+
+    A square root in the drawing is one more unknown, whose two values have as many poses each.
+    """
+    axes = "xyz"[: m.dimensions]
+    ends = [sp.Matrix([real(f"b{k}_{i}") for i in axes]) for k, _ in m.numbered]
+    hand = [m.position + arm - end for arm, end in zip(m.arms, ends, strict=True)]
+    equations = [
+        (leg.normal.dot(e) if isinstance(leg, Rail) else square(e)) - real(f"r{k}")
+        for (k, leg), e in zip(m.numbered, hand, strict=True)
+    ]
+    roots = {e for f in equations for e in f.atoms(sp.Pow) if e.exp == sp.Rational(1, 2)}
+    names = {e: real(f"root{k}") for k, e in enumerate(sorted(roots, key=str))}
+    equations = [e.xreplace(names) for e in equations]
+    equations += [name**2 - e.base for e, name in names.items()]
+    unknowns = (*m.pose, *names.values())
+    found = int(count_solutions(equations, unknowns, method="specialised").count)
+    return found // (1 << len(names))
+
+
+__all__ = ["LEGS", "UPRIGHT", "Half", "Platform", "check_holds", "counted_degree"]

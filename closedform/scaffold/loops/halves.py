@@ -1,0 +1,76 @@
+"""Recognises a hand of two halves, which two parallel bars join, as that of a Par 4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+
+PAIR = 2
+UP = sp.Matrix([0, 0, 1])
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A pin that joins a half to a bar."""
+
+    joint: Joint
+    on_half: sp.Matrix
+    on_bar: sp.Matrix
+
+
+def halves(loop: Loop) -> dict[str, Pin]:
+    """The halves of the hand, with their pins on the bar that has the point of the hand.
+
+    Empty if the hand is one body.
+    """
+    bars = [body for body, points in loop.bodies.items() if loop.hand in points]
+    if loop.dimensions == PAIR or len(bars) != 1:
+        return {}
+    (bar,) = bars
+    pins = [j for j in loop.of(bar) if j.kind == "revolute" and j.other(bar) not in loop.rods]
+    if len(pins) != PAIR or any(j.driven or GROUND in j.between for j in pins):
+        return {}
+    found = {j.other(bar): _pin(loop, j, bar) for j in pins}
+    second = {
+        j.other(half) for half in found for j in loop.of(half) if j.other(half) not in loop.rods
+    } - {bar}
+    if len(second) != 1:
+        names = " and ".join(found)
+        raise loop.error(
+            f"{bar}, which has the point {loop.hand}, joins {names}; one more bar has to join them,"
+            f" equal and parallel, so that they do not turn against each other"
+        )
+    _check_parallel(loop, found, bar, *second)
+    return found
+
+
+def _pin(loop: Loop, joint: Joint, bar: str) -> Pin:
+    half = joint.other(bar)
+    if joint.axis is None or joint.axis.cross(UP) != sp.zeros(3, 1):
+        raise loop.error(f"{joint.name} joins {bar} and {half}; its axis has to be [0, 0, 1]")
+    for body in (bar, half):
+        if joint.at not in loop.bodies[body]:
+            raise loop.error(f"{body} has no point {joint.at}, where {joint.name} is")
+    return Pin(joint, loop.bodies[half][joint.at], loop.bodies[bar][joint.at])
+
+
+def _check_parallel(loop: Loop, found: dict[str, Pin], bar: str, other: str) -> None:
+    """Refuse a second bar that is not equal to the first one and parallel to it."""
+    beside = [_pin(loop, j, other) for j in loop.of(other)]
+    ends = {pin.joint.other(other): pin for pin in beside}
+    if len(beside) != PAIR or ends.keys() != found.keys():
+        raise loop.error(f"{other} has to join {' and '.join(found)}, as {bar} does")
+    first, second = found
+    along = [pins[second].on_bar - pins[first].on_bar for pins in (found, ends)]
+    apart = [ends[half].on_half - found[half].on_half for half in found]
+    if any(sp.simplify(e) != 0 for pair in (along, apart) for e in pair[0] - pair[1]):
+        raise loop.error(
+            f"{bar} and {other} have to be opposite sides of a parallelogram, in the coordinates "
+            f"of the file"
+        )
+
+
+__all__ = ["Pin", "halves"]

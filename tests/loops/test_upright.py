@@ -218,7 +218,7 @@ def test_legs_that_do_not_keep_the_hand_upright_say_why() -> None:
     refused("two legs end on each half", lambda k, q, c: Half(Slide(q, bars, c, z, on_hand=c), x))
     refused(
         "the crank of q1 turns the axis",
-        lambda k, q, c: Crank(q, 1, Universal(1, z), c, x, z, on_hand=c),
+        lambda k, q, c: Crank(q, 1, Universal(1, z), c, along=x, across=z, on_hand=c),
     )
     d, joints = a_derivation()
     joints += [d.joint(f"q{k}", "prismatic") for k in (5, 6)]

@@ -11,7 +11,8 @@ from typing import Any
 from closedform.cli.plot import catalogue, drawings, module, write
 from closedform.pipeline import scripts
 
-CAPTIONS = "captions.json"
+CAPTIONS, PLACES = "captions.json", "places.json"
+"""The captions of figures, and where articles show them."""
 PAGE = "figures.md"
 OPENING = ("puma560", "branches")
 """The picture at the top of the README."""
@@ -31,11 +32,13 @@ def draw_all(
     folder.mkdir(parents=True, exist_ok=True)
     if docs is not None:
         (docs / "figures").mkdir(parents=True, exist_ok=True)
-    target = folder / CAPTIONS
-    captions: dict[str, str] = json.loads(target.read_text("utf-8")) if target.exists() else {}
+    captions, places = read(folder / CAPTIONS), read(folder / PLACES)
     for name in chosen or names():
         robot = module(name)
-        captions = {k: c for k, c in captions.items() if not k.startswith(f"{name}-")}
+        captions, places = (
+            {k: t for k, t in texts.items() if not k.startswith(f"{name}-")}
+            for texts in (captions, places)
+        )
         drawn = catalogue(name)
         for figure in drawn:
             targets = [folder / f"{name}-{figure.name}{suffix}"]
@@ -43,11 +46,18 @@ def draw_all(
                 targets.append(docs / "figures" / f"{name}-{figure.name}.svg")
             write(partial(figure.draw, robot), *targets)
             captions[f"{name}-{figure.name}"] = figure.caption
-        text = json.dumps(captions, indent=2, ensure_ascii=False)
-        target.write_text(text + "\n", "utf-8")
+            places[f"{name}-{figure.name}"] = figure.step
+        for target, texts in ((CAPTIONS, captions), (PLACES, places)):
+            text = json.dumps(texts, indent=2, ensure_ascii=False)
+            (folder / target).write_text(text + "\n", "utf-8")
         if docs is not None:
             write(partial(thumbnail, name, robot), docs / "figures" / f"{name}.svg")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"
+
+
+def read(target: Path) -> dict[str, str]:
+    """The texts that an earlier run wrote."""
+    return json.loads(target.read_text("utf-8")) if target.exists() else {}
 
 
 def thumbnail(name: str, robot: Any) -> Any:

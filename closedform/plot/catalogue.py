@@ -16,14 +16,22 @@ from closedform.plot.postures import branches, mechanism, spoken
 from closedform.plot.robot import Robot, positions
 from closedform.plot.style import new_panels, styled
 
+INVERSE = "inverse"
+"""The section of an article that has figures, beside the steps."""
+
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a mechanism: ``draw`` takes its generated module and returns axes."""
+    """A figure of a mechanism: ``draw`` takes its generated module and returns axes.
+
+    ``step`` is the title of the step of the derivation that it belongs to; ``INVERSE``
+    stands for that section.  Other figures belong to the description of the mechanism.
+    """
 
     name: str
     caption: str
     draw: Callable[[ModuleType], Any]
+    step: str = ""
 
 
 @dataclass(frozen=True)
@@ -87,6 +95,7 @@ def standard(view: View) -> list[Figure]:
             lambda robot: branches(
                 robot, faint=view.faint, about=view.about, given=view.given
             ),
+            INVERSE,
         ),
         Figure(
             "workspace",
@@ -95,6 +104,7 @@ def standard(view: View) -> list[Figure]:
             lambda robot: workspace(
                 robot, view.plane, at=view.at, limits=view.limits, unit=view.unit, given=view.given
             ),
+            INVERSE,
         ),
         Figure(
             "conditioning",
@@ -104,6 +114,7 @@ def standard(view: View) -> list[Figure]:
                 robot, "condition", view.measured or view.plane, at=view.at,
                 limits=None if view.measured else view.limits, unit=view.unit, given=view.given,
             ),
+            INVERSE,
         ),
     ]  # fmt: skip
 

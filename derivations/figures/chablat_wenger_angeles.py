@@ -528,33 +528,41 @@ FIGURES = (
     Figure("fig2", "The five-bar linkage, with its lengths and angles (Figure 2).", closed_chain),
     Figure("fig3", "The hybrid manipulator: the linkage turns about $AB$ (Figure 3).", hybrid),
     Figure("fig4", "The four working modes with $P$ above $AB$; the remaining four are their "
-           "mirror images (Figure 4).", working_modes),
-    Figure("fig5", "A parallel singularity: $C$, $D$ and $P$ in line (Figure 5).", in_line),
+           "mirror images (Figure 4).", working_modes, step="Inverse: the eight working modes"),
+    Figure("fig5", "A parallel singularity: $C$, $D$ and $P$ in line (Figure 5).", in_line,
+           step="Velocity: J and the determinants"),
     Figure("fig6", "A parallel singularity: $C$ and $D$ coincide, and $P$ moves on a circle while "
-           "the motors are locked (Figure 6).", coincident),
-    Figure("fig7", "A serial singularity: $B$, $D$ and $P$ in line (Figure 7).", outstretched),
+           "the motors are locked (Figure 6).", coincident,
+           step="Velocity: J and the determinants"),
+    Figure("fig7", "A serial singularity: $B$, $D$ and $P$ in line (Figure 7).", outstretched,
+           step="Velocity: J and the determinants"),
     Figure("fig8", "A section of the workspace for $L_0 = 0$ and $L_1 = L_2$ (Figure 8).",
-           optimal_section),
-    Figure("fig9", "The joint space for $L_0 = 0$ and $L_1 = L_2$ (Figure 9).", optimal_joints),
+           optimal_section, step="Workspace: where it is largest"),
+    Figure("fig9", "The joint space for $L_0 = 0$ and $L_1 = L_2$ (Figure 9).", optimal_joints,
+           step="Workspace: where it is largest"),
     Figure("fig10", "A section of the workspace without parallel singularities, for the lengths "
-           "5, 2, 5 (Figure 10).", avoiding_section),
+           "5, 2, 5 (Figure 10).", avoiding_section, step="Designs without parallel singularities"),
     Figure("fig11", "The joint space without parallel singularities, for the lengths 5, 2, 5 "
            "(left), and with the two points where $C$ and $D$ meet, for the lengths 4, 5, 8, which "
            "satisfy both conditions of section 3.2 as they are printed (right; Figure 11).",
-           avoiding_joints),
+           avoiding_joints, step="Designs without parallel singularities"),
     Figure("fig12", "One place of $P$ in two working modes: singular in the convex one, regular in "
-           "the non-convex one (Figure 12).", mode_and_singularity),
+           "the non-convex one (Figure 12).", mode_and_singularity,
+           step="Locus of the parallel singularities"),
     Figure("fig13", "The convex working mode: the part of the workspace on one side of the "
-           "parallel singularities (Figure 13).", _mode_section(CONVEX)),
+           "parallel singularities (Figure 13).", _mode_section(CONVEX),
+           step="Locus of the parallel singularities"),
     Figure("fig14", "The same for a non-convex working mode (Figure 14).",
-           _mode_section(NON_CONVEX)),
+           _mode_section(NON_CONVEX), step="Locus of the parallel singularities"),
     Figure("fig15", "Curves of equal condition number of $A$ in two working modes, with the "
-           "isotropic locus (Figure 15).", conditioning),
+           "isotropic locus (Figure 15).", conditioning, step="Isoconditioning loci"),
     Figure("assembly", "The two assembly modes for the same angles of the motors.",
-           assembly_modes),
-    Figure("isotropic", "An isotropic posture: $CP$ and $DP$ are at a right angle.", isotropic),
+           assembly_modes, step="Forward: P from two circles"),
+    Figure("isotropic", "An isotropic posture: $CP$ and $DP$ are at a right angle.", isotropic,
+           step="Isotropy"),
     Figure("volume", "The volume of the workspace for bars of the same total length: it is "
-           "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 says.", volume),
+           "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 says.", volume,
+           step="Workspace: where it is largest"),
 )  # fmt: skip
 
 ALL = tuple((NAME, f) for f in FIGURES)

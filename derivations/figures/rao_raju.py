@@ -260,14 +260,15 @@ def virtual_arm(robot: ModuleType) -> Any:
 
 FIGURES = (
     Figure("fig1", "The H6AR (a) and its wrist (b; Figure 1 of the paper).", schematics),
-    Figure("fig2", "The frames of the waist and of the right arm (Figure 2).", arm_frames),
+    Figure("fig2", "The frames of the waist and of the right arm (Figure 2).", arm_frames,
+           step="Tips of the fore-arms"),
     Figure("fig3", "Projections of the wrist: a pure yaw from above (a), and a pure roll along the "
-           "level fore-arms (b; Figure 3).", projections),
+           "level fore-arms (b; Figure 3).", projections, step="Yaw and roll from the tips"),
     Figure("fig4", "The equivalent serial mechanism in the mid-plane, with the axes of the wrist "
-           "(Figure 4).", virtual_arm),
+           "(Figure 4).", virtual_arm, step="Tip"),
     Figure("loop", "The pure roll of Figure 3 (b) by eqs. (1), (2) and (9): the links of the wrist "
            "do not meet the tips of the arms, because the roll of (9) has the other sign.",
-           open_loop),
+           open_loop, step="Yaw and roll"),
 )  # fmt: skip
 
 PAPER = PaperFigures(

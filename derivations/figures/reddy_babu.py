@@ -241,18 +241,20 @@ def hand_frame(robot: ModuleType) -> Any:
 
 ALL = (
     (ARM, Figure("fig1", "The planar arm with its lengths and angles (Fig. 1 of the paper).",
-                 schematic)),
+                 schematic, step="Position by geometry")),
     (ARM, Figure("fig2", "Both postures that reach the point of the worked example (Fig. 2).",
-                 both_elbows)),
+                 both_elbows, step="Inverse: the law of cosines")),
     (ARM, Figure("fig3", "The triangle of the two links: $\\theta_1 = \\beta - \\alpha$ (Fig. 3).",
-                 triangle)),
-    (ARM, Figure("fig4", "The four Denavit-Hartenberg parameters (Fig. 4).", four_parameters)),
+                 triangle, step="Inverse: the shoulder")),
+    (ARM, Figure("fig4", "The four Denavit-Hartenberg parameters (Fig. 4).", four_parameters,
+                 step="Pose by Denavit-Hartenberg")),
     (WRIST, Figure("fig5", "The $ZYZ$ Euler angles, one rotation after the other (Fig. 5).",
-                   euler)),
+                   euler, step="Orientation by ZYZ Euler angles")),
     (WRIST, Figure("fig6", "The axes and the last frame of the spherical wrist (Fig. 6).",
-                   wrist_frames)),
+                   wrist_frames, step="Pose by Denavit-Hartenberg")),
     (WRIST, Figure("fig7", "The frame of a hand (a), and the same after the rotations $-90°$, "
-                   "$90°$, $90°$ of the worked example (b; Fig. 7).", hand_frame)),
+                   "$90°$, $90°$ of the worked example (b; Fig. 7).", hand_frame,
+                 step="Inverse orientation")),
 )  # fmt: skip
 
 PAPER = PaperFigures(

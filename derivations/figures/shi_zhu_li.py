@@ -210,18 +210,19 @@ def velocities(robot: ModuleType) -> Any:
 
 FIGURES = (
     Figure("fig1", "A four-bar linkage with equal opposite links (a), and its output angle over "
-           "its input angle in both assemblies (b; Fig. 1 of the paper).", four_bar),
+           "its input angle in both assemblies (b; Fig. 1 of the paper).", four_bar,
+           step="The lower loop and its assemblies"),
     Figure("fig3", "The double parallelogram in two positions: the bracket at the wrist stays "
-           "level (Fig. 3).", two_positions),
+           "level (Fig. 3).", two_positions, step="The upper loop and the virtual joint"),
     Figure("fig4", "The linkage in grey, and the equivalent open chain in dark lines (Fig. 4).",
-           simplified),
+           simplified, step="The upper loop and the virtual joint"),
     Figure("fig5", "A revolute joint: its direction $\\omega$, a point $q$ on its axis, and the "
-           "velocity of a point $p$ (Fig. 5).", revolute),
+           "velocity of a point $p$ (Fig. 5).", revolute, step="Exponential"),
     Figure("fig6", "The open chain at home, with the screws of eqs. (1) to (5) (Fig. 6).",
-           open_chain),
+           open_chain, step="Screws"),
     Figure("fig7", "The velocity of the hand in the experiment of section V, from all angles 0 and "
            "with the dimensions of the data sheet, for both readings of axis 3 (Fig. 7b).",
-           velocities),
+           velocities, step="Relative or grounded"),
 )  # fmt: skip
 BY_NUMBER = {1: 0, 3: 1, 4: 2, 5: 3, 6: 4, 7: 5}
 

@@ -32,6 +32,7 @@ from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.names import is_word
+from closedform.emit.backends.latex.places import place
 from closedform.emit.backends.latex.plain import angles_of_readers, plain
 from closedform.emit.backends.latex.prose import (
     escape,
@@ -202,6 +203,7 @@ class Page(Sheet):
         return {
             "title": escape(step.title),
             "index": indexed(step.title),
+            "place": place(step.title),
             "reason": self.prose(step.reason),
             "uses": uses,
             "again": "" if fresh else reference(again),

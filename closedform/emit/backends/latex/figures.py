@@ -1,7 +1,8 @@
 """What TeX reads of the figures that ``make figures`` has drawn, for the articles and the book.
 
 ``python -m closedform.emit.backends.latex.figures FOLDER`` reads ``captions.json``, which maps
-``ROBOT-what`` to a caption in the order of the pages, and writes ``ROBOT-figures.tex`` for each
+``ROBOT-what`` to a caption in the order of the pages, and ``places.json``, which maps it to the
+title of the step or to the section that it belongs to.  It writes ``ROBOT-figures.tex`` for each
 mechanism that has drawings ``ROBOT-what.pdf``.  Without them an article has no figures.
 """
 
@@ -12,24 +13,42 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from closedform.emit.backends.latex.equations import listed
+from closedform.emit.backends.latex.places import SECTIONS, place
 from closedform.emit.backends.latex.prose import mixed
 
 
-def pages(captions: Mapping[str, str], drawn: Sequence[str]) -> dict[str, str]:
-    """The figures of each mechanism that were drawn and have a caption."""
-    found: dict[str, str] = {}
-    for name, caption in captions.items():
+def pages(
+    captions: Mapping[str, str], drawn: Sequence[str], places: Mapping[str, str]
+) -> dict[str, str]:
+    """The figures of each mechanism that were drawn and have a caption, place by place."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for name in captions:
         if name in drawn:
-            robot = name.partition("-")[0]
-            page = rf"\drawing{{{name}}}{{{mixed(caption)}}}" + "\n"
-            found[robot] = found.get(robot, "") + page
-    return found
+            of_robot = found.setdefault(name.partition("-")[0], {})
+            where = places.get(name, "")
+            key = where or "mechanism" if where in SECTIONS else place(where)
+            of_robot.setdefault(key, []).append(name)
+    return {
+        robot: "".join(_at(where, names, captions) for where, names in of_robot.items())
+        for robot, of_robot in found.items()
+    }
+
+
+def _at(where: str, names: Sequence[str], captions: Mapping[str, str]) -> str:
+    marks = listed([rf"\ref{{figure:{name}}}" for name in names])
+    told = f"See Figure{'s' * (len(names) > 1)}~{marks}."
+    drawings = [rf"\drawing{{{name}}}{{{mixed(captions[name])}}}" for name in names]
+    return "\n".join([rf"\figures{{{where}}}{{{told}", *drawings]) + "}\n"
 
 
 def main(folder: Path) -> None:
-    known = folder / "captions.json"
-    captions = json.loads(known.read_text("utf-8")) if known.is_file() else {}
-    for robot, text in pages(captions, [p.stem for p in folder.glob("*.pdf")]).items():
+    captions, places = (
+        json.loads(known.read_text("utf-8")) if known.is_file() else {}
+        for known in (folder / "captions.json", folder / "places.json")
+    )
+    drawn = [p.stem for p in folder.glob("*.pdf")]
+    for robot, text in pages(captions, drawn, places).items():
         (folder / f"{robot}-figures.tex").write_text(text, encoding="utf-8")
 
 

@@ -152,7 +152,7 @@ d.step(
     "below.",
     {
         "f": fore,
-        "r": sqrt(X**2 + pz**2),
+        "r": sqrt(real("X") ** 2 + pz**2),
         r"a_2^2 + f^2 + 2 a_2 f\cos\eta": real("r") ** 2,
         r"r\cos\alpha": a2 + f * cos(angle),
         r"r\sin\alpha": f * sin(angle),

@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import Printer, measure
+from closedform.emit.backends.latex.grouping import joint_by_joint
 from closedform.emit.backends.latex.prose import GREEK, symbol_name, written_name
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
@@ -105,7 +106,12 @@ class Quantities:
         """A value with the names of the quantities that occur in it."""
         if isinstance(value, sp.MatrixBase):
             return value.applyfunc(self)
-        return self._named(value, self.known.values())
+        named = self._named(value, self.known.values())
+        if named == value and isinstance(value, sp.Add):  # a quantity times the cosine of a joint
+            grouped = joint_by_joint(value)
+            whole = self._named(grouped, self.known.values())
+            return whole if whole != grouped else value
+        return named
 
     def _named(self, value: Any, known: Iterable[tuple[sp.Expr, sp.Symbol]]) -> Any:
         if not isinstance(value, sp.Expr) or value.is_Atom or sp.count_ops(value) > LARGEST:

@@ -18,6 +18,7 @@ import sympy as sp
 from closedform.algebra.factoring import factored
 from closedform.emit.backends.latex.equations import runs
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
+from closedform.emit.backends.latex.grouping import joint_by_joint, without_minus
 from closedform.emit.backends.latex.names import TUPLE, element
 from closedform.model.functions import real
 
@@ -32,6 +33,8 @@ SIMPLIFIED = 80
 """The largest number of operations of an expression that is tried in other forms."""
 FACTORED, FACTORED_SYMBOLS = 30, 7
 """The largest numbers of operations and of symbols of a sum that is factored."""
+NESTED = 1.0
+"""The same of a sum whose terms are collected joint by joint."""
 TERMS = 8
 """A polynomial with fewer terms is printed as it is."""
 SHORT = 16.0
@@ -122,10 +125,13 @@ class Lines:
     def tidy(self, value: sp.Expr) -> sp.Expr:
         """The narrowest of some equal forms: common factors in front, one fraction, factored."""
         if value not in self._tidied:
+            nested = joint_by_joint(value)
 
             def cost(form: sp.Expr) -> float:
                 grouped = form.is_Add and len(form.args) == 2 < len(value.args) == 4
-                return self.width(form) - (PRODUCT if form.is_Mul or grouped else 0)
+                collected = form == nested != value
+                bonus = PRODUCT if form.is_Mul or grouped else NESTED if collected else 0
+                return self.width(form) - bonus
 
             # no product of sums is multiplied out unless terms cancel
             terms, size = len(sp.Add.make_args(value)), sp.count_ops(value)
@@ -147,6 +153,8 @@ class Lines:
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)
+        if (grouped := joint_by_joint(value)) != value:
+            yield grouped
         yield from unit_circles(value)
         if (together := with_sums_of_angles(value)) != value:
             yield together
@@ -319,18 +327,6 @@ def _common(matrix: sp.MatrixBase) -> sp.Expr:
     if not any(f.is_Pow and f.exp.is_negative for f in shared):
         return sp.S.One
     return sp.Mul(*sorted(shared, key=str))
-
-
-def without_minus(value: sp.Expr) -> sp.Expr:
-    """``r*(b - a)`` for ``-r*(a - b)``."""
-    number, rest = value.as_coeff_Mul()
-    if not number.is_negative:
-        return value
-    for factor in sp.Mul.make_args(rest):
-        negative = [t.as_coeff_Mul()[0].is_negative for t in factor.args] if factor.is_Add else []
-        if any(negative):
-            return sp.Mul(-number, rest / factor, -factor)
-    return value
 
 
 def with_sums_of_angles(value: sp.Expr) -> sp.Expr:

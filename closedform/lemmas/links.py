@@ -10,7 +10,7 @@ out gets no flag.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -153,6 +153,10 @@ def turn(
         r"h = \sqrt{a^2+b^2}"
     )
     lemma = at.lemma(pair.angle, how)
+    if c != 0:  # otherwise the direction is that of (a, b), turned by a quarter
+        away = sp.atan2(root, c, evaluate=False)
+        told = sp.atan2(a, b, evaluate=False) + sigma * away
+        lemma = replace(lemma, plainly={x: choose(flag, 0, told)})
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
     facing = Facing(s=pair.s, c=pair.c, lever=root, ahead=ahead, side=sigma, tangent=found.tangent)

@@ -240,7 +240,7 @@ d.step(
     "N and M measure how far the hand is from both boundaries.  They are 1 - D and 1 + D up to a "
     "common factor, so the ratio of their roots is the tangent of half the angle.  With this "
     "angle the hand reaches its position up to rounding.",
-    {"N": outer, "M": inner, r"\theta_2": with_names.elbow, r"\alpha": with_names.base},
+    {"N": outer, "M": inner, r"\theta_2": with_names.elbow},
     proves="N and M are 1 - D and 1 + D, each times twice the product of the lengths.",
     equal=[(outer, 2 * l1 * l2 * (1 - cosine)), (inner, 2 * l1 * l2 * (1 + cosine))],
     uses=[by_the_law_of_cosines],
@@ -249,11 +249,25 @@ d.step(
 d.step(
     "Inverse: the shoulder",
     "The direction of the first link is that of the hand minus alpha, the angle of the triangle at "
-    "the base.  The sines and cosines of both angles give their difference with one arctangent.  "
-    "The hand can be on the base axis only if l1 = l2.  Then every theta1 is a solution; we return "
-    "0.",
-    {r"\theta_1": atan2(py, px) - alpha},
+    "the base.  Along the first link and across it, the hand is r cos(alpha) and r sin(alpha) from "
+    "the base.  With N and M, the sine and the cosine of theta2 are 2 sigma_elbow sqrt(M N) and M "
+    "- N, each divided by M + N.  The hand can be on the base axis only if l1 = l2.  Then every "
+    "theta1 is a solution; we return 0.",
+    {
+        r"r\cos\alpha": l1 + l2 * cos(theta2),
+        r"r\sin\alpha": l2 * sin(theta2),
+        r"\alpha": with_names.base,
+        r"\theta_1": atan2(py, px) - alpha,
+    },
     published=("(4)",),
+    proves="In N and M, the position of the hand along the first link is the stated one, up to "
+    "the factor M + N.",
+    equal=[
+        (
+            (outer + inner) * (l1 + l2 * cosine),
+            inner * (l1 + l2) + outer * (l1 - l2),
+        )
+    ],
     solves={"ik": [theta1]},
 )
 d.function(

@@ -15,13 +15,14 @@ from closedform.model.lemma import Lemma, Shape
 
 theorem(
     "atan2 of a linear pair",
-    statement=r"""Let $f$ and $g$ be real numbers that are not both zero.  In $(-\pi, \pi]$ the
-equation $g\sin x - f\cos x = 0$ with $f\sin x + g\cos x > 0$ has exactly one solution, $x =
-\operatorname{atan2}(f, g)$.""",
-    proof=r"""By the equation the vectors $(\cos x, \sin x)$ and $(g, f)$ are parallel, and by the
-inequality they point the same way.  So $(\cos x, \sin x) = (g, f)/\sqrt{f^2 + g^2}$, and
-$\operatorname{atan2}(f, g)$ is the angle of this vector.  The inequality excludes one of the two
-solutions of the equation, the one that differs by half a turn.""",
+    statement=r"""Let $f$ and $g$ be real numbers that are not both zero.  In $(-\pi, \pi]$ exactly
+one $x$ has $k\sin x = f$ and $k\cos x = g$ with a number $k > 0$: $x = \operatorname{atan2}(f,
+g)$.""",
+    proof=r"""The squares of the equations add up to $k^2 = f^2 + g^2$.  So $(\cos x, \sin x) = (g,
+f)/\sqrt{f^2 + g^2}$, and $\operatorname{atan2}(f, g)$ is the angle of this vector.  Without $k$ the
+equations say that $g\sin x - f\cos x = 0$ and $f\sin x + g\cos x > 0$, which is what the prover
+uses.  The inequality excludes one of the two solutions of the equation, the one that differs by
+half a turn.""",
     exception=r"""If $f = g = 0$, every $x$ solves the equation: the joint is free.""",
 )
 theorem(
@@ -50,14 +51,14 @@ def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """
     return Lemma(
         "atan2 of a linear pair",
-        r"g\sin x - f\cos x = 0,\ f\sin x + g\cos x > 0 \;\Rightarrow\; "
-        r"x = \operatorname{atan2}(f, g)",
+        r"k\sin x = f,\ k\cos x = g,\ k > 0 \;\Rightarrow\; x = \operatorname{atan2}(f, g)",
         (sp.sin(x) * cosine - sp.cos(x) * sine,),
         {x: sp.atan2(sine, cosine)},
         1,
         excluded=1,
         shape=Shape.CONTAINS,
         roles=(("x", x), ("f", sine), ("g", cosine)),
+        scaled=("x", "f", "g"),
     )
 
 
@@ -76,7 +77,7 @@ def turned_back(
     lemma = linear_pair(x, up * ahead - out * beyond, out * ahead + up * beyond)
     other = sp.atan2(beyond, ahead, evaluate=False)
     plainly = {angle: other, x: sp.atan2(up, out, evaluate=False) - angle}
-    return replace(lemma, roles=(("x", x),), plainly=plainly)
+    return replace(lemma, roles=(("x", x + angle), ("f", up), ("g", out)), plainly=plainly)
 
 
 def sine_cosine(

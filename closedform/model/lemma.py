@@ -42,7 +42,8 @@ class Lemma(Shown):
     names of the program as the statement does.  A lemma in vectors is told as such, and its
     coordinates are left to the algorithm; ``vectors`` says how that computes them, and ``written``
     how the vectors of the program are written, by their names there.  ``matrix`` is the letter of
-    the matrix that holds all unknowns, if there is one.
+    the matrix that holds all unknowns, if there is one.  ``scaled`` has the letters of an angle, and
+    of its sine and its cosine up to one positive factor: a reader has an equation for each.
 
     ``plainly`` says what a reader computes in place of what serves the rounding: closed forms of
     the unknowns, values of names of the program, and angles that only a reader has, each before it
@@ -66,6 +67,7 @@ class Lemma(Shown):
     vectors: str = ""
     written: Mapping[str, str] = field(default_factory=dict)
     matrix: str = ""
+    scaled: tuple[str, ...] = ()
     plainly: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:

@@ -26,6 +26,7 @@ from closedform.emit.backends.latex.equations import (
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
+from closedform.emit.backends.latex.pairs import scaled
 from closedform.emit.backends.latex.prose import mixed
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, block, blocks
@@ -134,8 +135,8 @@ class Stages:
         alike = solving.lemma.name == first.lemma.name and not solving.lemma.vectors
         if not alike or len(solving.unknowns) > 1 or len(found) > len(step):
             return False
-        needed = self.joints_in(self.system(solving), solving)
-        return needed == self.joints_in(self.system(first), first) and not needed & found
+        needed = self.joints_in(self.all_of(solving), solving)
+        return needed == self.joints_in(self.all_of(first), first) and not needed & found
 
     def sought(self, solving: Solving) -> list[str]:
         """The unknowns of a lemma; the matrix, where they are its entries."""
@@ -207,6 +208,8 @@ class Stages:
 
     def system(self, solving: Solving) -> list[sp.Expr]:
         """The equations that determine the unknowns: of many, the shortest for each of them."""
+        if solving.lemma.scaled:
+            return scaled(solving.lemma, solving.equations, self.algorithm)
         left, width = list(solving.equations), self.page.lines.width
         if solving.lemma.matrix:  # that it is a rotation is said in words
             left = [e for e in left if self.named(e).free_symbols - {*solving.unknowns}]
@@ -227,6 +230,10 @@ class Stages:
             unknowns.remove(unknown)
             known.add(unknown)
         return chosen
+
+    def all_of(self, solving: Solving) -> list[sp.Expr]:
+        """The equations that are shown, and the one that those of a scaled pair follow from."""
+        return self.system(solving) + (list(solving.equations) if solving.lemma.scaled else [])
 
     def equation(self, equation: sp.Expr, solving: Solving) -> list[tuple[str, str]]:
         """An equation with the unknowns on its left side."""
@@ -306,7 +313,7 @@ class Stages:
         page, solving = self.page, step[0]
         held = free_symbols([self.explicit(e) for e in equations])
         parts = [s for s in self.function.symbols if s in held]
-        joints = self.joints_in(self.system(solving), solving)
+        joints = self.joints_in(self.all_of(solving), solving)
         later = self.found_later(sorted(joints, key=str), solving)
         order = [u for s in self.solvings for u in s.unknowns] + list(self.inverse.unknowns)
         known = sorted((s for s in joints if s not in later), key=order.index)
@@ -397,7 +404,7 @@ class Stages:
         text = f"{start} {number} solution{'s' * (n != 1)}"
         if told and n > 1:
             text += f", for {told}"
-        if step[0].lemma.excluded and n == 1:
+        if step[0].lemma.excluded and n == 1 and not step[0].lemma.scaled:
             text += " with the sign that is required"
         return text
 

@@ -395,7 +395,7 @@ def polar(
 
 theorem(
     "slide",
-    statement="The equation $d = z$ has exactly one solution, $d = z$.",
+    statement="The equation $d = c$ has exactly one solution, $d = c$.",
     proof=r"""A prismatic joint along the direction of a coordinate moves the hand by as much as
 it is extended; nothing has to be solved.""",
 )
@@ -404,18 +404,19 @@ it is extended; nothing has to be solved.""",
 @chain_lemma("d = value", "the value")
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
     """``joint = value``: a prismatic joint along the direction of a coordinate."""
-    lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
+    roles = (("d", joint), ("c", value))
+    lemma = Lemma("slide", r"d = c", (joint - value,), {joint: value}, 1, roles=roles)
     return Applied(lemma, value)
 
 
 theorem(
     "remaining angle",
-    statement=r"""Let $\psi$ and $\varphi$ be given by their sines and cosines.  In $(-\pi, \pi]$
-exactly one $\theta$ has $\theta + \varphi = \psi$ up to whole turns,
-$$\theta = \operatorname{atan2}(\sin\psi\cos\varphi - \cos\psi\sin\varphi,\
-\cos\psi\cos\varphi + \sin\psi\sin\varphi).$$""",
-    proof=r"""By the addition theorems the arguments are $\sin(\psi - \varphi)$ and $\cos(\psi -
-\varphi)$.  Angles with the same sine and cosine differ by whole turns, and one of them is in
+    statement=r"""Let $\mu$ and $\nu$ be given by their sines and cosines.  In $(-\pi, \pi]$
+exactly one $\lambda$ has $\lambda + \nu = \mu$ up to whole turns,
+$$\lambda = \operatorname{atan2}(\sin\mu\cos\nu - \cos\mu\sin\nu,\
+\cos\mu\cos\nu + \sin\mu\sin\nu).$$""",
+    proof=r"""By the addition theorems the arguments are $\sin(\mu - \nu)$ and $\cos(\mu -
+\nu)$.  Angles with the same sine and cosine differ by whole turns, and one of them is in
 $(-\pi, \pi]$.""",
 )
 
@@ -435,9 +436,10 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
         )
     lemma = Lemma(
         "remaining angle",
-        r"\theta = \psi - \varphi",
+        r"\lambda = \mu - \nu",
         (sp.cos(joint) - sp.cos(total), sp.sin(joint) - sp.sin(total)),
         {joint: pair.angle},
         1,
+        roles=((r"\lambda", joint), (r"\mu - \nu", total)),
     )
     return Applied(lemma, total, {}, dict(chain.meaning))

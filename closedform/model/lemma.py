@@ -42,8 +42,8 @@ class Lemma(Shown):
     names of the program as the statement does.  A lemma in vectors is told as such, and its
     coordinates are left to the algorithm; ``vectors`` says how that computes them, and ``written``
     how the vectors of the program are written, by their names there.  ``matrix`` is the letter of
-    the matrix that holds all unknowns, if there is one.  ``scaled`` has the letters of an angle, and
-    of its sine and its cosine up to one positive factor: a reader has an equation for each.
+    the matrix that holds all unknowns, if there is one.  ``scaled`` has the letters of an angle and
+    of its sine and its cosine, up to a positive factor: a reader has an equation for each.
 
     ``plainly`` says what a reader computes in place of what serves the rounding: closed forms of
     the unknowns, values of names of the program, and angles that only a reader has, each before it

@@ -68,7 +68,7 @@ class Rounded(Check):
 
 @dataclass(frozen=True)
 class Enumeration(Check):
-    """A number or a list found by enumeration of all cases; ``meaning`` describes it."""
+    """A number, a list or a truth found by enumeration of all cases; ``meaning`` describes it."""
 
     printed: Any
     found: Callable[[], Any]
@@ -76,6 +76,9 @@ class Enumeration(Check):
 
     def judge(self) -> Verdict:
         found = self.found()
+        if isinstance(found, bool):
+            told = self.meaning if found else f"not so: {self.meaning}"
+            return Verdict(PROVED if found == self.printed else REFUTED, (told,))
         if found == self.printed:
             return Verdict(PROVED, (f"{self.meaning}: {_in_words(found)}",))
         text = f"{self.meaning}: {_in_words(found)}, not {_in_words(self.printed)}"
@@ -83,14 +86,14 @@ class Enumeration(Check):
 
 
 def _in_words(value: Any) -> str:
-    """A number, yes or no, or a list of names without the signs of the programming language."""
+    """A number, or a list of names without the signs of the programming language."""
     if isinstance(value, list | tuple | set | frozenset):
         parts = list(value) if isinstance(value, list | tuple) else sorted(value, key=str)
         several = (
             f"({_in_words(p)})" if isinstance(p, list | tuple) else _in_words(p) for p in parts
         )
         return ", ".join(several) or "none"
-    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+    return str(value)
 
 
 @dataclass(frozen=True)

@@ -95,6 +95,8 @@ BOLD = re.compile(r"\\mathbf ?\{?([a-z])(?![A-Za-z])")
 """A vector in a formula."""
 POINT = re.compile(r"\\mathbf ?\{?([A-Z])\}?_\{?(\d)\}?")
 """A point of a drawing, as in ``\\mathbf B_1``."""
+INDEX_WORD = re.compile(r"_\{((?=[a-z]*[aeio])[a-z]{3,})\}")
+"""An index that is a word, as in ``l_{off}``, and not several letters, as in ``P_{xyz}``."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 
 
@@ -159,6 +161,7 @@ def mixed(text: str) -> str:
             r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
         ):
             stiff = True
+        formula = INDEX_WORD.sub(r"_{\\mathrm{\1}}", formula)
         formula = ROWS.sub(_roomy, formula if stiff else loosen(formula))
         formula = rf"$\displaystyle {formula}$"
         formula = rf"\fit{{{formula}}}" if stiff else formula

@@ -158,6 +158,8 @@ class Stages:
             held = {s for e in system for s in e.free_symbols}
             solved += [self.equation(e, solving) for e in system]
             definitions += self.definitions(held, solving)
+            if not lemma.vectors and not lemma.matrix:
+                definitions += self.made_before([self.named(e) for e in system])
         origin, roles = self.origin(shown, step), self.roles(step)
         if self.algorithm.vectors or lemma.vectors:  # the lemma has the equations, in vectors
             solved, definitions = [], []

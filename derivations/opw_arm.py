@@ -71,7 +71,7 @@ d.explain(
     }
 )
 for axis in "xyz":
-    d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
+    d.write(f"w_{axis}", meaning="coordinate of the centre of the wrist")
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.  The lengths "

@@ -77,20 +77,25 @@ d.explain(
     }
 )
 w_squared = d_se**2 + d_ew**2 + 2 * d_se * d_ew * cos(theta4)
+distance = sqrt(line.dot(line))
+aside = sqrt(w[0].subs(theta1, 0) ** 2 + w[1].subs(theta1, 0) ** 2)
 d.step(
     "Shoulder, elbow and wrist",
     "Seen from the shoulder, the wrist is at w.  Its distance L depends on the elbow alone; r is "
     "its distance from the line through the shoulder along z.",
     {
         "w": w,
-        "L": sqrt(w_squared),
-        "r": sqrt(real("w_x") ** 2 + real("w_y") ** 2),
+        "L": distance,
+        "L^2": w_squared,
+        "r": aside,
     },
     proves="The position of the flange is the sum of d_bs upwards, w, and d_wf along the last "
     "axis.",
     equal=[
         (arm.position, sp.Matrix([0, 0, d_bs]) + w + d_wf * arm.pose[:3, 2]),
         (w.dot(w), w_squared),
+        (distance**2, w_squared),
+        (aside**2, w[0] ** 2 + w[1] ** 2),
     ],
 )
 
@@ -130,10 +135,8 @@ d.step(
         ),
     ],
 )
-distance = sqrt(line.dot(line))
 up = to_elbow[2, :]
 level, across = -up[2], up[1] * line[0] - up[0] * line[1]
-aside = sqrt(w[0].subs(theta1, 0) ** 2 + w[1].subs(theta1, 0) ** 2)
 numerators = [
     across * (w_squared * level.diff(x) + level * w_squared.diff(x) / 2)
     - w_squared * level * across.diff(x)
@@ -157,9 +160,7 @@ d.step(
     "vector.",
     equal=[
         (sp.Matrix(numerators).dot(self_motion), -w_squared * aside**2 * s2 * s6),
-        (aside**2, w[0] ** 2 + w[1] ** 2),
         (aside**2, w_squared * level**2 + across**2),
-        (distance**2, w_squared),
     ],
 )
 d.function("self_motion", SELF_MOTION, {"q": q}, {"qdot": self_motion}, equation=r"\dot q")
@@ -187,7 +188,11 @@ elbow = ik.solve(law_of_cosines, theta4, (d_se, d_ew), far, {-1: "up", +1: "down
 d.step(
     "Inverse: the elbow",
     "The upper arm, the forearm and the line from the shoulder to the wrist form a triangle.",
-    {"w": ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]), "L": sqrt(p.dot(p))},
+    {
+        "w": ik.p - d_wf * ik.R[:, 2] - sp.Matrix([0, 0, d_bs]),
+        "L": sqrt(p.dot(p)),
+        "r": sqrt(wx**2 + wy**2),
+    },
     solves={"ik": [theta4]},
 )
 bent = ik.vector("v", sp.Matrix([0, d_se, 0]) + turned(elbow) * sp.Matrix([0, d_ew, 0]))

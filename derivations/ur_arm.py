@@ -71,7 +71,7 @@ toward = LinksAndWrist(
 beside = {+1: "left", -1: "right"}
 shoulder = ik.solve(turn, theta1, (wrist[0], -wrist[1], d4), beside, toward=toward)
 for axis in "xyz":
-    d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
+    d.write(f"w_{axis}", meaning="coordinate of the centre of the wrist")
 d.write("phi", meaning="sum of the turns about the three parallel axes")
 d.write("ex", "e_x", "horizontal component of the vector that the two links span")
 d.write("ey", "e_y", "vertical component of the vector that the two links span")

@@ -15,6 +15,8 @@ from closedform.model.functions import real
 
 KEEPS_TURNS = "The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi]."
 
+NUMBERED = "the joint with this number"
+
 
 def parallelogram_drive(
     d: Derivation,
@@ -43,7 +45,7 @@ def parallelogram_drive(
         raise ShapeError(f"{d.name}: each joint has one motor, and a parallelogram drives a joint")
     turned = dict(zip(joints, map(real, names), strict=True))
     for q, name in zip(joints, names, strict=True):
-        d.write(name, meaning=f"angle of the motor of {q}")
+        d.write(name, meaning=f"angle of the motor of {q if motors else NUMBERED}")
     rows = [turned[q] - turned[through[q][0]] if q in through else turned[q] for q in joints]
     angles = sp.Matrix([turned[q] for q in joints])
     M = sp.Matrix(rows).jacobian(angles)

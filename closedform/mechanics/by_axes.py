@@ -13,10 +13,10 @@ from closedform.model.derivation import Derivation
 
 ENTRIES = 1000
 """The most operations of a pose whose entries are written out; of a longer one, the factors are."""
-AXES = "  Here w_i is the axis of joint i, o_i a point on it, and p the position in T."
-MEANINGS = {"w_i": "axis of joint i", "o_i": "point on the axis of joint i"}
-AXIS = r"\begin{bmatrix} \ast & \ast & \mathbf{w}_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"
-COLUMN = r"\begin{bmatrix} \mathbf{w}_i \times (p - \mathbf{o}_i) \\ \mathbf{w}_i \end{bmatrix}"
+AXES = "  Column i of J is that of joint i: z_i is the axis of the joint, and o_i a point on it."
+MEANINGS = {"z_i": "axis of joint i", "o_i": "point on the axis of joint i"}
+AXIS = r"\begin{bmatrix} \ast & \ast & \mathbf{z}_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"
+COLUMN = r"\begin{bmatrix} \mathbf{z}_i \times (p - \mathbf{o}_i) \\ \mathbf{z}_i \end{bmatrix}"
 
 TURN = twist_matrix(sp.Matrix([0, 0, 0, 0, 0, 1]))
 """The rate of a turn about the z axis."""

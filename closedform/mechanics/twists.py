@@ -8,12 +8,12 @@ from closedform.mechanics.frames import hat
 
 SPELLED = 120
 """The most operations of a Jacobian that is written out, not expressed by the geometric one."""
-SHIFT = r"\begin{bmatrix} 1 & [p]_\times \\ 0 & 1 \end{bmatrix} J"
+SHIFT = r"\begin{bmatrix} I & [p]_\times \\ 0 & I \end{bmatrix} J"
 TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
 TURNED = (
     "  The velocity in J is that of the tool.  In J_s it is that of the point of the tool that is "
     "just at the origin of the base.  J_b is in the axes of the tool.  Here p is the position in "
-    "T, R its rotation, and [p]_× the matrix of the cross product with p."
+    "T, R its rotation, I the unit matrix, and [p]_× the matrix of the cross product with p."
 )
 
 

@@ -21,6 +21,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, parts_first, unless, whole
 from closedform.emit.backends.latex.names import is_word, program_name
+from closedform.emit.backends.latex.plain import without_common_factors
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
@@ -103,7 +104,8 @@ class Algorithm:
         links = self.inverse.links if self.inverse else ()
         self.unknowns = {u for link in links for u in link.unknowns}
         self.unknowns |= {u for lemma in self.subject.lemmas for u in lemma.solution}
-        self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
+        outputs = (self._generic(e) for a in self.function.outputs for e in a.entries)
+        self.outputs = [without_common_factors(e) if e.has(sp.atan2) else e for e in outputs]
         self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
         self.needed = self._needed()
         lemmas = [k.lemma for k in links if k.lemma]

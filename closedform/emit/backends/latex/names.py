@@ -64,8 +64,6 @@ class Quantities:
             self.printer.rename({symbol: left})
             wide = measure(self.printer.math(value)) >= NARROWEST
             (self.known if wide else self.narrow)[left] = value, symbol
-            if wide:
-                self.former.pop(left, None)
 
     def of_a_function(
         self,
@@ -77,17 +75,19 @@ class Quantities:
 
         ``names`` are the symbols of the function, of which more may be assumed.
         """
+        meanings = (self.former, *([self.narrow] if names else []), self.known)
         every = {**self.former, **(self.narrow if names else {}), **self.known}
         found = {left: k for left, k in every.items() if left not in without}
+        pairs = [k for m in meanings for left, k in m.items() if left not in without]
         if not names:
-            return self._named(value, found.values())
-        symbols = {s for e, _ in found.values() for s in e.free_symbols}
+            return self._named(value, pairs)
+        symbols = {s for e, _ in pairs for s in e.free_symbols}
         own = {s: names[str(s)] for s in symbols if str(s) in names}
         written = {_without_braces(left): symbol for left, (_, symbol) in found.items()}
         for s in symbols - own.keys():  # a quantity in the definition of another one
             if quantity := written.get(_without_braces(self.printer.math(s))):
                 own[s] = quantity
-        known = [(e.xreplace(own), s) for e, s in found.values()]
+        known = [(e.xreplace(own), s) for e, s in pairs]
         while (whole := self._named(value, known)) != value:
             value = whole
         return value
@@ -99,8 +99,8 @@ class Quantities:
 
     def in_value(self, value: sp.Expr) -> set[str]:
         """The names of quantities of steps in a value."""
-        every = {**self.former, **self.narrow, **self.known}
-        return {left for left, (_, symbol) in every.items() if symbol in value.free_symbols}
+        meanings = (self.former, self.narrow, self.known)
+        return {n for m in meanings for n, (_, s) in m.items() if s in value.free_symbols}
 
     def __call__(self, value: Any) -> Any:
         """A value with the names of the quantities that occur in it."""

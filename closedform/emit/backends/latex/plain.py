@@ -262,6 +262,16 @@ def _without_pairs(function: Function) -> Function:
     return _replaced(function, short) if short else function
 
 
+def without_common_factors(value: sp.Expr) -> sp.Expr:
+    """The same without a positive factor of both arguments of an arctangent."""
+    found = {}
+    for angle in value.atoms(sp.atan2):
+        if common := _positive_factors(angle.args[0]) & _positive_factors(angle.args[1]):
+            sides = [e / sp.Mul(*common) for e in angle.args]
+            found[angle] = sp.atan2(*sides, evaluate=False)
+    return value.xreplace(found)
+
+
 def _positive_factors(value: sp.Expr) -> set[sp.Expr]:
     return {f for f in sp.Mul.make_args(value) if f.as_base_exp()[0].is_nonnegative}
 
@@ -434,4 +444,4 @@ def _pairs(
     }
 
 
-__all__ = ["Plain", "angles_of_readers", "is_rounding", "plain"]
+__all__ = ["Plain", "angles_of_readers", "is_rounding", "plain", "without_common_factors"]

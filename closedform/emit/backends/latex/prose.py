@@ -254,6 +254,9 @@ class Prose:
 
         self.angles: dict[str, str] = {}
         """Angles of an inverse whose names are words, in LaTeX."""
+        labels = [label for f in functions if f.branches for label in f.branches.labels]
+        self.parts_of_branches = {part for label in labels for part in label.split("_")} - names
+        """The words of the names of branches."""
         self.code = ({f.name for f in functions if f.has_status} | {"fk", "ik"}) - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
         bold = set(BOLD.findall(" ".join(shown)))
@@ -270,13 +273,22 @@ class Prose:
     def __call__(self, text: str) -> str:
         words = "|".join(map(re.escape, self.angles))
         known = rf"(?<=the axis of )(?:{words})\b|{CROSS}" if words else CROSS
+        if self.parts_of_branches:
+            parts = "|".join(sorted(self.parts_of_branches))
+            known += rf"|(?<![\w-])(?:{parts})(?=:| branches| \([A-Z] [<>]=)"
+            known += rf"|(?<=\()(?:{parts})(?=[,)])"
+            known += rf"|(?<=with )(?:{parts})\b"
         pieces = re.split(f"({known})", text)
         return "".join(
-            f"${self.angles.get(piece) or CROSSED.format(piece[1])}$"
-            if i % 2
-            else self._sentences(piece)
+            self._known(piece) if i % 2 else self._sentences(piece)
             for i, piece in enumerate(pieces)
         )
+
+    def _known(self, piece: str) -> str:
+        """An angle, the matrix of a cross product, or a part of the name of a branch."""
+        if piece in self.parts_of_branches:
+            return rf"\texttt{{{piece}}}"
+        return f"${self.angles.get(piece) or CROSSED.format(piece[1])}$"
 
     def _sentences(self, text: str) -> str:
         parts = PROSE.split(text)

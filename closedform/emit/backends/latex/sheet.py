@@ -155,7 +155,8 @@ class Block:
         """The block as LaTeX."""
         if self.wide:
             [row] = self.rows
-            command = rf"\longequation{{{row.label}}}" if row.label else r"\longformula"
+            kind = r"\matrixequation" if r"\begin" in row.text else r"\longequation"
+            command = rf"{kind}{{{row.label}}}" if row.label else r"\longformula"
             return rf"{command}{{{row.text}}}"
         return f"\\display\n{self.aligned(labelled)}"
 

@@ -59,6 +59,7 @@ rows = [
     (0, -pi / 2, 0, theta5),
     (0, 0, 0, theta6),
 ]
+d.write("base_elbow", r"\alpha", same="alpha")
 d.write("alpha", meaning="angle at the shoulder, of the triangle of the arm")
 d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
 d.explain(

@@ -12,7 +12,6 @@ from closedform import (
     determinant,
     from_dh,
     law_of_cosines,
-    real,
     rotation,
     turned,
     zyz,

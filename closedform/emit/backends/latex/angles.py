@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, combinations, count
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -63,13 +64,15 @@ def in_angles(
     lemmas: Sequence[Lemma],
     results: Sequence[sp.Symbol],
     letters: Sequence[str],
+    named: Mapping[str, str] = MappingProxyType({}),
 ) -> Turned:
     """The function without sines and cosines that an angle replaces.
 
     ``results`` are the symbols of its outputs, and ``letters`` are for angles without a symbol.
+    ``named`` has the symbols that the derivation has for some, by the names of their pairs.
     """
     more = (f"omega_{k}" for k in count(2))
-    found = _InAngles(function, lemmas, results, chain(letters, more))
+    found = _InAngles(function, lemmas, results, chain(letters, more), named)
     told = found.told()
     angles = {s: e for e, s in found.totals.items() if e.is_Add and len(e.free_symbols) == 1}
     return Turned(told, found.names, angles)
@@ -83,6 +86,7 @@ class _InAngles:
     lemmas: Sequence[Lemma]
     results: Sequence[sp.Symbol]
     letters: Iterator[str]
+    named: Mapping[str, str]
     names: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What stands for the names that are gone."""
     totals: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
@@ -208,7 +212,8 @@ class _InAngles:
         value = self._angle(arctangent)
         symbol = self.totals.get(value, value)
         if not (symbol.is_Symbol or symbol.is_number):
-            symbol = real(next(self.letters))
+            own = self.named.get(str(sine.name)[1:].lstrip("_"))
+            symbol = real(own or next(self.letters))
             self._define(symbol, arctangent)
         return self._called(sine, cosine, symbol)
 

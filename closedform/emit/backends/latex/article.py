@@ -112,7 +112,8 @@ class Page(Sheet):
             results = inverse.unknowns if inverse else ()
             turned = None
             if inverse and (isinstance(inverse.glue, Rank) or finds_all(inverse, lemmas)):
-                turned = in_angles(subject.function, lemmas, results, self.free_angles)
+                named = {n: w.same for n, w in self.derivation.written.items() if w.same}
+                turned = in_angles(subject.function, lemmas, results, self.free_angles, named)
                 turned = turned.multiplied(self.rotations() | matrices(inverse, lemmas))
                 subject = replace(subject, function=turned.function)
                 letters |= turned.letters

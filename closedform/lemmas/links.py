@@ -270,7 +270,8 @@ def two_links(
     lift, more = named(chain, first, bearing - off.known_as(p, f"_base_{name}"))
     lemma = Lemma(
         "two-link arm",
-        r"l_1 u(\lambda) + l_2 u(\lambda + \mu) = (x, y) \;\Rightarrow\; "
+        r"l_1 u(\lambda) + l_2 u(\lambda + \mu) = (x, y),\ u(\lambda) = (\cos\lambda, \sin\lambda) "
+        r"\;\Rightarrow\; "
         r"(\cos\mu, \sin\mu) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ "
         r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
         r"{\mathcal B\mathcal C + \mathcal S\mathcal A},\ "
@@ -380,7 +381,7 @@ def polar(
     value = p.let(f"{length.name}_{name}", sigma * r)
     lemma = Lemma(
         "polar coordinates",
-        r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sigma\sqrt{x^2 + y^2},\ "
+        r"\rho\cos\theta = x,\ \rho\sin\theta = y \;\Rightarrow\; \rho = \sigma\sqrt{x^2 + y^2},\ "
         r"\theta = \operatorname{atan2}(\sigma y, \sigma x)",
         (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
         {angle: pair.angle, length: value},

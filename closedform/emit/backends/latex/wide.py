@@ -179,7 +179,10 @@ class Lines:
     def _with_part(self, left: str, value: sp.Basic, inner: sp.Basic) -> list[Equation]:
         known = inner in self.parts
         name = self.parts.setdefault(inner, self._new_name())
-        rest = self.equations(left, value.xreplace({inner: name}))
+        whole = value.xreplace({inner: name})
+        if whole.is_Mul:
+            whole = sp.Mul(*(self.tidy(f) if f.is_Add else f for f in whole.args))
+        rest = self.equations(left, whole)
         return rest if known else rest + self.equations(self.printer.math(name), inner)
 
     def _new_name(self) -> sp.Symbol:
@@ -196,7 +199,7 @@ class Lines:
         for fraction in value.atoms(sp.Mul):
             over, under = sp.fraction(fraction)
             sums = [a for a in fraction.args if isinstance(a, sp.Add)]
-            if under != 1 and sums and self.width(over) > FITS - 12:
+            if not under.is_Integer and sums and self.width(over) > FITS - 12:
                 wide.append(max(sums, key=lambda e: (self.width(e), str(e))))
         if isinstance(value, sp.Expr) and not isinstance(value, sp.Piecewise):
             wide += sorted(value.atoms(sp.Piecewise), key=str)
@@ -224,6 +227,8 @@ class Lines:
 
         visit(value, whole=True)
         saved = {e: n * (self.width(e) - 2) for e, n in found.items() if self.width(e) > NAMED}
+        for factor in value.args if value.is_Mul and len(saved) > 1 else ():
+            saved.pop(factor, None)  # a part of it says more than the whole product
         return max(saved, key=lambda e: (saved[e], str(e)), default=None)
 
     # Polynomials

@@ -21,6 +21,8 @@ from closedform.plot.symbols import lengths, symbol
 NO_HUES: Mapping[str, int] = MappingProxyType({})
 SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
+CENTRED = 2.5
+"""How much larger axes and arcs are where all joints are at one point."""
 WRIST = 3
 """If branches look alike, they differ in the axes of these last joints."""
 UNDER_A_TITLE = 0.9
@@ -89,8 +91,8 @@ def mechanism(
         )
     ax = new_axes(not r.flat) if ax is None else ax
     points = on_sphere(r, points, about)
-    diagram = Diagram(ax, extent([points]))
     along = joint_axes(r, joints, mode=mode)
+    diagram = Diagram(ax, extent([points]) * (CENTRED if _meet(along) else 1))
     draw(
         diagram,
         r,
@@ -206,10 +208,10 @@ def branches(
     for panel in panels[len(found) :]:
         panel.set_axis_off()
     for panel, name in zip(panels, found, strict=False):
-        diagram = Diagram(panel, extent(frame))
+        along = joint_axes(r, q[names.index(name)]) if alike else {}
+        diagram = Diagram(panel, extent(frame) * (CENTRED if _meet(along) else 1))
         others = [points for other, points in found.items() if other != name]
         diagram.link(_outlines(r, others, about), "#dddddd", linewidth=1.0)
-        along = joint_axes(r, q[names.index(name)]) if alike else {}
         along = dict(list(along.items())[-WRIST:])
         draw(
             diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint,
@@ -404,6 +406,7 @@ def _name(
     """Lengths at their segments, and angles as arcs, or as arrows about their axes."""
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
+    taken = list[Array]()
     for field, pair in lengths(r, q, mode).items():
         diagram.dimension(place[pair[0]], place[pair[1]], symbol(field))
     for name, joint in skeleton.joints.items():
@@ -426,10 +429,23 @@ def _name(
         across = arm - way * (arm @ way)
         size = float(np.linalg.norm(across))
         if size < SMALL * diagram.size or abs(turn) < 0.05 or len(joint.points) == 2:
-            diagram.spin(at + 0.1 * diagram.size * way, way, symbol(name))
+            centre = at + 0.1 * diagram.size * way
+            while any(np.linalg.norm(centre - c) < SMALL * diagram.size for c in taken):
+                centre = (
+                    centre + 0.08 * diagram.size * way
+                )  # beside another joint or the arc of one
+            taken.append(centre)
+            diagram.spin(centre, way, symbol(name))
         else:
             back = np.cos(turn) * across - np.sin(turn) * np.cross(way, across)
             diagram.angle(place[foot], back, way, turn, symbol(name))
+            taken.append(place[foot] + 0.1 * diagram.size * across / size)
+
+
+def _meet(along: Mapping[str, tuple[Array, Array]]) -> bool:
+    """Whether several joints are all at one point, so that only their axes tell them apart."""
+    places = [at for at, _ in along.values()]
+    return len(places) > 1 and bool(np.ptp(places, axis=0).max() < 1e-9)
 
 
 def _arm(r: Robot, q: Array, mode: int, name: str, beside: list[str]) -> Array:

@@ -214,16 +214,32 @@ def test_works_are_listed_with_their_years() -> None:
 def test_figures_that_were_drawn_are_included() -> None:
     captions = {"toy-mechanism": "At home", "other-mechanism": "No", "toy-fig9": "A path of $x_1$"}
     captions |= {"toy-fig10": "A map", "toy-fig11": "Not drawn"}
-    pages = figures.pages(captions, ["toy-fig10", "toy-fig9", "toy-mechanism"])
+    pages = figures.pages(captions, ["toy-fig10", "toy-fig9", "toy-mechanism"], {})
     assert list(pages) == ["toy"]
     found = re.findall(r"\\drawing{(.*?)}", pages["toy"])
     assert found == ["toy-mechanism", "toy-fig9", "toy-fig10"]
 
 
+def test_figures_stand_at_their_steps() -> None:
+    places = {"toy-a": "The loop", "toy-b": "inverse", "toy-c": "The loop"}
+    captions = dict.fromkeys(["toy-a", "toy-b", "toy-c", "toy-d"], "A")
+    text = figures.pages(captions, [*captions], places)["toy"]
+    shown = {
+        where: re.findall(r"\\drawing{(.*?)}", part)
+        for where, part in re.findall(r"\\figures{([^{}]*)}{(See.*?})}\n", text, re.DOTALL)
+    }
+    assert shown == {
+        "step-the-loop": ["toy-a", "toy-c"], "inverse": ["toy-b"], "mechanism": ["toy-d"],
+    }  # fmt: skip
+    assert r"See Figures~\ref{figure:toy-a} and \ref{figure:toy-c}." in text
+
+
 def test_figures_are_written_for_tex(tmp_path: Path) -> None:
     (tmp_path / "captions.json").write_text(json.dumps({"toy-mechanism": "5 %"}))
+    (tmp_path / "places.json").write_text(json.dumps({"toy-mechanism": "Pose"}))
     (tmp_path / "toy-mechanism.pdf").touch()
     figures.main(tmp_path)
+    assert r"\figures{step-pose}" in (tmp_path / "toy-figures.tex").read_text()
     assert r"\drawing{toy-mechanism}{5 \%}" in (tmp_path / "toy-figures.tex").read_text()
 
 

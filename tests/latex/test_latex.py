@@ -225,7 +225,7 @@ def test_claims_link_to_the_step_and_the_error() -> None:
     assert not re.search(r"eq\. \((1\) \\& 50 \\%|3\)), \\(mbox|eqref)", text)
     assert text.count(r"\label{erratum:awkward:long-one}") == 1
     assert r"\hyperref[erratum:awkward:long-one]{100 \% of $\displaystyle x_1$ \& more\_}" in text
-    labels = re.findall(r"\\(?:label|longequation)\{([^}#]+)\}", text)
+    labels = re.findall(r"\\(?:label|longequation|matrixequation)\{([^}#]+)\}", text)
     assert len(set(labels)) == len(labels)
     assert set(re.findall(r"\\(?:(?:eq)?ref\*?\{|hyperref\[)([^}\]]+)", text)) <= set(labels)
 

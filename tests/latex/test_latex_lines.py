@@ -10,10 +10,11 @@ from places import ROOT
 
 from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.formulas import Printer
+from closedform.emit.backends.latex.grouping import joint_by_joint
 from closedform.emit.backends.latex.listing import parts_first
 from closedform.emit.backends.latex.names import Quantities
 from closedform.emit.backends.latex.twins import twins
-from closedform.emit.backends.latex.wide import unit_circles
+from closedform.emit.backends.latex.wide import Lines, unit_circles
 from closedform.lemmas.two_link import two_link_arm
 from closedform.model.functions import Bound, Let, Program, Vanishes, real, substitute
 from closedform.proof.prove import Proof
@@ -171,4 +172,57 @@ def test_a_direction_less_an_angle_is_told_as_such() -> None:
     ik = next(f for f in context["inverses"] if f["name"] == "ik")
     text = " ".join(line.text for line in ik["lines"])
     assert r"\theta_{1} = \operatorname{atan2}(p_{y},\ p_{x}) - \alpha" in text
-    assert any("eq:planar_2r:17" in s["seen"] for s in ik["stages"])  # which defines alpha
+    (defined,) = (
+        row.label
+        for step in context["steps"]
+        for block in step["blocks"]
+        for row in block.rows
+        if row.left == r"\alpha"
+    )
+    assert any(defined in s["seen"] for s in ik["stages"])
+
+
+def test_sums_are_collected_joint_by_joint() -> None:
+    q = [real(f"theta{k}") for k in range(7)]
+    c, s = [sp.cos(a) for a in q], [sp.sin(a) for a in q]
+    c23, s23 = sp.cos(q[2] + q[3]), sp.sin(q[2] + q[3])
+    inner = c23 * (c[4] * c[5] * c[6] - s[4] * s[6]) - s23 * s[5] * c[6]
+    entry = c[1] * inner - s[1] * (s[4] * c[5] * c[6] + c[4] * s[6])
+    assert joint_by_joint(sp.expand(entry)) == entry
+    lines = Lines(Printer(set(q)), ())
+    assert lines.tidy(sp.expand(entry)) == entry
+    a, b = real("a"), real("b")
+    negative = joint_by_joint(sp.expand(-c[1] * (a + b * c[2]) + s[1] * c[2]))
+    assert -c[1] * (a + b * c[2]) in negative.args  # the sign stands before the joint
+    assert joint_by_joint(a * c[1] + b) == a * c[1] + b
+
+
+def test_a_quantity_is_found_in_what_a_joint_multiplies() -> None:
+    a, b, q, p = map(real, ("a", "b", "theta1", "theta2"))
+    X = a * sp.cos(p) + b * sp.sin(p) + a * b * sp.cos(p) ** 2
+    quantities = Quantities(Printer({q, p}), ())
+    quantities.define("X", X)
+    named = quantities(sp.expand(X * sp.cos(q)) + b * sp.sin(q))
+    assert quantities.printer.math(named) == r"X \mathrm{c}_{1} + b \mathrm{s}_{1}"
+
+
+def test_a_former_meaning_of_a_wide_name_serves_too() -> None:
+    a, b, x, y = map(real, "abxy")
+    quantities = Quantities(Printer(set()), ())
+    of_joints, of_target = (sp.sqrt(u**2 + v**2 + u * v) for u, v in ((a, b), (x, y)))
+    quantities.define("L", of_joints)
+    quantities.define("L", of_target)
+    for value in (of_joints, of_target):
+        found = quantities.of_a_function(a * value, ())
+        assert quantities.printer.math(found) == "a L"
+
+
+def test_a_sum_behind_a_fraction_has_no_name() -> None:
+    k = [real(f"k{i}") for i in range(9)]
+    inner = k[6] + k[7] + k[8] + k[5] + k[4] * sp.sin(k[3]) + k[3] * sp.sin(k[2])
+    angle, turn = sp.sin(sp.pi * k[0] / 6), sp.sin(sp.pi * k[1] / 12)
+    value = sp.pi / 36 * (2 * k[1] * angle * turn - 3 * k[2] * angle + 6 * inner * angle * turn**2)
+    lines = Lines(Printer(set()), ())
+    lines.line_width = 60
+    (left, right), (name, _) = lines.equations("v", value)[:2]
+    assert right.startswith(r"\frac{\pi}{36} \Bigl(") and name == "u_{1}" and left == "v"

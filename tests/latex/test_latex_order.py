@@ -39,6 +39,11 @@ def outside_parentheses(text: str) -> str:
     return text
 
 
+def test_an_index_that_is_a_word_is_upright() -> None:
+    assert mixed("$l_{off}$") == r"$\displaystyle l_{\mathrm{off}}$"
+    assert mixed("$P_{xyz} + R_{uvw} + g_{st}$") == r"$\displaystyle P_{xyz} + R_{uvw} + g_{st}$"
+
+
 # All articles
 
 

@@ -11,14 +11,15 @@ from places import ROOT
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.article import Page, document
-from closedform.emit.backends.latex.equations import Numbers, reference
+from closedform.emit.backends.latex.equations import Numbered, Numbers, reference
+from closedform.emit.backends.latex.sheet import Block
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.proof.prove import Proof
 
 GENERATED = ROOT / "generated" / "latex"
 ARTICLES = sorted(p for p in GENERATED.glob("*.tex") if p.stem != "closedform")
-LABEL = r"\\(?:label|longequation)\{(.*?)\}"
+LABEL = r"\\(?:label|longequation|matrixequation)\{(.*?)\}"
 SOLVES = re.compile(r"^The lemma .* solves (?:each of )?(.*?)(?: once more.*|[:.])$", re.MULTILINE)
 
 
@@ -104,8 +105,77 @@ def test_the_rotation_of_a_lemma_is_one_matrix() -> None:
 def test_names_of_the_derivation_are_not_defined_again() -> None:
     (step,) = stages("three_prs", "ik")
     assert step["seen"].startswith(r"\eqref{eq:three_prs:2}--")
-    defined = {row.left for block in step["role_blocks"] for row in block.rows}
+    told = [*step["definitions"], *step["role_blocks"]]
+    defined = {row.left for block in told for row in block.rows}
     assert not {"f", "g", "R_{11}", "h_{11}", "p_{x}"} & defined and "m_{1}" in defined
+
+
+def rows(blocks: list) -> dict[str, str]:
+    return {row.left: row.right for block in blocks for row in block.rows}
+
+
+def test_a_linear_pair_shows_both_equations() -> None:
+    first, second = stages("planar_2r", r"ik\_pose")
+    assert rows(first["blocks"]) == {
+        r"l_{1} \mathrm{s}_{1}": r"p_{y} - l_{2} R_{21}",
+        r"l_{1} \mathrm{c}_{1}": r"p_{x} - l_{2} R_{11}",
+    }
+    assert [*rows(second["blocks"])] == [r"\mathrm{s}_{2}", r"\mathrm{c}_{2}"]
+    shoulder = stages("planar_2r", "ik")[1]
+    assert rows(shoulder["blocks"]) == {
+        r"r \sin (\alpha + \theta_{1})": "p_{y}",
+        r"r \cos (\alpha + \theta_{1})": "p_{x}",
+    }
+    assert r"where $\theta_{2}$ is known" in shoulder["from"]
+    assert shoulder["count"] == "There is one solution"
+    turret, _, _, hand = stages("irb260", "ik")
+    assert [*rows(turret["blocks"])] == [r"r \mathrm{s}_{1}", r"r \mathrm{c}_{1}"]
+    assert rows(hand["blocks"]) == {
+        r"\mathrm{s}_{15}": r"\sin \psi", r"\mathrm{c}_{15}": r"\cos \psi",
+    }  # fmt: skip
+
+
+def test_an_angle_beside_a_direction_is_told_by_two_arctangents() -> None:
+    solved = rows(stages("puma560", "ik")[0]["solution"])[r"\theta_{1}"]
+    assert solved == (
+        r"\operatorname{atan2}(p_{x},\ - p_{y}) + \sigma_{1} \operatorname{atan2}(k_{1},\ d_{3})"
+    )
+    level = rows(stages("irb2400", "ik")[0]["solution"])[r"\theta_{1}"]
+    assert level == r"\operatorname{atan2}(- \sigma_{1} w_{y},\ - \sigma_{1} w_{x})"
+
+
+def test_names_are_defined_below_the_equations_that_hold_them() -> None:
+    step = stages("irb2400", "ik")[0]
+    assert {"w_{x}", "w_{y}"} <= rows(step["definitions"]).keys()
+    assert not step["role_blocks"]
+
+
+def test_an_angle_of_the_derivation_keeps_its_letter() -> None:
+    step = stages("puma560", "ik")[1]
+    assert r"\alpha" in rows(step["solution"])
+    assert rows(step["solution"])[r"\theta_{2}"].endswith(r"- \alpha")
+
+
+def test_the_letters_of_simple_lemmas_stand_for_something() -> None:
+    _, slide, remaining = stages("scara", "ik")
+    assert slide["roles"] == "$d$ is $d_{3}$ and $c$ is $h - z$"
+    assert remaining["roles"].startswith(r"$\lambda$ is $\theta_{4}$ and $\mu - \nu$ is")
+
+
+def test_parts_of_the_names_of_branches_are_typewriter() -> None:
+    prose = Page(derivation("puma560"), Proof("puma560", "", (), 0, ())).prose
+    assert prose("right: X >= 0; left: X <= 0.  up: it is above.") == (
+        r"\texttt{right}: $X \ge  0$; \texttt{left}: $X \le  0$.  \texttt{up}: it is above."
+    )
+    assert prose("It faces the wrist (right, X >= 0).").startswith(r"It faces the wrist (\texttt")
+    assert "texttt" not in prose("It turns to the right and up.")
+
+
+def test_a_wide_matrix_has_its_number_beside_it() -> None:
+    matrix = Numbered("A", r"\begin{bmatrix} 1 \end{bmatrix}", "eq:x:1", numbered=True)
+    assert str(Block((matrix,), wide=True)).startswith(r"\matrixequation{eq:x:1}")
+    total = Numbered("A", "a + b", "eq:x:2", numbered=True)
+    assert str(Block((total,), wide=True)).startswith(r"\longequation{eq:x:2}")
 
 
 def test_three_neighbours_are_a_range() -> None:

@@ -30,6 +30,7 @@ from matplotlib import pyplot as plt
 from closedform import hybrid_five_bar, irb260, plot, puma560, ur_arm
 from closedform.cli import figures
 from closedform.cli.commands import main
+from closedform.plot.catalogue import INVERSE
 from closedform.plot.contours import thinned
 from closedform.plot.robot import Robot
 from closedform.plot.symbols import equation, lengths, symbol
@@ -177,6 +178,19 @@ def test_each_figure_of_a_paper_is_drawn_or_has_a_reason() -> None:
             assert figure.name == f"fig{number}"
             assert figure in figures_of(name)
             assert re.search(rf"\b{number}b?\b", figure.caption), figure.caption
+
+
+@pytest.mark.parametrize("name", sorted(TITLES - {"_runtime"}))
+def test_figures_belong_to_steps_of_their_derivation(name: str) -> None:
+    d = import_module(f"closedform.derivations.{name}").d
+    places = {f.step for f in figures_of(name)} - {"", INVERSE}
+    assert places <= {step.title for step in d.steps}
+
+
+def test_joints_with_one_axis_are_told_apart() -> None:
+    ax = plot.mechanism(module("spherical_wrist"), np.zeros(3))
+    named = {label.text.get_text(): label.at for label in ax._closedform_labels}
+    assert np.linalg.norm(named[r"$\theta_{4}$"] - named[r"$\theta_{6}$"]) > 0.1
 
 
 def test_headings_are_those_of_the_papers() -> None:

@@ -467,6 +467,9 @@ class TestRounded:
 def test_enumeration() -> None:
     assert Enumeration(4, lambda: 4, "edges").judge() == Verdict(PROVED, ("edges: 4",))
     assert Enumeration(5, lambda: 4, "edges").judge() == Verdict(REFUTED, ("edges: 4, not 5",))
+    assert Enumeration(True, lambda: True, "it turns").judge() == Verdict(PROVED, ("it turns",))
+    fails = Verdict(REFUTED, ("not so: it turns",))
+    assert Enumeration(True, lambda: False, "it turns").judge() == fails
     named = Enumeration(["a"], lambda: ["a", ("b", "c")], "names")
     assert named.judge() == Verdict(REFUTED, ("names: a, (b, c), not a",))
     assert Enumeration([], list, "names").judge() == Verdict(PROVED, ("names: none",))

@@ -186,7 +186,7 @@ def test_no_command_of_latex_is_left_in_the_text(site, pages):
 def test_a_page_has_the_equations_of_the_article(site, name):
     article = (LATEX / f"{name}.tex").read_text("utf-8")
     page = (site / "mechanisms" / f"{name}.html").read_text("utf-8")
-    labels = re.findall(rf"\\(?:label|longequation)\{{(eq:{name}:\d+)\}}", article)
+    labels = re.findall(rf"\\(?:label|longequation|matrixequation)\{{(eq:{name}:\d+)\}}", article)
     marks = [label.replace(":", "-") for label in labels]
     assert re.findall(rf'id="(eq-{name}-\d+)"', page) == marks
     for number in range(1, len(marks) + 1):

@@ -13,10 +13,13 @@ from closedform.model.derivation import Derivation
 
 ENTRIES = 1000
 """The most operations of a pose whose entries are written out; of a longer one, the factors are."""
-AXES = "  Column i of J is that of joint i: z_i is the axis of the joint, and o_i a point on it."
-MEANINGS = {"z_i": "axis of joint i", "o_i": "point on the axis of joint i"}
-AXIS = r"\begin{bmatrix} \ast & \ast & \mathbf{z}_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"
-COLUMN = r"\begin{bmatrix} \mathbf{z}_i \times (p - \mathbf{o}_i) \\ \mathbf{z}_i \end{bmatrix}"
+AXES = "  Column i of J is that of joint i: omega_i is its axis, and o_i a point on that."
+WRITTEN = {
+    "omega_i": (r"\omega_i", "axis of joint i"),
+    "o_i": (r"\mathbf{o}_i", "point on the axis of joint i"),
+}
+AXIS = r"\begin{bmatrix} \ast & \ast & \omega_i & \mathbf{o}_i \\ 0 & 0 & 0 & 1 \end{bmatrix}"
+COLUMN = r"\begin{bmatrix} \omega_i \times (p - \mathbf{o}_i) \\ \omega_i \end{bmatrix}"
 
 TURN = twist_matrix(sp.Matrix([0, 0, 0, 0, 0, 1]))
 """The rate of a turn about the z axis."""
@@ -53,8 +56,8 @@ def by_axes(
         return None
     for after, last in ((0, "i-1"), (1, "i")):
         if all(_turns(A, joint, after) for A, joint in zip(moves, joints, strict=True)):
-            for name, meaning in MEANINGS.items():
-                d.write(name, rf"\mathbf{{{name[0]}}}_{{i}}", meaning)
+            for name, (latex, meaning) in WRITTEN.items():
+                d.write(name, latex, meaning)
             d.explain({"J_i": "column i of J"})
             return ByAxes(
                 pose=rf"A_1 A_2 \cdots A_{n}",

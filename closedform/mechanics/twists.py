@@ -13,7 +13,7 @@ TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
 TURNED = (
     "  The velocity in J is that of the tool.  In J_s it is that of the point of the tool that is "
     "just at the origin of the base.  J_b is in the axes of the tool.  Here p is the position in "
-    "T, R its rotation, I the unit matrix, and [p]_× the matrix of the cross product with p."
+    "T, R its rotation, and [p]_× the matrix of the cross product with p."
 )
 
 

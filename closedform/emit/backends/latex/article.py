@@ -28,7 +28,7 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
-from closedform.emit.backends.latex.formulas import flat
+from closedform.emit.backends.latex.formulas import flat, measure
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.names import is_word
@@ -412,7 +412,8 @@ def default(value: sp.Rational) -> str:
     part = sp.Rational(float(value / sp.pi)).limit_denominator(PARTS)
     if part and abs(float(value / (part * sp.pi)) - 1) <= 2 * sys.float_info.epsilon:
         return f"${flat(sp.latex(part * sp.pi))}$"
-    return decimal(value)
+    text = decimal(value)
+    return f"${text}$" if value.is_negative else text
 
 
 def decimal(value: sp.Rational) -> str:
@@ -471,8 +472,10 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     }  # fmt: skip
     legend = page.legend()
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)
+    notation = symbols.joined(symbols.table(derivation, page.numbers, text, page.math))
     return context | {
         "legend": [f"{short} = {full}" for short, full in legend],
-        "symbols": symbols.joined(symbols.table(derivation, page.numbers, text, page.math)),
+        "symbols": notation,
+        "widest": max((symbol for symbol, _ in notation), key=measure, default=""),
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
     }

@@ -121,6 +121,13 @@ def circle_intersection(
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
+    plainly = {}
+    if first != second:
+        foot = choose(flag, first, (distance**2 + first**2 - second**2) / (2 * distance))
+        plainly = {x: foot * n[0] - sigma * height * n[1], y: foot * n[1] + sigma * height * n[0]}
+        if not suffix:
+            rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * distance)
+            plainly[height] = choose(sp.Or(touching, flag), 0, rise)
     return Lemma(
         "circle intersection",
         r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf d| = r_2 \;\Rightarrow\; \mathbf x = "
@@ -133,6 +140,7 @@ def circle_intersection(
         {x: along * n[0] - sigma * height * n[1], y: along * n[1] + sigma * height * n[0]},
         2,
         signs=(sigma,),
+        plainly=plainly,
         letters={
             name: letter
             for name, letter in zip(
@@ -205,6 +213,14 @@ def two_circles(
         lemma,
         equations=tuple(e.xreplace(placed) for e in lemma.equations),
         solution={x: o + lemma[u] for u, x, o in zip(first, unknowns, origin, strict=True)},
+        plainly={
+            **{n: e for n, e in lemma.plainly.items() if n not in first},
+            **{
+                x: o + lemma.plainly[u]
+                for u, x, o in zip(first, unknowns, origin, strict=True)
+                if u in lemma.plainly
+            },
+        },
     )
     at_centre = dict.fromkeys(span.free_symbols, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
     case = Degenerate(

@@ -59,9 +59,9 @@ theorem(
     statement=r"""Let $\mathbf s$ be a unit vector, $m = \mathbf w\cdot\mathbf s$ and $p = |\mathbf
 w\times\mathbf s|$.  The point $q\,\mathbf s$ is at the distance $r$ from $\mathbf w$ if and only if
 $r \ge p$ and
-$$q = m - \sigma\sqrt{(r - p)(r + p)}, \qquad \sigma = \pm 1.$$""",
+$$q = m - \sigma\sqrt{r^2 - p^2}, \qquad \sigma = \pm 1.$$""",
     proof=r"""$|\mathbf w - q\,\mathbf s|^2 = (m - q)^2 + p^2$, because $|\mathbf w|^2 = m^2 +
-p^2$.""",
+p^2$.  As the product $(r - p)(r + p)$, the radicand loses no digits at the edge of the reach.""",
 )
 theorem(
     "length of a leg",
@@ -234,17 +234,20 @@ class Crank:
         away = share * cosine * u + share * sine * v
         lemma = Lemma(
             "crank and rod",
-            r"\theta = \operatorname{atan2}(b, a) - \alpha = "
-            r"\operatorname{atan2}(b X - \sigma a Y, "
-            r"a X + \sigma b Y),\quad X = \mathcal S\mathcal B - \mathcal A\mathcal C,\ Y = "
+            r"\theta = \operatorname{atan2}(b X - \sigma a Y, a X + \sigma b Y),\quad X = \mathcal S\mathcal B - \mathcal A\mathcal C,\ Y = "
             r"2\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}",
             ((a - l * sp.cos(q)) ** 2 + (b - l * sp.sin(q)) ** 2 + aside**2 - r**2,),
             {q: sp.atan2(sine, cosine)},
             2,
             signs=(sigma,),
-            roles=(("l", l), ("r", r), ("a", a), ("b", b), ("p", sp.Abs(aside)), ("s", s)),
+            roles=(
+                (r"\theta", q),
+                *(("l", l), ("r", r), ("a", a), ("b", b), ("p", sp.Abs(aside)), ("s", s)),
+            ),
             letters=triangle.letters
-            | {ahead: indexed("X", chain.tag), beyond: indexed("Y", chain.tag)},
+            | {ahead: indexed("X", chain.tag), beyond: indexed("Y", chain.tag)}
+            | ({s: indexed("s", chain.tag)} if aside != 0 else {}),
+            plainly={s: sp.sqrt(r**2 - aside**2)} if aside != 0 else {},
         )
         root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
         cases = (
@@ -309,12 +312,13 @@ class Slide(Slider):
         value = chain.let("slide", m - sigma * root)
         lemma = Lemma(
             "line and sphere",
-            r"q = m - \sigma\sqrt{(r - p)(r + p)}",
+            r"q = m - \sigma\sqrt{r^2 - p^2}",
             ((m - q) ** 2 + aside**2 - r**2,),
             {q: value},
             2,
             signs=(sigma,),
-            roles=(("m", m), ("r", r), ("p", aside)),
+            roles=(("q", q), ("m", m), ("r", r), ("p", aside)),
+            plainly={q: m - sigma * sp.sqrt(r**2 - aside**2)},
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]))
         return Solution(link, value, w - value * s, sp.Max(0, sp.Abs(aside) - r))
@@ -361,7 +365,9 @@ class Stretch:
             {q: value},
             1,
             excluded=1,
-            roles=((r"\mathbf w", sp.Matrix(w)),),
+            roles=(("q", q), (r"\mathbf w", sp.Matrix(w))),
+            letters={value: "q"},
+            plainly={value: sp.sqrt(sum(e**2 for e in w))},
         )
         body = tuple(chain.program.body[start:])
         return Solution(Link((q,), lemma.equations, {}, lemma, body), value, w)

@@ -157,16 +157,17 @@ def rail_and_circle(
     root = names.half_chord("root", r, off, "the rod reaches the rail")
     side = -sigma if k == 0 else sigma
     far = p.let("along", m + side * root)
-    found = at + far * rail.way
+    found, plain = at + far * rail.way, sp.sqrt(r**2 - off**2)
     equations = (rail.normal.dot(hand - at), (hand - at - w).dot(hand - at - w) - r**2)
     lemma = Lemma(
         "line and sphere",
-        rf"q = m {'-' if k == 0 else '+'} \sigma\sqrt{{(r - p)(r + p)}}",
+        rf"q = m {'-' if k == 0 else '+'} \sigma\sqrt{{r^2 - p^2}}",
         equations if k == 0 else equations[::-1],
         dict(zip(hand, found, strict=True)),
         2,
         signs=(sigma,),
         roles=(("q", far), ("m", m), ("r", r), ("p", sp.Abs(off))),
+        plainly=dict(zip(hand, at + (m + side * plain) * rail.way, strict=True)),
     )
     rows = [sp.Matrix([[0, 1]]), sp.Matrix([[side * root, -off]])]
     span = far * rail.way

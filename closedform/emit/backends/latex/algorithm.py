@@ -149,7 +149,8 @@ class Algorithm:
         return needed
 
     def _uses(self) -> dict[sp.Basic, int]:
-        held = [self.values[s] for s in self.values if s in self.needed] + self.outputs
+        bounds = {s.symbol for s in self.function.body if isinstance(s, Bound)}
+        held = [self.values[s] for s in self.values if s in self.needed | bounds] + self.outputs
         uses = Counter[sp.Basic]()
         for value in held:
             uses.update(s for s in sp.preorder_traversal(value) if s.is_Symbol)

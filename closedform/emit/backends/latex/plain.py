@@ -413,7 +413,7 @@ def _angles(body: Sequence[Statement], lemmas: Sequence[Lemma]) -> dict[sp.Symbo
 
 def angles_of_readers(lemma: Lemma) -> list[sp.Symbol]:
     """The angles that no program has."""
-    made = _made(lemma.body) | lemma.solution.keys()
+    made = _made(lemma.body) | lemma.solution.keys() | lemma.letters.keys()
     return [n for n, e in lemma.plainly.items() if n not in made and e != 1]
 
 

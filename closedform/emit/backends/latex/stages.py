@@ -17,17 +17,16 @@ from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.equations import (
     Numbered,
-    canonical,
     listed,
     reference,
     runs,
-    skeleton,
 )
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.pairs import scaled
 from closedform.emit.backends.latex.prose import mixed
+from closedform.emit.backends.latex.roles import primed, roles
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, block, blocks
 from closedform.emit.backends.latex.sources import (
@@ -158,11 +157,13 @@ class Stages:
             held = {s for e in system for s in e.free_symbols}
             solved += [self.equation(e, solving) for e in system]
             definitions += self.definitions(held, solving)
-            if not lemma.vectors and not lemma.matrix:
-                definitions += self.made_before([self.named(e) for e in system])
-        origin, roles = self.origin(shown, step), self.roles(step)
+        origin = self.origin(shown, step)
         if self.algorithm.vectors or lemma.vectors:  # the lemma has the equations, in vectors
             solved, definitions = [], []
+        else:
+            definitions += self.made_before([e for s in step for e in self.given_in(s)])
+        letters = roles([s.lemma for s in step], page, self.named)
+        role_rows = [*letters.rows, *self.made_before(letters.values)]
         rows, labels = self.numbered(solved)
         end = ":" if rows or definitions else "."
         found = [u for s in step for u in s.unknowns]
@@ -181,8 +182,9 @@ class Stages:
             "lemma": titled(lemma.name),
             "label": label(lemma.name),
             "matrix": self.matrix(shown, step),
-            "statement": [] if earlier else statement(lemma),
-            **roles,
+            "statement": [] if earlier else [primed(t, letters.apart) for t in statement(lemma)],
+            "roles": letters.sentence,
+            "role_blocks": blocks(role_rows),
             "count": self.count(step),
             "vectors": mixed(lemma.vectors),
             "solution": blocks(solution),
@@ -253,6 +255,16 @@ class Stages:
         if measure(text) > FITS * WIDE:  # its parts get names on the right
             return self.page.equations(self.page.math(right), left)
         return self.page.equations(text, right)
+
+    def given_in(self, solving: Solving) -> list[sp.Expr]:
+        """The atoms of the equations of a lemma that no step from here on finds."""
+        later = {u for s in self.solvings[self.solvings.index(solving) :] for u in s.unknowns}
+        return [
+            atom
+            for e in self.system(solving)
+            for atom in self.atoms(self.without_detours(self.named(e)))
+            if not atom.free_symbols & later
+        ]
 
     def without_detours(self, value: sp.Expr) -> sp.Expr:
         """The same without a name, such as that of a difference, where it is shorter."""
@@ -428,39 +440,6 @@ class Stages:
                 used |= body[symbol].free_symbols
         return used
 
-    def roles(self, step: Sequence[Solving]) -> dict[str, Any]:
-        """What the letters of the lemma stand for here; what is wide, on lines of its own."""
-        page, inline, rows = self.page, list[str](), list[tuple[str, str]]()
-        values: list[sp.Expr] = []
-
-        def written(value: Any) -> str:
-            if isinstance(value, str):
-                return value
-            if isinstance(value, sp.MatrixBase):
-                entries = [self.named(e) for e in value]
-                values.extend(entries)
-                return f"({', '.join(map(page.math, entries))})"
-            values.append(self.named(sp.sympify(value, strict=True)))
-            return page.math(values[-1])
-
-        turns = ""
-        for roles in zip(*(s.lemma.roles for s in step), strict=True):
-            letter = roles[0][0]
-            texts = [written(value) for _, value in roles]
-            if all(skeleton(canonical(text)) == skeleton(canonical(letter)) for text in texts):
-                continue
-            if len({*texts}) > 1:
-                turns = " in turn"
-            text = r",\ ".join(texts) if len({*texts}) > 1 else texts[0]
-            if measure(letter + text) <= FITS / 3 and r"\frac" not in text:
-                inline.append(f"${letter}$ is ${text}$")
-            else:
-                rows.append((letter, text))
-        return {
-            "roles": listed(inline) + turns if inline else "",
-            "role_blocks": blocks([*rows, *self.made_before(values)]),
-        }
-
     def solution(self, solving: Solving) -> list[tuple[str, str]]:
         """What the lemma gives: angles, or their sines and cosines."""
         page, algorithm = self.page, self.algorithm
@@ -571,7 +550,13 @@ class Stages:
         """The conditions under which the lemma has solutions."""
         before = self.solvings[: self.solvings.index(solving)]
         own = self.own_symbols(solving) - {s for o in before for s in self.own_symbols(o)}
-        bounds = [s for s in self.function.body if isinstance(s, Bound) and s.symbol in own]
+        made = {s.symbol for s in self.function.body if isinstance(s, Let)}
+        bounds = [
+            s
+            for s in self.function.body
+            if isinstance(s, Bound)
+            if s.symbol in own or (held := s.value.free_symbols & made) and held <= own
+        ]
         if solving.link:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]
         return ", ".join(self.algorithm.conditions([b.symbol for b in bounds]))

@@ -234,7 +234,8 @@ class Crank:
         away = share * cosine * u + share * sine * v
         lemma = Lemma(
             "crank and rod",
-            r"\theta = \operatorname{atan2}(b X - \sigma a Y, a X + \sigma b Y),\quad X = \mathcal S\mathcal B - \mathcal A\mathcal C,\ Y = "
+            r"\theta = \operatorname{atan2}(b X - \sigma a Y, a X + \sigma b Y),\quad X = "
+            r"\mathcal S\mathcal B - \mathcal A\mathcal C,\ Y = "
             r"2\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}",
             ((a - l * sp.cos(q)) ** 2 + (b - l * sp.sin(q)) ** 2 + aside**2 - r**2,),
             {q: sp.atan2(sine, cosine)},

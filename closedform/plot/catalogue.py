@@ -93,7 +93,8 @@ def standard(view: View) -> list[Figure]:
             "branches",
             "All postures that reach one target, one for each branch of the inverse.",
             lambda robot: branches(
-                robot, faint=view.faint, about=view.about, given=view.given
+                robot, faint=view.faint, about=view.about, given=view.given,
+                general=view.general, mode=view.mode,
             ),
             INVERSE,
         ),

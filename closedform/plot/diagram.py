@@ -170,7 +170,7 @@ class Diagram:
         return np.append(found, 0.0) if found.size == 2 else found
 
     def dimension(self, a: ArrayLike, b: ArrayLike, text: str) -> None:
-        """The name of a length, beside the middle of its segment."""
+        """The name of a length, beside the middle of its segment; of several, at the clearest."""
         self.label((self._three(a) + self._three(b)) / 2, text)
 
     def frame(
@@ -187,9 +187,9 @@ class Diagram:
             self.label(end, f"${name}$" if not name.startswith("$") else name, shade=shade)
 
     def label(self, at: ArrayLike, text: str, *, shade: str = INK, size: float = 10) -> None:
-        """A text beside a point, where it covers the least."""
-        here = self._here(at)[0]
-        note = self.ax.text(*here, text, color=shade, fontsize=size, zorder=9)
+        """A text beside a point or one of several, where it covers the least."""
+        here = self._here(at)
+        note = self.ax.text(*here[0], text, color=shade, fontsize=size, zorder=9)
         labels.add(self.ax, note, here)
 
     def clean(self, drawn: Sequence[Array], margin: float = 0.06, zoom: float = 1.15) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 from types import MappingProxyType, ModuleType
 from typing import Any
 
@@ -29,6 +29,8 @@ UNDER_A_TITLE = 0.9
 """How much a drawing in space is enlarged below a title, so that it does not reach into it."""
 TITLE = {2: 11, 4: 15}
 """The size of the names of branches, by columns: a page is as wide as both."""
+NEARLY = 0.4
+"""Branches that are so far apart, as a share of what is possible, are told apart well."""
 OVERLAID = 2
 """More branches than this are drawn side by side."""
 
@@ -107,7 +109,7 @@ def mechanism(
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
     if labels:
-        _name(diagram, r, joints, points, mode=mode, along=along)
+        _name(diagram, r, joints, points, mode=mode, along=along, faint=faint)
         shown.append(_base_frame(diagram, r, points))
     diagram.clean(shown)
     _settle(ax)
@@ -150,6 +152,8 @@ def branches(
     *,
     params: Any = None,
     given: float | None = None,
+    general: ArrayLike | None = None,
+    mode: int = 0,
     ax: Any = None,
     faint: Collection[str] = (),
     about: str = "",
@@ -167,6 +171,9 @@ def branches(
     given
         the joint or the arm angle that an arm of seven joints takes beside the target; by default
         that of a regular posture
+    general, mode
+        joints and an assembly mode whose image is the target, unless another one shows the
+        branches better
     ax
         the axes to draw all branches on; by default more than two are drawn side by side, with
         the others behind each in grey, and the axes of the first are returned
@@ -174,7 +181,7 @@ def branches(
     r = Robot.of(robot, params, given)
     r.require("ik")
     if x is None:
-        x = regular_target(r)
+        x = regular_target(r, general, mode)
     r = _posed(r, x)
     q, status = r.branches(x)
     if status.shape != (len(robot.BRANCHES),):
@@ -280,8 +287,11 @@ def extent(drawn: list[Array]) -> float:
     return float(np.linalg.norm(np.nanmax(everything, axis=0) - np.nanmin(everything, axis=0)))
 
 
-def regular_target(r: Robot) -> Array:
-    """The image of a posture: of those drawn, one that the most branches reach."""
+def regular_target(r: Robot, general: ArrayLike | None = None, mode: int = 0) -> Array:
+    """The image of a posture: of those that the most branches reach, the one that shows them best.
+
+    That of a ``general`` posture is taken if it shows them nearly as well.
+    """
     if not r.has_forward_map:
         x = r.poses(200)
         q, status = r.branches(x)
@@ -289,13 +299,25 @@ def regular_target(r: Robot) -> Array:
         x, q = x[reached == reached.max()], q[reached == reached.max()]
         far = np.abs(np.asarray(r.call("singularities", x[:, None], q))[..., -1]).max(-1)
         return np.asarray(x[np.argmax(np.where(np.isfinite(far), far, 0.0))])
-    q = np.vstack([r.posture(), r.draw(60, seed=1)])
+    first = r.posture() if general is None else np.asarray(general, dtype=float)
+    q = np.vstack([first, r.draw(60, seed=1)])
     x = r.task(q)
-    x = x[:, 0] if r.modes else x
+    x = x[:, mode] if r.modes else x
     finite = np.isfinite(x.reshape(len(x), -1)).all(1)
-    _, status = r.branches(np.where(np.isfinite(x), x, 0.0))
+    found, status = r.branches(np.where(np.isfinite(x), x, 0.0))
     reached = np.where(finite, (status == OK).sum(-1), -1)
-    return np.asarray(x[np.argmax(reached)])
+    most = np.flatnonzero(reached == reached.max())
+    apart = [_apart(r, found[k][status[k] == OK], x[k]) for k in most]
+    if most[0] == 0 and apart[0] >= NEARLY * max(apart):
+        return np.asarray(x[0])
+    return np.asarray(x[most[np.argmax(np.round(apart, 6))]])
+
+
+def _apart(r: Robot, postures: Array, x: Array) -> float:
+    """How far the two most similar of some postures are apart, as a share of the drawing."""
+    seen = [r.points(q)[r.mode_that_reaches(q, x)] for q in postures]
+    gaps = [np.linalg.norm(a - b, axis=-1).max() for a, b in combinations(seen, 2)]
+    return float(min(gaps, default=0.0) / extent(seen))
 
 
 def draw(
@@ -402,13 +424,18 @@ def _name(
     *,
     mode: int,
     along: Mapping[str, tuple[Array, Array]],
+    faint: Collection[str],
 ) -> None:
-    """Lengths at their segments, and angles as arcs, or as arrows about their axes."""
+    """Lengths at one of their segments, and angles as arcs, or as arrows about their axes."""
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
     taken = list[Array]()
-    for field, pair in lengths(r, q, mode).items():
-        diagram.dimension(place[pair[0]], place[pair[1]], symbol(field))
+    thin = {p for name, link in skeleton.links.items() if name in faint for p in link}
+    thin -= {p for name, link in skeleton.links.items() if name not in faint for p in link}
+    for field, pairs in lengths(r, q, mode).items():
+        seen = [p for p in pairs if not {*p} & thin] or pairs
+        ends = (np.array([place[p] for p in side]) for side in zip(*seen, strict=True))
+        diagram.dimension(*ends, symbol(field))
     for name, joint in skeleton.joints.items():
         if joint.kind == "prismatic":
             a, b = joint.points

@@ -58,8 +58,11 @@ def equation(text: str) -> str:
     return f"${words.replace('*', ' ')}$"
 
 
-def lengths(r: Robot, q: Array, mode: int) -> dict[str, tuple[str, str]]:
-    """For each parameter, the first segment of a link that is as long as it, for any dimensions."""
+def lengths(r: Robot, q: Array, mode: int) -> dict[str, list[tuple[str, str]]]:
+    """For each parameter, the segments of links that are as long as it, for any dimensions.
+
+    A parameter that is zero has no segment to show.
+    """
     names = r.module.SKELETON.points
     segments = [pair for link in r.module.SKELETON.links.values() for pair in pairwise(link)]
     rng = np.random.default_rng(5)
@@ -75,9 +78,6 @@ def lengths(r: Robot, q: Array, mode: int) -> dict[str, tuple[str, str]]:
             if abs(np.linalg.norm(place[pair[1]] - place[pair[0]]) - abs(changed[k]))
             < 1e-9 * r.size
         }
-    found: dict[str, tuple[str, str]] = {}
-    for k, field in enumerate(r.module.Parameters._fields):
-        for pair in segments:
-            if (k, pair) in possible and field not in found:
-                found[field] = pair
-    return found
+    fields = enumerate(r.module.Parameters._fields)
+    found = {field: [p for p in segments if (k, p) in possible] for k, field in fields if base[k]}
+    return {field: pairs for field, pairs in found.items() if pairs}

@@ -30,8 +30,10 @@ from matplotlib import pyplot as plt
 from closedform import hybrid_five_bar, irb260, plot, puma560, ur_arm
 from closedform.cli import figures
 from closedform.cli.commands import main
+from closedform.plot import labels
 from closedform.plot.catalogue import INVERSE
 from closedform.plot.contours import thinned
+from closedform.plot.postures import regular_target
 from closedform.plot.robot import Robot
 from closedform.plot.symbols import equation, lengths, symbol
 
@@ -96,12 +98,39 @@ def test_the_axes_of_a_wrist_are_those_of_the_space_jacobian() -> None:
 
 def test_every_length_of_a_linkage_finds_its_segment() -> None:
     found = lengths(Robot.of(irb260), np.array([0.2, 0.3, 0.1, 0.0]), 0)
-    assert found == {
+    assert {name: pairs[0] for name, pairs in found.items()} == {
         "l1": ("column", "shoulder"), "l2": ("base", "column"), "l3": ("shoulder", "elbow"),
         "l4": ("elbow", "wrist"), "l5": ("flange", "hand"), "l6": ("wrist", "flange"),
     }  # fmt: skip
     found = lengths(Robot.of(hybrid_five_bar), np.array([0.0, 1.2, 1.8]), 0)
-    assert found == {"L0": ("A", "B"), "L1": ("A", "C"), "L2": ("C", "P")}
+    assert {name: {*pairs} for name, pairs in found.items()} == {
+        "L0": {("A", "B")}, "L1": {("A", "C"), ("B", "D")}, "L2": {("C", "P"), ("D", "P")},
+    }  # fmt: skip
+
+
+def test_a_length_is_named_at_the_clearest_of_its_segments() -> None:
+    figure, ax = plt.subplots()
+    plane = plot.Diagram(ax, 1.0)
+    for at in np.linspace(-0.02, 0.02, 5):  # the first segment is between others
+        plane.link([(0, at, 0), (1, at, 0)])
+    plane.link([(0, 0.6, 0), (1, 0.6, 0)])
+    plane.dimension([(0, 0, 0), (0, 0.6, 0)], [(1, 0, 0), (1, 0.6, 0)], "L")
+    ax.set(xlim=(0, 1), ylim=(-0.2, 1))
+    labels.place(figure)
+    (label,) = ax._closedform_labels
+    height = ax.transData.inverted().transform(label.box)[:, 1].mean()
+    plt.close(figure)
+    assert height > 0.4
+
+
+def test_branches_are_shown_at_a_target_that_tells_them_apart() -> None:
+    robot = import_module("closedform.generated.numpy.orthoglide")
+    joints, status = robot.ik(regular_target(Robot.of(robot)))
+    assert (status == 0).all() and np.ptp(joints, axis=0).min() > 0.4
+    general = np.radians([20, 35, 50])
+    robot = import_module("closedform.generated.numpy.delta")
+    target = regular_target(Robot.of(robot), general)
+    assert np.allclose(target, robot.fk(general).p[0])
 
 
 @pytest.mark.parametrize(

@@ -555,7 +555,7 @@ class Stages:
             s
             for s in self.function.body
             if isinstance(s, Bound)
-            if s.symbol in own or (held := s.value.free_symbols & made) and held <= own
+            if s.symbol in own or ((held := s.value.free_symbols & made) and held <= own)
         ]
         if solving.link:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]

@@ -1,0 +1,45 @@
+"""A step of an inverse tells the letters of its lemma from those of the mechanism."""
+
+import pytest
+from test_latex_sources import stages
+
+from closedform.emit.backends.latex.roles import primed
+
+
+@pytest.mark.parametrize(
+    ("formula", "letters", "shown"),
+    [
+        (r"q = m - \sigma\sqrt{r^2 - p^2}", {"r"}, r"q = m - \sigma\sqrt{r'^2 - p^2}"),
+        (r"l e^{ix} + (b - ia) e^{iy}", {"x", "b"}, r"l e^{ix'} + (b' - ia) e^{iy}"),
+        (r"\operatorname{atan2}(a, b) + \tan a", {"a"}, r"\operatorname{atan2}(a', b) + \tan a'"),
+        (r"|\mathbf x| = r_1 x_2", {"x", "r_{1}"}, r"|\mathbf x| = r_1' x_2"),
+        (r"\theta + \theta_1", {r"\theta"}, r"\theta' + \theta_1"),
+    ],
+)
+def test_a_prime_stands_at_whole_letters(formula: str, letters: set[str], shown: str) -> None:
+    assert primed(formula, letters) == shown
+
+
+def test_a_letter_that_means_something_else_has_a_prime() -> None:
+    (step,) = stages("slider_crank", "ik")
+    assert "$l'$ is $r$, $r'$ is $l$, $a$ is $x$" in step["roles"]
+    (step,) = stages("slider_crank", "fk")
+    assert step["statement"] == [r"q = m - \sigma\sqrt{r'^2 - p^2}"]
+    (step,) = stages("five_bar", "ik")
+    assert "'" not in step["roles"]
+
+
+def test_what_an_equation_needs_follows_it() -> None:
+    (step,) = stages("delta", "ik")
+    assert [row.left for block in step["definitions"] for row in block.rows] == ["k_{1}", "k_{2}"]
+    assert [row.left for block in step["role_blocks"] for row in block.rows] == ["s"]
+    assert r"\left|k_{2}\right| \le l" in step["exists"]
+
+
+def test_a_reader_takes_squares_where_a_program_takes_products() -> None:
+    (step,) = stages("orthoglide", "ik")
+    [last] = [row.right for block in step["solution"] for row in block.rows][-1:]
+    assert last.endswith(r"\sqrt{L^{2} - x^{2} - y^{2}}")
+    (step,) = stages("rpr_planar", "fk")
+    x = next(row.right for b in step["solution"] for row in b.rows if row.left == "x")
+    assert x == r"\frac{b^{2} + \rho_{1}^{2} - \rho_{2}^{2}}{2 b}"

@@ -197,29 +197,40 @@ def loci(d: Derivation) -> Loci:
     apart = 4 * L1**2 - L0**2
     circles = ((y - L0 / 2) ** 2 + rho**2 + apart / 4 - L2**2) ** 2 - rho**2 * apart
     mirror = {rho: -rho}
+    psi, A, B = map(real, ("psi", "alpha", "beta"))
+    turned = by_cramer(cos(psi), sin(psi), alpha=A, beta=B)
+    far = y**2 + rho**2
+    cross = L0 * (rho * cos(psi) + y * sin(psi)) - far * sin(psi)
+    shown = sp.Add(*(t for t in turned.args if not t.has(L2)), -4 * L2**2 * cross**2)
+    flat = rho**2 * (A + B) ** 2 + (A * (y - L0) + B * y) ** 2, 4 * L0**2 * L2**2 * rho**2
     d.step(
         "Locus of the parallel singularities",
-        "DP is CP turned by psi.  Resultants eliminate the vector CP from the equations for the "
-        "lengths of CP, AC and BD.  For psi = 0, C = D, the result is the two circles of radius L2 "
+        "DP is CP turned by psi.  The lengths of AC and BD give two linear equations for the "
+        "vector CP, whose right sides are alpha and beta.  Cramer's rule solves them, and the "
+        "length of CP gives F, which vanishes on the curve of P for one psi: the coupler curve of "
+        "a four-bar linkage.  For psi = 0, C = D, the curve is the two circles of radius L2 "
         "about the points where C and D can meet; they are real for L0 <= 2*L1.  For psi = pi, C, "
-        "P, D in line, the result is the curve of the midpoint of the coupler of a four-bar "
-        "linkage.  Cramer's rule gives both again, without the powers of rho that resultants add.  "
+        "P, D in line, it is the curve of the midpoint of the coupler.  Resultants, which "
+        "eliminate CP, give both again, times powers of rho.  "
         "So every real point of a curve, except isolated points on AB, is the P of such a "
         "posture.  If L0 = 0, the two driven circles coincide, and every point of the workspace "
         "can also be reached with C = D.  C, P, D are then in line on the circle about A with the "
         "squared radius L1^2 - L2^2, and at A if L1 = L2.",
         {
+            r"\alpha": alpha,
+            r"\beta": beta,
+            r"F_\psi": shown,
             r"\psi = 0": sp.Eq(circles, 0, evaluate=False),
-            r"\psi = \pi": sp.Eq(opposite.curve, 0, evaluate=False),
-            r"\psi = \pi,\ L_0 = 0": sp.Eq(
-                sp.factor(opposite.curve.subs(L0, 0)), 0, evaluate=False
-            ),
+            r"\psi = \pi": sp.Eq(*flat, evaluate=False),
+            r"\psi = \pi,\ L_0 = 0": sp.Eq(A**2 * far, 0, evaluate=False),
         },
         proves=(
             "The resultants are the stated curves, Cramer's rule gives them too, they are "
             "symmetric, and for L0 = 0 the second one factors as shown."
         ),
         equal=lambda: [
+            (turned, shown),
+            (opposite.curve, (flat[0] - flat[1]).subs({A: alpha, B: beta})),
             (same.curve, sp.expand(circles)),
             (L0**2 * same.curve, by_cramer(sp.S.One, sp.S.Zero)),
             (opposite.curve, by_cramer(-sp.S.One, sp.S.Zero)),
@@ -231,24 +242,17 @@ def loci(d: Derivation) -> Loci:
         ],
     )
     n = k2 + 1
-    psi, named = real("psi"), (real("alpha"), real("beta"))
-    turned = by_cramer(cos(psi), sin(psi), alpha=named[0], beta=named[1])
-    same_legs = sp.expand(turned.subs({L0: 0, named[1]: named[0]}))
-    concentric = sp.factor(same_legs.subs(sin(psi) ** 2, 1 - cos(psi) ** 2))
+    half = psi / 2
+    concentric = 4 * sin(half) ** 2 * far * (A**2 - 4 * L2**2 * far * cos(half) ** 2)
     d.step(
         "Isoconditioning loci",
         "kappa is the cotangent of psi/2 or its inverse, so cos(psi) = (kappa^2 - 1)/(kappa^2 + 1) "
-        "and sin(psi) = 2*kappa/(kappa^2 + 1), up to their signs.  F vanishes on the curve of one "
-        "psi, the coupler curve of a four-bar linkage.  The curves for the two signs of psi, the "
-        "two assembly modes, are mirror images about AB.  The two signs of the cosine belong to "
+        "and sin(psi) = 2*kappa/(kappa^2 + 1), up to their signs.  The locus is the curve F = 0 of "
+        "this psi.  The curves for the two signs of psi, the two assembly modes, are mirror images "
+        "about AB.  The two signs of the cosine belong to "
         "postures with e > h and with e < h.  For L0 = 0 a curve consists of circles about A.  The "
         "curves do not depend on theta1: in space they are surfaces of revolution about AB.",
-        {
-            r"\alpha": alpha,
-            r"\beta": beta,
-            r"F_\psi": turned,
-            r"F_\psi(L_0 = 0)": concentric,
-        },
+        {r"F_\psi(L_0 = 0)": concentric},
         proves=(
             "The resultants for a right angle and for a general psi are the curves that Cramer's "
             "rule gives, their mirror images belong to the other sign, and the curve factors for "
@@ -260,7 +264,7 @@ def loci(d: Derivation) -> Loci:
             (general.curve, by_cramer(k2 - 1, 2 * kappa, n)),
             (general.curve.subs(mirror), by_cramer(k2 - 1, -2 * kappa, n)),
             (general.curve.subs(kappa, 1), 4 * square.curve),
-            (turned.subs({L0: 0, named[1]: named[0]}), concentric),
+            (turned.subs({L0: 0, B: A}), concentric),
         ],
     )
     d.step(
@@ -355,6 +359,9 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     found = regimes()
     reach, inner = real("R", positive=True), real("r", positive=True)
 
+    bracket = L0**2 + 2 * L0 * (reach + inner) - 3 * (reach - inner) ** 2
+    mixed = pi * (reach + inner - L0) ** 2 * bracket / (12 * L0)
+
     def by_radii(e: sp.Expr) -> sp.Expr:
         return sp.sympify(e).subs(
             {k * (M + n * m): k * u for k in (1, 2, 4) for n, u in ((1, reach), (-1, inner))}
@@ -370,11 +377,14 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         "difference.",
         {
             r"V_{lens}(R, R)": lens(reach, reach, L0),
-            r"V_{lens}(r, R)": lens(inner, reach, L0),
+            r"V_{lens}(r, R)": mixed,
             r"V_{lens}(r, r)": lens(inner, inner, L0),
         },
         proves=("The volume in each regime is the sum of its lenses, with their signs."),
-        equal=[(g.volume, g.pieces) for g in found.values()],
+        equal=[
+            (mixed, lens(inner, reach, L0)),
+            *((g.volume, g.pieces) for g in found.values()),
+        ],
         rows=[
             ("inner balls", "range", "volume"),
             *(

@@ -139,7 +139,7 @@ def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:
         polynomial = sp.Poly(part, sp.Dummy("one"), *sorted(part.free_symbols, key=str))
         if any(c.is_negative for c in polynomial.coeffs()):
             raise ValueError(f"{expr}: {polynomial.as_expr()} has a negative coefficient")
-    return sp.expand(top) / bottom
+    return sp.expand(top) / sp.factor(bottom)
 
 
 def decide(

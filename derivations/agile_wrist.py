@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from closedform.derivations.claims.agile_wrist import state
 from closedform.derivations.papers.textbook_loops import WRIST_LOOPS
-from sympy import Abs, Expr, Matrix, Min, Mul, Rational, atan2, cos, diag, eye, sin, sqrt
+from sympy import Abs, Expr, Matrix, Min, Mul, Rational, Symbol, atan2, cos, diag, eye, sin, sqrt
 
 from closedform import (
     Degenerate,
@@ -64,6 +64,15 @@ for k in (1, 2, 3):
         {rf"\mathbf w_{k}": "middle axis of leg k", f"B_{{{k}{k}}}": "entry of the diagonal of B"}
     )
     d.explain({rf"\mathbf a_{k}": "cross product of w and v, a row of A"})
+    d.explain({rf"\mathbf v_{k}": "last axis of leg k"})
+d.explain(
+    {
+        "A": "factor of the angular velocity of the hand",
+        "B": "factor of the joint rates",
+        "J": "angular velocity of the hand per joint rate",
+        r"\kappa": "condition number of A",
+    }
+)
 d.write("u", r"\mathbf u", "first axis of a leg")
 d.write("p", r"\mathbf p", "cross product of u and w of a leg")
 d.write("gap", r"\Delta", "determinant of A in every assembly mode")
@@ -73,6 +82,7 @@ d.loop = stated = d.step(
     "to the middle axis w, which the driven joint places.",
     {
         **{rf"\mathbf w_{k + 1}": w[k] for k in range(3)},
+        **{rf"\mathbf v_{k + 1}": V[:, k] for k in range(3)},
         **{rf"\mathbf w_{k + 1}\cdot\mathbf v_{k + 1}": loop[k] for k in range(3)},
     },
     proves="The vectors u, w and their cross product p are orthonormal and right-handed.",
@@ -159,7 +169,12 @@ d.step(
     {
         **{rf"\mathbf a_{k + 1}": rows[k] for k in range(3)},
         **{rf"B_{{{k + 1}{k + 1}}}": rates[k] for k in range(3)},
-        r"\det A": Mul(*map(cos, q)) - Mul(*map(sin, q)),
+        "A": r"\begin{bmatrix} \mathbf a_1 & \mathbf a_2 & \mathbf a_3 \end{bmatrix}^T",
+        "B": diag(*(Symbol(f"B_{k}{k}") for k in (1, 2, 3))),
+        r"\Delta": Mul(*map(cos, q)) - Mul(*map(sin, q)),
+        "J": "A^{-1} B",
+        r"\det J": r"\frac{\det B}{\det A}",
+        r"\kappa": r"\tfrac{1}{3}\,\lVert A\rVert_F\,\lVert A^{-1}\rVert_F",
     },
     proves="A and B are the derivatives, and in each mode det A is C - S.  The Jacobian J "
     "satisfies A*J = B, and its determinant is the square of C - S divided by the squares "
@@ -174,10 +189,22 @@ d.step(
 
 
 def of_joints(name: str, summary: str, outputs: dict[str, object], *notes: str) -> None:
-    """Export a function of the driven joints in each assembly mode."""
-    d.function(name, summary, {"q": q}, outputs, program=v, branches=modes, notes=notes)
+    """Export a function of the driven joints in each assembly mode, which a step has shown."""
+    (output,) = outputs
+    d.function(
+        name,
+        summary,
+        {"q": q},
+        outputs,
+        program=v,
+        branches=modes,
+        notes=notes,
+        equation=SHOWN.get(output, output),
+    )
 
 
+SHOWN = {"det": r"\det J", "factors": r"\Delta", "kappa": r"\kappa"}
+"""The equations of results that a step does not show by their names."""
 v = Program(list(f.body), f.taken)
 A = v.matrix("A", A)
 cross = [A[i, :].T.cross(A[j, :].T) for _, i, j in LEGS]
@@ -208,7 +235,7 @@ of_joints(
 of_joints(
     "singularities",
     "The diagonal of B and the determinant of A.",
-    {"factors": [*y, found.gap]},
+    {"factors": [*(v.let(f"B_{k}{k}", e) for k, e in enumerate(y, 1)), found.gap]},
 )
 of_joints(
     "condition_number",

@@ -176,9 +176,9 @@ A}, \qquad \lambda = \operatorname{atan2}(y, x) - \alpha,$$
 $$(\cos\alpha, \sin\alpha) = \frac{(\mathcal S\mathcal B - \mathcal A\mathcal C,\
 2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal S\mathcal B + \mathcal A\mathcal
 C}, \qquad \sigma = \pm 1.$$
-A second link that is cranked, $(b - i a)\, e^{i y}$ instead of $l_2 e^{i y}$ in the complex
-plane, is a straight one of length $\sqrt{a^2 + b^2}$ at the angle $y - \operatorname{atan2}(a,
-b)$.""",
+A cranked second link, in the complex plane $(b - i a)\, e^{i\nu}$ instead of $l_2 e^{i(\lambda +
+\mu)}$, is a straight one: $l_2 = \sqrt{a^2 + b^2}$ and $\lambda + \mu = \nu -
+\operatorname{atan2}(a, b)$.""",
     proof=r"""Turn the plane by $-\lambda$: the first link is then at the angle $0$, the second at
 $\mu$, and $(x, y)$ at $\alpha = \operatorname{atan2}(y, x) - \lambda$.  These are the
 equations of the two-link triangle.  Its tangents of half angles are those of the stated sines and

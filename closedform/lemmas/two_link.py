@@ -205,9 +205,9 @@ class _Arm:
         _, along, across = self.lengths
         return Lemma(
             "two-link arm",
-            r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
-            r"\alpha,\ y = x + \theta + \operatorname{atan2}(a, b), \text{ with } \theta, \alpha "
-            r"\text{ of the two-link triangle}",
+            r"l_1 e^{i\lambda} + (b - ia) e^{i\nu} = x + iy \;\Rightarrow\; "
+            r"\lambda = \operatorname{atan2}(y, x) - \alpha,\ "
+            r"\nu = \lambda + \mu + \operatorname{atan2}(a, b)",
             (
                 upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
                 upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
@@ -222,7 +222,11 @@ class _Arm:
             body=tuple(self.program.body[start:]),
             signs=(self.triangle.sigma,),
             roles=tuple(
-                zip("xylabrh", (x, y, upper, *self.lengths[1:], r, h), strict=True),
+                zip(
+                    (r"\lambda", r"\nu", "l_1", "a", "b", "x", "y"),
+                    (x, y, upper, *self.lengths[1:], r, h),
+                    strict=True,
+                ),
             ),
             plainly=self._plainly(folded, rest, elbow),
         )

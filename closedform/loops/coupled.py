@@ -24,6 +24,7 @@ from closedform.loops.leg_by_leg import (
 )
 from closedform.loops.modes import EQUATIONS, NO_MODE, Exported, export
 from closedform.loops.reached import bounds_of, export_reach
+from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -200,7 +201,10 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
     q, x = driver.joint, follower.joint
     A, B = velocity_matrices([loop.equation], (x,), (q,))
     along = follower.end() - driver.end()
-    a, b = along.dot(follower.rate), rate_of(loop.driven, along)
+    a, b = (
+        merge_angles(sp.expand(e)) for e in (along.dot(follower.rate), rate_of(loop.driven, along))
+    )
+    named = " and ".join(f"{n} is {e}" for n, e in (("x", x), ("q", q)) if str(e) != n)
     serial = (
         "B is the length of the driver."
         if isinstance(driver, Stretch)
@@ -209,7 +213,8 @@ def _velocity(loop: _Loop, rod: _Rod) -> None:
     )
     d.step(
         "Velocity and singular sets",
-        f"The derivative of the loop equation, halved, gives A*dx = B*dq.  {serial}  A vanishes "
+        f"The derivative of the loop equation, halved, gives A*dx = B*dq, where {named}.  {serial}"
+        "  A vanishes "
         "if the follower moves B2 at right angles to the rod (parallel: the driver stands still "
         "and cannot hold the follower).",
         {"A": a, "B": b, "J": r"\frac{B}{A}"},

@@ -261,6 +261,16 @@ def state_parallelograms(
     )
 
 
+def _determinant(m: Hand, letter: str) -> dict[str, str]:
+    """What vanishes where the hand can turn, if all legs keep it from turning in the same way."""
+    kinds = {type(leg.rod) for _, leg in m.held}
+    if len(m.held) != 3 or len(kinds) > 1:
+        return {}
+    m.d.explain({r"\Gamma": "vanishes where the hand can turn"})
+    columns = " & ".join(rf"\mathbf {letter}_{k}" for k, _ in m.held)
+    return {r"\Gamma": rf"\det\begin{{bmatrix}} {columns} \end{{bmatrix}}"}
+
+
 def _unit_and_still(held: Sequence[tuple[int, Leg]]) -> list[tuple[sp.Expr, sp.Expr]]:
     """That bars or axes are unit vectors, and along the axis of a crank that carries them."""
     return [

@@ -15,8 +15,12 @@ EQUATIONS: Mapping[str, str] = {
     "det": r"\det J",
     "factors": r"\Delta",
     "kappa": r"\kappa",
+    "constraint": r"\Gamma",
 }
-"""What stands on the left of the equation that has a result, by the name of the output."""
+"""What stands on the left of the equation that has a result, by the name of the output.
+
+A function whose output is not alone in having its name is found by its own.
+"""
 
 
 def export(
@@ -39,7 +43,7 @@ def export(
             program=program,
             branches=modes,
             notes=(NO_MODE, *notes),
-            equation=equations.get(next(iter(outputs)), ""),
+            equation=equations.get(name, equations.get(next(iter(outputs)), "")),
         )
 
 

@@ -311,7 +311,13 @@ def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
     spans = [m.hand - c for c in m.centres]
     rods = m.rows(spans)
-    rates = m.rates(rods)
+    # a crank moves its end at right angles to itself, so what leads to its pivot counts as well
+    rates = m.rates(
+        [
+            span + leg.end() - leg.base if isinstance(leg, Crank) else rod
+            for leg, span, rod in zip(m.legs, spans, rods, strict=True)
+        ]
+    )
     halves = [1 if isinstance(leg, Flat) else 2 for leg in m.legs]
     labels = [k for k, _ in m.driven]
     still = sp.zeros(n - len(rates), len(rates))
@@ -391,9 +397,15 @@ def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]
     """A and the diagonal of B; of alike legs, by the row of A and the entry of B of leg i."""
     numbers = [k for k, _ in m.driven]
     if not m.alike:
-        diagonal = {f"B_{{{k}{k}}}": e for k, e in zip(numbers, rates, strict=True)}
+        diagonal = {
+            f"B_{{{k}{k}}}": sp.factor_terms(sp.expand(e))
+            for k, e in zip(numbers, rates, strict=True)
+        }
         m.d.explain(dict.fromkeys(diagonal, "entry of the diagonal of B"))
-        return {"A": sp.Matrix.vstack(*(r.T for r in rods)), **diagonal}
+        if len(m.legs) == 2 or m.flat:
+            return {"A": sp.Matrix.vstack(*(r.T for r in rods)), **diagonal}
+        ends = " & ".join(rf"\mathbf p - \mathbf b_{k}" for k, _ in m.numbered)
+        return {"A": rf"\begin{{bmatrix}} {ends} \end{{bmatrix}}^T", **diagonal}
     [(i, leg)] = m.as_shown(m.driven)
     vectors = {
         rf"\mathbf a_{i}": rf"\mathbf p - \mathbf b_{i}",
@@ -428,11 +440,13 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
         still = next(k for k, leg in m.numbered if isinstance(leg, Strut))
         rod = rf"\mathbf p - \mathbf b_{still}"
         shown[r"\mathbf s"] = rf"\frac{{{rod}}}{{\left|{rod}\right|}}"
-        shown["P"] = r"A \left(I - \mathbf s\,\mathbf s^T\right)"
+        shown["Q"] = r"A \left(I - \mathbf s\,\mathbf s^T\right)"
         shown[r"\kappa"] = r"\frac{\varsigma_1}{\varsigma_2}"
         meanings[r"\mathbf s"] = "unit vector along the strut"
-        meanings["P"] = "rows of A without their part along the strut"
-        meanings[r"\kappa"] = "ratio of the two singular values of P that are not zero"
+        meanings["Q"] = "rows of A without their part along the strut"
+        meanings[r"\kappa"] = "condition number of Q, whose least singular value is zero"
+        meanings[r"\varsigma_1"] = "largest singular value of Q"
+        meanings[r"\varsigma_2"] = "second singular value of Q"
     elif not m.flat:
         norm = "F" if len(numbers) == 3 else "2"
         part = r"\tfrac{1}{3}\," if len(numbers) == 3 else ""

@@ -434,8 +434,8 @@ def _name(
     thin -= {p for name, link in skeleton.links.items() if name not in faint for p in link}
     for field, pairs in lengths(r, q, mode).items():
         seen = [p for p in pairs if not {*p} & thin] or pairs
-        ends = (np.array([place[p] for p in side]) for side in zip(*seen, strict=True))
-        diagram.dimension(*ends, symbol(field))
+        starts, ends = (np.array([place[p[k]] for p in seen]) for k in (0, 1))
+        diagram.dimension(starts, ends, symbol(field))
     for name, joint in skeleton.joints.items():
         if joint.kind == "prismatic":
             a, b = joint.points

@@ -45,6 +45,7 @@ from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.vectors import in_vectors
 from closedform.emit.backends.latex.wide import Equation, with_sums_of_angles
+from closedform.model.alike import INDEX
 from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
 from closedform.model.inverse import Combination, Inverse, Rank
@@ -64,9 +65,9 @@ BARE: Mapping[str, Any] = {
     "after": "",
 }
 """A function without a listing."""
-ROOM = 14
+ROOM = 9
 """A table that needs no more lines than that is kept on one page; a longer one may be broken."""
-HEADING = 6
+HEADING = 5
 """The lines of a heading and a short reason, which stay with the table below them."""
 SENTENCE = 60
 """The letters of a cell that is broken into lines."""
@@ -329,7 +330,10 @@ class Page(Sheet):
         algorithm = None if told else self.algorithm(found)
         rows = {
             kind: [
-                (self.named_set(names[k % len(names)]), formulas([self.vanishing(e, algorithm)]))
+                (
+                    self.named_set(names[k % len(names)]),
+                    formulas([text := self.vanishing(e, algorithm)]) + self.stated(text),
+                )
                 for k, e in entries
                 if (names[k % len(names)] in derivation.poles) == poles
             ]
@@ -352,6 +356,14 @@ class Page(Sheet):
         own = self.math(factor)
         name = f"{own} = " if factor.is_Symbol and own != shown else ""
         return f"{name}{shown} = 0"
+
+    def stated(self, vanishing: str) -> str:
+        """Where the name is defined whose vanishing is a formula."""
+        name = canonical(vanishing.removesuffix(" = 0"))
+        any_leg = re.sub(r"\d(?=\d?\}$)", INDEX, name)
+        label = self.numbers.defined.get(name) or self.numbers.defined.get(any_leg)
+        joints = {canonical(self.math(j.symbol)) for j in self.derivation.joints}
+        return f", see {reference([label])}" if label and name not in joints else ""
 
     def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
         """A value of the joints in names that the steps have defined."""

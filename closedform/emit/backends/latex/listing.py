@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-UNBROKEN = 6
+UNBROKEN = 4
 """An algorithm with more lines than this may begin at the end of a page."""
 
 

@@ -264,11 +264,14 @@ class Prose:
         """The letters that are vectors wherever a sentence has them."""
         self.indexed = bold
         """The letters that are vectors where they have an index."""
-        self.points = {m[1] + m[2] for left in shown if (m := POINT.fullmatch(left))}
-        if self.points:  # then all points of the drawing are written so
-            cells = [c for step in derivation.steps for row in step.rows for c in row]
-            told = " ".join(c for c in cells if isinstance(c, str))
-            self.points |= {*re.findall(r"\b[A-Z]\d\b", told)}
+        drawn = derivation.skeleton.points if derivation.skeleton else ()
+        bold_too = any(POINT.fullmatch(left) for left in shown)
+        self.points = {
+            n: (rf"\mathbf{{{n[0]}}}" if bold_too else n[0]) + f"_{{{n[1:]}}}"
+            for n in drawn
+            if n not in names and re.fullmatch(r"[A-Z]\d[a-z]?", n)
+        }
+        """The points of the drawing, as the equations write them."""
 
     def __call__(self, text: str) -> str:
         words = "|".join(map(re.escape, self.angles))
@@ -304,7 +307,7 @@ class Prose:
     def _part(self, text: str) -> str:
         """A formula, or text; parentheses with words in them may contain formulas."""
         if text in self.points:
-            return rf"$\mathbf{{{text[0]}}}_{{{text[1:]}}}$"
+            return f"${self.points[text]}$"
         if not self._is_symbol(text) and (text in self.code or CODE.fullmatch(text)):
             return rf"\texttt{{{escape(text)}}}"
         if self._is_formula(text):

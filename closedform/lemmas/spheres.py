@@ -161,7 +161,8 @@ def three_spheres(
         signs=(sigma,),
         vectors=(
             r"The algorithm finds $\mathbf n$ as $\mathbf m \times \mathbf a / \mu$ with "
-            r"$\mathbf m = \mathbf a \times \mathbf c_3$."
+            r"$\mathbf m = \mathbf a \times \mathbf c_3$, $\mu = |\mathbf a|^2$ and "
+            r"$\nu = |\mathbf n|^2$." + r"  The radii are equal, so $X = 1/2$." * equal
         ),
         letters={uu: r"\mu"},
         written={"u": r"\mathbf a", "v": r"\mathbf c_3"},

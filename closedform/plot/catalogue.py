@@ -123,10 +123,12 @@ def standard(view: View) -> list[Figure]:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    A map needs two joints and a forward map, and a workspace a position in the task that no surface
+    Branches are shown if there are several.  A map needs two joints and a forward map, and a workspace a position in the task that no surface
     holds.
     """
     r = Robot.of(robot)
+    if figure == "branches":
+        return len(robot.BRANCHES) > 1
     if figure not in ("workspace", "conditioning"):
         return True
     if len(robot.JOINTS) < 2 or not r.has_forward_map:

@@ -126,8 +126,11 @@ def _singular_curves(
                     found = True
         if found:
             signs.append(Line2D([], [], color=colour(k + 1), label=_broken(name)))
-    for curve in _edges(grid, count):
+    borders = [*_edges(grid, count)]
+    for curve in borders:
         ax.plot(*curve.T, color="#222222", linewidth=0.8, zorder=2)
+    if not borders:
+        return signs
     border = "branches end: " + "; ".join(map(equation, at_edge)) if at_edge else "branches end"
     border = border if "$" in border else fill(border, WIDE)
     return [Line2D([], [], color="#222222", linewidth=0.8, label=border), *signs]

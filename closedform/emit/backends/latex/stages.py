@@ -21,7 +21,7 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
-from closedform.emit.backends.latex.formulas import FITS, measure
+from closedform.emit.backends.latex.formulas import FITS, flat, measure
 from closedform.emit.backends.latex.lemmas import label, statement, titled
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.pairs import scaled
@@ -559,7 +559,7 @@ class Stages:
         ]
         if solving.link:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]
-        return ", ".join(self.algorithm.conditions([b.symbol for b in bounds]))
+        return flat(", ".join(self.algorithm.conditions([b.symbol for b in bounds])))
 
     def degenerate(self, solving: Solving) -> str:
         """Where an unknown of the lemma is free."""

@@ -123,8 +123,8 @@ def standard(view: View) -> list[Figure]:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    Branches are shown if there are several.  A map needs two joints and a forward map, and a workspace a position in the task that no surface
-    holds.
+    Branches are shown if there are several.  A map needs two joints and a forward map, and a
+    workspace a position in the task that no surface holds.
     """
     r = Robot.of(robot)
     if figure == "branches":

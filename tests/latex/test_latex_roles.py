@@ -1,8 +1,11 @@
 """A step of an inverse tells the letters of its lemma from those of the mechanism."""
 
 import pytest
-from test_latex_sources import stages
+import sympy as sp
+from test_latex_sources import article, derivation, stages
 
+from closedform.emit.backends.latex.formulas import Printer
+from closedform.emit.backends.latex.prose import Prose
 from closedform.emit.backends.latex.roles import primed
 
 
@@ -34,6 +37,35 @@ def test_what_an_equation_needs_follows_it() -> None:
     assert [row.left for block in step["definitions"] for row in block.rows] == ["k_{1}", "k_{2}"]
     assert [row.left for block in step["role_blocks"] for row in block.rows] == ["s"]
     assert r"\left|k_{2}\right| \le l" in step["exists"]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("(y - s)**2 + (x - c)**2", r"\left(x - c\right)^{2} + \left(y - s\right)^{2}"),
+        ("(b - sin(a))**2 + (d - cos(a))**2", None),
+        ("y**2 + (x - b)**2", r"\left(x - b\right)^{2} + y^{2}"),
+    ],
+)
+def test_the_squares_of_a_distance_are_in_the_order_of_coordinates(
+    text: str, shown: str | None
+) -> None:
+    printed = Printer(set()).doprint(sp.sympify(text))
+    assert printed == shown if shown else printed.index("cos") < printed.index("sin")
+
+
+def test_what_vanishes_says_where_it_is_defined() -> None:
+    found = article("orthoglide")["singular"]
+    (_, first), *_ = found["rank"]
+    assert first.endswith(r"B_{11} = 0$, see \eqref{eq:orthoglide:18}")
+    functions = {f["name"]: f["evaluates"] for f in article("orthoglide")["functions"]}
+    assert functions["constraint"] == r"\eqref{eq:orthoglide:14} in each assembly mode"
+
+
+def test_points_of_a_drawing_are_symbols() -> None:
+    prose = Prose(derivation("delta"))
+    assert prose("B1a to C1a") == "$B_{1a}$ to $C_{1a}$"
+    assert Prose(derivation("four_bar"))("about A1") == r"about $\mathbf{A}_{1}$"
 
 
 def test_a_reader_takes_squares_where_a_program_takes_products() -> None:

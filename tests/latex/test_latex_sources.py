@@ -29,10 +29,13 @@ def derivation(name: str) -> Derivation:
 
 
 @cache
-def stages(name: str, function: str) -> list[dict]:
+def article(name: str) -> dict:
     d = derivation(name)
-    found = document(d, Proof(d.name, d.paper.key, (), 0, ()))
-    return next(f["stages"] for f in found["inverses"] if f["name"] == function)
+    return document(d, Proof(d.name, d.paper.key, (), 0, ()))
+
+
+def stages(name: str, function: str) -> list[dict]:
+    return next(f["stages"] for f in article(name)["inverses"] if f["name"] == function)
 
 
 @pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)

@@ -116,6 +116,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             terms.sort(key=lambda term: not (term.is_number and term.is_positive))
         if any(e.is_Symbol and SIGN.match(e.name) for e in terms[0].args):
             terms.sort(key=lambda term: not isinstance(term, sp.atan2))
+        if all(term.is_Pow and term.exp == 2 for term in terms):
+            terms.sort(key=_coordinate)
         return _with_common_fractions(terms)
 
     def _called(self, symbol: sp.Symbol) -> str:
@@ -321,6 +323,14 @@ def _over_under(angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 
 def _negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
+
+
+def _coordinate(square: sp.Expr) -> float:
+    """Where a square stands in a distance: x, y and z in this order, a sine after a cosine."""
+    letters = [n for s in square.free_symbols if (n := str(s.name)) in ("x", "y", "z")]
+    if letters:
+        return "xyz".index(min(letters))
+    return 1.5 if square.has(sp.sin) and not square.has(sp.cos) else 0.5
 
 
 def _turned(factors: Sequence[sp.Expr]) -> list[sp.Expr] | None:

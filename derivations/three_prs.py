@@ -28,4 +28,6 @@ legs = []
 for k, (x, y) in enumerate([(1, 0), (-half, sqrt(3) / 2), (-half, -sqrt(3) / 2)], 1):
     slider = d.joint(f"rho{k}", "prismatic")
     legs.append(Upright(Slide(slider, l, (b, 0), (0, 1)), (x, y), corner=(a * x, a * y)))
+d.write("tilt_x", r"\tau_x", "tilt of the hand about the x axis")
+d.write("tilt_y", r"\tau_y", "tilt of the hand about the y axis")
 tripod(d, legs)

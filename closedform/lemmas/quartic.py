@@ -35,9 +35,9 @@ theorem(
 $$A = \frac{a\cos\eta + b\sin\eta}{k}, \qquad B = \frac{b\cos\eta - a\sin\eta}{k}, \qquad E =
 \frac{e}{k},$$
 let $u$ be a root of the resolvent of $A$, $B$ and $E$ with $-1 < u < 1$, let $\varphi$ be the angle
-in $(0, \pi/2)$ with $\cos 2\varphi = u$, and let $n_\tau = \frac12 \bigl(\frac{A}{\cos\varphi} -
-\tau\frac{B}{\sin\varphi}\bigr)$ for $\tau = \pm 1$.  The solutions of $p\cos 2x + q\sin 2x + 2
-a\cos x + 2 b\sin x + e = 0$ are
+in $(0, \pi/2)$ with $\cos 2\varphi = u$, and let
+$$n_\tau = \frac{A}{2\cos\varphi} - \tau\,\frac{B}{2\sin\varphi}, \qquad \tau = \pm 1.$$
+The solutions of $p\cos 2x + q\sin 2x + 2 a\cos x + 2 b\sin x + e = 0$ are
 $$x = \eta + \tau\varphi + \sigma\delta_\tau, \qquad (\cos\delta_\tau, \sin\delta_\tau) =
 \bigl(-n_\tau, \sqrt{(1 - n_\tau)(1 + n_\tau)}\bigr), \qquad \sigma = \pm 1,$$
 for those $\tau$ with $|n_\tau| \le 1$.""",
@@ -47,7 +47,7 @@ n_{-1}\bigr)$ is
 $$\cos 2 y + 2\cos\varphi\,(n_1 + n_{-1})\cos y + 2\sin\varphi\,(n_{-1} - n_1)\sin y + u + 2 n_1
 n_{-1}.$$
 The coefficients of $\cos y$ and $\sin y$ are $2 A$ and $2 B$.  With $2\cos^2\varphi = 1 + u$ and
-$2\sin^2\varphi = 1 - u$ the rest is $u + \frac{A^2}{1 + u} - \frac{B^2}{1 - u}$, which is $E$
+$2\sin^2\varphi = 1 - u$ the rest is $u + A^2/(1 + u) - B^2/(1 - u)$, which is $E$
 because the resolvent vanishes at $u$.  So the equation says that one of the factors is zero, that
 is, $\cos(y - \tau\varphi) = -n_\tau$ for $\tau = 1$ or $\tau = -1$.""",
     exception=r"""In the plane of $\cos y$ and $\sin y$ the equation is that of a hyperbola, its

@@ -84,7 +84,7 @@ def parallel(
         d.poles = (mechanism.pole,)
     mechanism.d.loop = loop = mechanism.state_loop()
     state_held(mechanism, loop)
-    posture = _forward(mechanism, modes, loop)
+    posture = _forward(mechanism, modes, loop, passive)
     if passive:
         _passive_angles(mechanism, posture, passive)
     draw(mechanism, posture.hand, posture.program, posture.modes)
@@ -106,7 +106,7 @@ class _Posture:
     """The sign and the size of the determinant of the matrix that has them as rows."""
 
 
-def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
+def _forward(m: Hand, choice: Choice, loop: Step, passive: Sequence[sp.Symbol]) -> _Posture:
     d, n, f = m.d, len(m.legs), m.d.program()
     sigma = real("sigma_assembly")
     modes = branches((sigma, choice)) if len(m.flat) < n else SINGLE
@@ -125,8 +125,8 @@ def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     found = met.found
     d.step(
         f"Forward: {met.title}",
-        met.reason,
-        met.shown,
+        met.reason + "  The passive angles are those of the rods." * bool(passive),
+        met.shown | _shown_angles(m, passive),
         proves=met.proves,
         equal=[(found.rows.det(), found.volume)],
         uses=[loop],
@@ -293,6 +293,18 @@ def _roles(m: Hand) -> tuple[tuple[str, Any], ...]:
     )
 
 
+def _of_passive(passive: Sequence[sp.Symbol]) -> str:
+    """What stands on the left of the equation of the passive angles."""
+    return f"({', '.join(map(sp.latex, passive))})"
+
+
+def _shown_angles(m: Hand, passive: Sequence[sp.Symbol]) -> dict[str, Any]:
+    """The angles of the rods, from the hand and their near ends."""
+    rods = [m.hand - c for c in m.centres]
+    angles = tuple(sp.atan2(rod[1], rod[0], evaluate=False) for rod in rods[: len(passive)])
+    return {_of_passive(passive): angles} if passive else {}
+
+
 def _passive_angles(m: Hand, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
     m.d.function(
         "passive_angles",
@@ -303,6 +315,7 @@ def _passive_angles(m: Hand, at: _Posture, passive: Sequence[sp.Symbol]) -> None
         branches=at.modes,
         entries=tuple(passive),
         notes=(NO_MODE,),
+        equation=_of_passive(passive),
     )
 
 

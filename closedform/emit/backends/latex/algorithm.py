@@ -55,8 +55,11 @@ STATED = 3
 """A condition with more equations than that is given in words."""
 FACTORS = "factors"
 """The result of ``singularities``."""
-LETTERS = "kwgvqm"
-"""Letters for quantities whose name is a word; the first that the derivation does not use."""
+LETTERS = "kwgvjm"
+"""Letters for quantities whose name is a word; the first that the derivation does not use.
+
+No q, which is all joints.
+"""
 
 
 Part = tuple[str, Any, str]

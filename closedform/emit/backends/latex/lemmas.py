@@ -75,7 +75,7 @@ def context(names: Sequence[str] | None, used: Mapping[str, Sequence[str]]) -> l
 
     ``used`` names the mechanisms that apply a lemma, by their LaTeX.
     """
-    known = _simplest_first(theorems())
+    known = _simplest_first(theorems(), used)
     wanted = set(known if names is None else names)
     for name in reversed(known):
         if name in wanted:
@@ -83,9 +83,15 @@ def context(names: Sequence[str] | None, used: Mapping[str, Sequence[str]]) -> l
     return [_theorem(t, used.get(name, ())) for name, t in known.items() if name in wanted]
 
 
-def _simplest_first(known: Mapping[str, Theorem]) -> dict[str, Theorem]:
-    """The lemmas by the length of what is said about them, but after those that they rest on."""
+def _simplest_first(
+    known: Mapping[str, Theorem], used: Mapping[str, Sequence[str]]
+) -> dict[str, Theorem]:
+    """The lemmas by the length of what is said about them, but after those that they rest on.
+
+    One that serves other lemmas alone stands directly before the first of them.
+    """
     ordered: dict[str, Theorem] = {}
+    serving = {name for t in known.values() for name in t.rests_on} - {n for n in used if used[n]}
 
     def add(name: str) -> None:
         for other in known[name].rests_on:
@@ -93,7 +99,8 @@ def _simplest_first(known: Mapping[str, Theorem]) -> dict[str, Theorem]:
         ordered.setdefault(name, known[name])
 
     for name in sorted(known, key=lambda n: (len(known[n].statement + known[n].proof), n)):
-        add(name)
+        if name not in serving:
+            add(name)
     return ordered
 
 

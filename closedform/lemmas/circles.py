@@ -130,7 +130,7 @@ def circle_intersection(
             plainly[height] = choose(sp.Or(touching, flag), 0, rise)
     return Lemma(
         "circle intersection",
-        r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf d| = r_2 \;\Rightarrow\; \mathbf x = "
+        r"|\mathbf x| = r_1,\ |\mathbf x - d\,\mathbf n| = r_2 \;\Rightarrow\; \mathbf x = "
         r"\frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp,\quad "
         r"h = \frac{\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}}{2 d}",
         (

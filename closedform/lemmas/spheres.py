@@ -149,7 +149,7 @@ def three_spheres(
     place = sp.Matrix(unknowns) - origin
     lemma = Lemma(
         "three spheres",
-        r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf c_2| = r_2,\ |\mathbf x - \mathbf c_3| = r_3 "
+        r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf a| = r_2,\ |\mathbf x - \mathbf c_3| = r_3 "
         r"\;\Rightarrow\; \mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf a \times "
         r"\mathbf n",
         tuple(

@@ -72,6 +72,7 @@ def coupled(
         },
     )
     d.explain({r"\mathbf B_1": "end of the rod on the driver"})
+    d.explain({"A": "factor of the rate of the follower", "B": "factor of the rate of the driver"})
     d.explain({r"\mathbf B_2": "end of the rod on the follower"})
     closed = _Loop(d, driver, follower, loop, stated)
     rod = _forward(closed, modes)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -190,7 +191,8 @@ def _in_space(m: Hand, loop: Step) -> None:
     held = _with(m, Parallelogram)
     bars = m.as_shown([(k, leg.rod.direction) for k, leg in held])
     one = INDEX if m.alike else "k"
-    state_parallelograms(m.d, held, bars, loop, then=all_three * (len(held) == 3), one=one)
+    factor, then = _determinant(m, normal), all_three * (len(held) == 3)
+    state_parallelograms(m.d, held, bars, loop, then=then, one=one, vanishing=factor)
 
 
 def state_parallelograms(
@@ -201,6 +203,7 @@ def state_parallelograms(
     *,
     then: str,
     one: str = "k",
+    vanishing: Mapping[str, str] = MappingProxyType({}),
 ) -> None:
     """The step on parallelograms in space.
 
@@ -218,6 +221,8 @@ def state_parallelograms(
         what follows for the hand: a sentence
     one
         how any of the legs is called
+    vanishing
+        what vanishes where the hand can turn, as an equation
     """
     any_vectors = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
     first, second, along, rate = any_vectors
@@ -235,7 +240,7 @@ def state_parallelograms(
         f"2*{h}.  The bar at the near end has the direction {u} and does not turn.  The bar on the "
         f"hand has the direction {v}, and {r} leads from the middle of the first to the middle of "
         f"the second.  The two rods are {r} + {h}*({v} - {u}) and {r} - {h}*({v} - {u}), and both "
-        f"have to be as long as {l}.  In a parallelogram {v} = {u}, and {r} is as long as a rod, "
+        f"must have this length.  In a parallelogram {v} = {u}, and {r} is as long as a rod, "
         "whatever the width.  The other solutions are left out: the crossed one "
         f"(antiparallelogram) and twisted ones.{then}",
         {
@@ -244,6 +249,7 @@ def state_parallelograms(
             **{rf"\mathbf {u}_{k}": direction for k, direction in bars},
             rf"\mathbf {n}_{one}": rf"\mathbf {u}_{one}\times\mathbf {r}_{one}",
             rf"\boldsymbol\omega\cdot\mathbf {n}_{one}": sp.S.Zero,
+            **vanishing,
         },
         proves=f"The rods fit if and only if the first two equations hold.  At {v} = {u}, the "
         "derivative of the first equation gives the last one.  The bars are unit vectors, "
@@ -325,7 +331,8 @@ def _by_axes(m: Hand, loop: Step) -> None:
         f"is at right angles to {part}, the part of the rod across the outer axes.  So the hand "
         f"cannot turn, unless the three vectors {part} are in one plane (constraint singularity)."
     )
-    state_universals(m.d, held, axes, loop, then=all_three * (len(held) == 3), one=one)
+    factor, then = _determinant(m, part), all_three * (len(held) == 3)
+    state_universals(m.d, held, axes, loop, then=then, one=one, vanishing=factor)
 
 
 def state_universals(
@@ -336,6 +343,7 @@ def state_universals(
     *,
     then: str,
     one: str = "k",
+    vanishing: Mapping[str, str] = MappingProxyType({}),
 ) -> None:
     """The step on universal joints with parallel axes.
 
@@ -353,6 +361,8 @@ def state_universals(
         what follows for the hand: a sentence
     one
         how any of the legs is called
+    vanishing
+        what vanishes where the hand can turn, as an equation
     """
     first, along, rate = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
     u, v, r, part = letters(d, "uvrm")
@@ -372,6 +382,7 @@ def state_universals(
             rf"\mathbf {part}_{one}": rf"\mathbf {r}_{one} - "
             rf"(\mathbf {u}_{one}\cdot\mathbf {r}_{one})\,\mathbf {u}_{one}",
             rf"\boldsymbol\omega\cdot\mathbf {part}_{one}": sp.S.Zero,
+            **vanishing,
         },
         proves=f"At {v} = {u} the first equation holds for any {r}, and its derivative, while the "
         "hand turns and moves in any way, is that of the last one.  The axes are unit vectors, and "

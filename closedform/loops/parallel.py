@@ -282,7 +282,7 @@ def _roles(m: Hand) -> tuple[tuple[str, Any], ...]:
     """What the letters of the lemma stand for that gives the hand."""
     (first, _), *others = m.in_lemma(m.numbered)
     between = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
-    names = [r"d\,\mathbf n"] if len(others) == 1 else [r"\mathbf c_2", r"\mathbf c_3"]
+    names = [r"d\,\mathbf n"] if len(others) == 1 else [r"\mathbf a", r"\mathbf c_3"]
     return (
         (r"\mathbf x", rf"\mathbf p - \mathbf b_{first}"),
         *zip(names, between, strict=True),
@@ -411,8 +411,8 @@ def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]
     numbers = [k for k, _ in m.driven]
     if not m.alike:
         diagonal = {
-            f"B_{{{k}{k}}}": sp.factor_terms(sp.expand(e))
-            for k, e in zip(numbers, rates, strict=True)
+            f"B_{{{k}{k}}}": _by_joint(leg.joint, e)
+            for (k, leg), e in zip(m.driven, rates, strict=True)
         }
         m.d.explain(dict.fromkeys(diagonal, "entry of the diagonal of B"))
         if len(m.legs) == 2 or m.flat:
@@ -435,6 +435,12 @@ def _shown_velocity(m: Hand, rods: Sequence[sp.Matrix], rates: Sequence[sp.Expr]
     }
 
 
+def _by_joint(joint: sp.Symbol, rate: sp.Expr) -> sp.Expr:
+    """An entry of B by the sine and the cosine of its joint, with common factors in front."""
+    turned = sp.collect(sp.expand(rate), [sp.sin(joint), sp.cos(joint)])
+    return sp.factor_terms(turned)
+
+
 def _shown_jacobian(m: Hand) -> dict[str, Any]:
     """What follows from A and B: the Jacobian, its determinant and the condition number of A."""
     numbers = [k for k, _ in m.driven]
@@ -445,6 +451,7 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
         "J": "A^{-1} B",
         r"\Delta": r"\left|\det A\right|",
     }
+    m.d.explain({"A": "factor of the rate of the hand"})
     meanings = {"B": "factor of the joint rates", "J": "derivative of p with respect to q"}
     meanings |= {r"\Delta": "the determinant of A without its sign"}
     if not struts:

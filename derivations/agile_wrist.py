@@ -106,6 +106,7 @@ d.step(
     "assembly modes.  They exist for all values of the joints.",
     {},
     uses=[stated],
+    solves={"fk": ()},
 )
 fk = d.function(
     "fk",

@@ -145,6 +145,7 @@ d.step(
         ),
         (h**2 + (sqrt(L2 - h) * sqrt(L2 + h)) ** 2, L2**2),
     ],
+    solves={"fk": ()},
 )
 d.function(
     "fk",

@@ -127,6 +127,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
         "The follower has to reach the point B1 with the rod.  Both solutions are assembly modes.",
         {},
         uses=[loop.stated],
+        solves={"fk": ()},
     )
     d.function(
         "fk",

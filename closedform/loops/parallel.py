@@ -130,6 +130,7 @@ def _forward(m: Hand, choice: Choice, loop: Step, passive: Sequence[sp.Symbol]) 
         proves=met.proves,
         equal=[(found.rows.det(), found.volume)],
         uses=[loop],
+        solves={"fk": ()},
     )
     d.function(
         "fk",

@@ -56,10 +56,7 @@ STATED = 3
 FACTORS = "factors"
 """The result of ``singularities``."""
 LETTERS = "kwgvjm"
-"""Letters for quantities whose name is a word; the first that the derivation does not use.
-
-No q, which is all joints.
-"""
+"""Letters for quantities whose name is a word, the first that is free; q is all joints."""
 
 
 Part = tuple[str, Any, str]

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from closedform.plot.maps import Limits, workspace
+from closedform.plot.maps import Limits, unsectioned, workspace
 from closedform.plot.maps import field as field_map
 from closedform.plot.postures import branches, mechanism, spoken
-from closedform.plot.robot import Robot, positions
+from closedform.plot.robot import Robot
 from closedform.plot.style import new_panels, styled
 
 INVERSE = "inverse"
@@ -135,16 +135,17 @@ def fits(robot: ModuleType, figure: str) -> bool:
         return False
     if figure == "conditioning":
         return True
-    image = r.task(r.posture())
-    return 0 < len(positions(r, image[0] if r.modes else image)) <= len(robot.JOINTS)
+    return not unsectioned(r)
 
 
 @styled
 def _both(robot: ModuleType, view: View) -> Any:
     r = Robot.of(robot)
-    panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
     at_zero = np.zeros(len(robot.JOINTS)) if r.has_forward_map else None
     postures = (at_zero if view.home is None else view.home, view.general)
+    if postures[0] is None:  # both are chosen, and the same
+        return pictured(robot, view, postures[1])
+    panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
     for ax, posture in zip(panels, postures, strict=True):
         pictured(robot, view, posture, ax=ax)
     return panels[0]

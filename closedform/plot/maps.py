@@ -32,8 +32,12 @@ FEW = 0.002
 """A number of branches that occurs at a smaller share of the points is left out."""
 WIDE = 30
 """Where a line of a legend is broken, in letters."""
+POLE = 8.0
+"""Values beyond this multiple of their median, as beside a parallel singularity, are alike."""
 ROUNDS, EDGE = 12, 120
 """How often a window is opened, and the points along its border that are tried."""
+AREA = 2
+"""The coordinates of a plane."""
 SHORT = 25
 """A curve of fewer points than this is taken for noise of the grid."""
 
@@ -228,14 +232,25 @@ def field(
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
     values, label = _quantity(r, q, mode, function)
     ax = new_axes(False) if ax is None else ax
-    with np.errstate(invalid="ignore"):
-        high = float(np.nanquantile(values, 0.995)) if np.isfinite(values).any() else 1.0
+    high, cut = _highest(values)
     image = ax.pcolormesh(*grid.sides, values, cmap="viridis", vmax=high, rasterized=True)
-    ax.figure.colorbar(image, ax=ax, shrink=0.8, label=label)
+    beyond = "max" if cut else "neither"
+    ax.figure.colorbar(image, ax=ax, shrink=0.8, label=label, extend=beyond)
     if not grid.joints and len(r.module.BRANCHES) > 1:
         ax.set_title(spoken(_branch_name(r, branch)))
     _name(ax, grid)
     return ax
+
+
+def _highest(values: Array) -> tuple[float, bool]:
+    """The value of the brightest colour, and whether a pole of the values is cut off there."""
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return 1.0, False
+    high, middle = float(np.quantile(finite, 0.995)), float(np.median(finite))
+    if finite.min() >= 0 and high > POLE * middle > 0:
+        return POLE * middle, True
+    return high, False
 
 
 @styled
@@ -273,8 +288,10 @@ def singularities(
                 finite = values[np.isfinite(values)]
                 if finite.size and finite.min() < 0 < finite.max():
                     masked = np.ma.masked_invalid(values)
-                    ax.contour(*grid.sides, masked, levels=[0.0], colors=[colour(k)])
-                    drawn[name] = Line2D([], [], color=colour(k))
+                    width = 1.4 * (len(robot.SINGULARITIES) - k)  # all show if they meet
+                    style = {"levels": [0.0], "colors": [colour(k)], "linewidths": width}
+                    ax.contour(*grid.sides, masked, **style)
+                    drawn[name] = Line2D([], [], color=colour(k), linewidth=width)
     else:
         q, status = r.branches(grid.targets)
         drawn = {str(s.get_label()): s for s in _singular_curves(ax, r, grid, q, status)}
@@ -318,10 +335,15 @@ def _plane(
     limits: Limits | None,
     unit: str,
 ) -> _Grid:
-    """A plane of the task, or of two joints where both names are joints."""
+    """A plane of the task, or of two joints: where both are named, or the task has no section."""
     names = list(r.module.JOINTS)
+    if plane is None and unsectioned(r):
+        if len(names) < AREA:
+            raise ValueError(f"{r.name} has one joint, and a map needs two")
+        plane = names[:AREA]
     if plane is None or not all(p in names for p in plane):
         return _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    _check_plane(r, plane, names)
     base = r.posture() if at is None else np.asarray(at, dtype=float)
     places = [names.index(p) for p in plane]
     ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
@@ -329,6 +351,26 @@ def _plane(
     targets = np.broadcast_to(base, (resolution, resolution, len(names))).copy()
     targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]
     return _Grid((sides[0], sides[1]), targets, (plane[0], plane[1]), True)
+
+
+def unsectioned(robot: ModuleType | Robot) -> str:
+    """Why the workspace of a mechanism has no section; empty if it has one."""
+    r = Robot.of(robot)
+    image = r.task(r.posture())
+    count = len(positions(r, image[0] if r.modes else image))
+    if not count:
+        return f"the task of {r.name} has no position, so there is no section of its workspace"
+    if count == 1 or count > len(r.module.JOINTS):
+        held = "line" if count == 1 else "curve" if len(r.module.JOINTS) == 1 else "surface"
+        return f"the hand of {r.name} moves on a {held}, of which there is no section"
+    return ""
+
+
+def _check_plane(r: Robot, plane: Sequence[str], *kinds: Sequence[str]) -> None:
+    """Refuse what is not two different coordinates of the first kind; the others may be named."""
+    if len(plane) != AREA or len({*plane} & {*kinds[0]}) != AREA:
+        listed = " or ".join(f"two of {', '.join(k)}" for k in kinds if len(k) >= AREA)
+        raise ValueError(f"the plane of {r.name} needs {listed}; not {', '.join(plane)}")
 
 
 def _task_plane(
@@ -341,16 +383,13 @@ def _task_plane(
     unit: str,
 ) -> _Grid:
     r.require("ik")
-    posture = r.posture()
-    image = r.task(posture)
+    if why := unsectioned(r):
+        raise ValueError(why)
+    image = r.task(r.posture())
     target = (image[0] if r.modes else image) if at is None else np.asarray(at, dtype=float)
     places = positions(r, target)
-    if len(places) > len(r.module.JOINTS):
-        raise ValueError(f"the hand of {r.name} moves on a surface, of which there is no section")
-    chosen = list(plane or list(places)[:2]) if r.flat else list(plane or ("x", "z"))
-    if len(chosen) != 2 or not all(n in places for n in chosen):
-        known = ", ".join([*places, *r.module.JOINTS])
-        raise ValueError(f"the plane of {r.name} needs two of {known}; not {', '.join(chosen)}")
+    chosen = list(plane or list(places)[:AREA]) if r.flat else list(plane or ("x", "z"))
+    _check_plane(r, chosen, list(places), r.module.JOINTS)
     hand = r.module.SKELETON.points.index(r.module.SKELETON.hand)
     seen = r.points(r.draw(2000, seed=2))[..., hand, :].reshape(-1, 3)
     seen = seen[np.isfinite(seen).all(1)]

@@ -13,6 +13,9 @@ from closedform.plot.robot import OK, Array, Robot, positions
 from closedform.plot.style import colour, new_axes, styled
 from closedform.plot.symbols import symbol
 
+HALVED = 8
+"""How often a line is made shorter that leaves the workspace."""
+
 
 @styled
 def path(
@@ -68,20 +71,25 @@ def path(
 
 
 def line(robot: ModuleType, n: int, *, params: Any = None) -> Array:
-    """Targets on a straight line between the images of two regular postures, (n, ...).
+    """Targets on a straight line through the image of a regular posture, (n, ...).
 
-    Only the position changes; the orientation is that of the first.
+    Only the position changes.  The line is so short that one branch reaches both ends.  Raises
+    ``ValueError`` if there is none, as for a hand that moves on a surface.
     """
     r = Robot.of(robot, params)
     target = regular_target(r)
     places = positions(r, target)
     if not places:
         raise ValueError(f"the task of {r.name} has no position")
-    targets = np.repeat(target.reshape(1, -1), n, axis=0)
-    along = np.linspace(-0.25, 0.25, n) * r.size
-    for i, k in enumerate(places.values()):
-        targets[:, k] += -along / 6 if i else along / 4
-    return targets.reshape(n, *target.shape)
+    way = np.zeros(target.size)
+    way[list(places.values())] = [-1 / 6 if i else 1 / 4 for i in range(len(places))]
+    for shorter in range(HALVED):
+        along = np.linspace(-0.25, 0.25, n) * r.size / 2**shorter
+        targets = (target.reshape(-1) + along[:, None] * way).reshape(n, *target.shape)
+        status = r.branches(targets[[0, -1]])[1]
+        if (status == OK).all(0).any():
+            return targets
+    raise ValueError(f"the hand of {r.name} does not move on a straight line; give other targets")
 
 
 def _chosen(

@@ -1,5 +1,6 @@
 """The figures: what is drawn, on which axes, and that files are the same on every run."""
 
+import shutil
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,16 @@ import numpy as np
 import pytest
 from libraries import FORWARD
 from matplotlib import pyplot as plt
+from places import ROOT
 
 import closedform
 from closedform import plot
 from closedform.cli.commands import main
+from closedform.cli.plot import catalogue, write
 from closedform.plot.catalogue import fits
 from closedform.plot.postures import OK, spoken
 from closedform.plot.style import colour
+from closedform.plot.symbols import symbol
 
 SMALL = 40
 
@@ -188,6 +192,15 @@ def test_rounding_errors_do_not_show_in_a_drawing(tmp_path: Path) -> None:
         (["planar_2r", "field", "-o", "a.svg", "--branch", "up"], "no branch 'up'"),
         (["planar_2r", "field", "-o", "a.svg", "--function", "f"], "has no function f"),
         (["spherical_wrist", "path", "-o", "a.svg"], "has no position"),
+        (["planar2r", "mechanism", "-o", "a.svg"], "did you mean planar_2r?"),
+        (["planar_2r", "workspace", "-o", "a.svg", "--plane", "x", "x"], "not x, x"),
+        (["planar_2r", "field", "-o", "a.svg", "--plane", "theta1", "theta1"], "needs two of"),
+        (["four_bar", "field", "-o", "a.svg"], "a map needs two"),
+        (["four_bar", "workspace", "-o", "a.svg"], "there is no section"),
+        (["slider_crank", "workspace", "-o", "a.svg"], "moves on a line"),
+        (["spherical_five_bar", "path", "-o", "a.svg"], "does not move on a straight line"),
+        (["my_arm.py", "mechanism", "-o", "a.svg"], "there is no file my_arm.py"),
+        ([str(ROOT / "derivations/scara.py"), "mechanism", "-o", "a.svg"], "derive it first"),
     ],
 )
 def test_wrong_arguments_are_explained(
@@ -232,3 +245,39 @@ def test_a_hand_on_a_surface_has_no_section() -> None:
     assert not fits(robot, "workspace")
     with pytest.raises(ValueError, match="moves on a surface"):
         plot.workspace(robot)
+
+
+def test_a_map_of_a_hand_that_turns_is_over_two_joints() -> None:
+    robot = import_module("closedform.generated.numpy.agile_wrist")
+    axes = plot.field(robot, resolution=20)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (symbol("theta1"), symbol("theta2"))
+
+
+def test_a_pole_does_not_hide_the_rest_of_a_map() -> None:
+    bar = import_module("closedform.generated.numpy.five_bar")
+    (mesh,) = plot.field(bar, resolution=100).collections
+    values = np.ma.filled(mesh.get_array(), np.nan)
+    assert mesh.get_clim()[1] < np.nanquantile(values, 0.99) < np.nanmax(values)
+
+
+@pytest.mark.parametrize("name", ["delta", "linear_delta", "three_prs", "planar_2r"])
+def test_a_branch_reaches_the_whole_line(name: str) -> None:
+    robot = import_module(f"closedform.generated.numpy.{name}")
+    status = robot.ik(plot.line(robot, 50)).status
+    assert (status == 0).all(axis=0).any()
+
+
+def test_the_command_draws_a_mechanism_as_the_documents_do(tmp_path: Path) -> None:
+    assert main(["plot", "agile_wrist", "mechanism", "-o", str(tmp_path / "a.svg")]) == 0
+    (figure,) = (f for f in catalogue("agile_wrist") if f.name == "mechanism")
+    write(lambda: figure.draw(module("agile_wrist")), tmp_path / "b.svg")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+def test_the_command_draws_a_printed_module(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "generated/numpy", tmp_path / "numpy")
+    (tmp_path / "numpy/scara.py").rename(tmp_path / "numpy/my_arm.py")
+    for what in ("mechanism", "field"):
+        target = tmp_path / f"{what}.svg"
+        assert main(["plot", str(tmp_path / "numpy/my_arm.py"), what, "-o", str(target)]) == 0
+        assert target.is_file()

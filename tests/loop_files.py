@@ -18,7 +18,7 @@ def script_of(name: str, text: str, folder: Path) -> str:
     """The script that is written from a file with this text."""
     path = folder / f"{name}.toml"
     path.write_text(text, "utf-8")
-    return loop_script(name, read_loop(path), path.name)
+    return loop_script(name, read_loop(path), path.name)[0]
 
 
 def read_script(script: str) -> Derivation:

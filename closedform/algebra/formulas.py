@@ -89,7 +89,7 @@ def formula(text: str, symbol: Callable[[str], sp.Expr], limits: Limits = TABLE)
 
 def shown(text: object) -> str:
     """A text of a table for a message: on one line, without control characters, shortened."""
-    quoted = ascii(text) if isinstance(text, str | int | bool) else f"a {type(text).__name__}"
+    quoted = repr(text) if isinstance(text, str | int | bool) else f"a {type(text).__name__}"
     return quoted if len(quoted) <= 60 else f"{quoted[:56]} ..."
 
 

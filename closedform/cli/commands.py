@@ -290,7 +290,7 @@ def new_command(options: argparse.Namespace) -> None:
         check_name(options.name)
         target = options.output / f"{options.name}.py"
         if os.path.lexists(target):
-            raise CommandError(f"{target} already exists")
+            raise CommandError(f"{target} already exists; remove it, or choose another name")
         with Progress() as progress:
             search = InverseSearch(
                 options.given, options.timeout, options.explain, fault=trial.fault

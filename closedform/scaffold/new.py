@@ -140,7 +140,8 @@ def new(
     check_name(name)
     if kind == "loop":
         loop = read_loop(path)
-        return Script(loop_script(name, loop, path.name), f"{len(loop.joints)} joints read")
+        text, kind = loop_script(name, loop, path.name)
+        return Script(text, f"{kind}, of {len(loop.joints)} joints")
     if kind == "dh":
         table = read_dh(path, modified=modified)
     elif kind in ("urdf", "mjcf"):

@@ -242,6 +242,20 @@ def test_files_that_are_too_much(
     assert message in refused(tmp_path, kind, text, capsys)
 
 
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ("0, 90°, 0, t\n", "cannot read '90°'; angles are in radians"),
+        ("0, 0, 0, θ1\n", "cannot read 'θ1'; names have Latin letters"),
+        ("0, 0, \u202e1, t\n", r"cannot read '\u202e1'"),
+    ],
+)
+def test_a_cell_is_shown_as_it_was_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], row: str, message: str
+) -> None:
+    assert message in refused(tmp_path, "dh", HEADER + row, capsys)
+
+
 TEXTS = [
     f'"); {OPEN}; ("',
     f"'); {OPEN}; ('",

@@ -140,6 +140,16 @@ class Legs:
 
     def check_all_used(self) -> None:
         """Refuse joints that are part of no leg, and bodies without a joint."""
+        for name, joint in self.loop.joints.items():
+            if (
+                name not in self.used
+                and self.turning
+                and {*joint.between} == {GROUND, self.turning}
+            ):
+                raise self.loop.error(
+                    f"{name} joins {self.turning} to the ground itself; legs are known that carry "
+                    f"a hand, but no joint that holds it on the ground"
+                )
         if left := [name for name in self.loop.joints if name not in self.used]:
             raise self.loop.error(
                 f"no leg contains {listed(left)}; a leg leads from the ground to {self.end} and "

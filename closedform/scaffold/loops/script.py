@@ -37,14 +37,28 @@ FUNCTIONS = {"Rational", "Abs"}
 """What a leg calls of SymPy that begins with a capital letter."""
 
 
-def loop_script(name: str, loop: Loop, origin: str) -> str:
-    """The derivation of a loop, as Python."""
+KINDS = {
+    "parallel": "a hand that does not turn",
+    "platform": "a hand that turns",
+    "tripod": "a hand that lifts and tilts",
+    "guided": "a hand on a passive leg",
+    "on_rod": "a hand on a rod",
+    "coupled": "a single loop",
+    "slotted": "a pin on a line",
+    "linkage": "a linkage of many bars",
+}
+"""What each function derives, in the words of the guide."""
+
+
+def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
+    """The derivation of a loop, as Python, and the kind of the mechanism in words."""
     origin, way, table = file_name(origin), _way(Legs(loop)), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:
             kind = "prismatic" if joint.kind == "prismatic" else "revolute"
             add_joint(table, joint.name, kind, loop.file)
-    return "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
+    text = "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
+    return text, KINDS[way.name]
 
 
 def _way(found: Legs) -> _Way:

@@ -31,6 +31,8 @@ HEADERS = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.h"))
 # A wheel is for AVX-512, AVX2 and the baseline. What is built in place is for the processor at
 # hand, in a third of the time. CLOSEDFORM_DISPATCH=1 builds for all, 0 for the baseline alone.
 DISPATCH = os.environ.get("CLOSEDFORM_DISPATCH", "")
+# CLOSEDFORM_COMPILE=0 installs the NumPy modules alone, where there is no compiler or no patience.
+COMPILED = os.environ.get("CLOSEDFORM_COMPILE", "") != "0"
 LEVELS = {
     "x86-64-v4": "AVX512F AVX512BW AVX512CD AVX512DQ AVX512VL AVX2 BMI2 FMA MOVBE",
     "x86-64-v3": "AVX AVX2 BMI BMI2 F16C FMA LZCNT MOVBE",
@@ -198,5 +200,7 @@ setup(
                 "-ffp-contract=fast",
             ],
         )
-    ],
+    ]
+    if COMPILED
+    else [],
 )

@@ -7,10 +7,16 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.transforms import Affine2D, Bbox, ScaledTranslation
-from mpl_toolkits.mplot3d import proj3d
 from numpy.typing import NDArray
+
+try:  # this file comes first, because it needs none of the others
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+    from matplotlib.transforms import Affine2D, Bbox, ScaledTranslation
+    from mpl_toolkits.mplot3d import proj3d
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        "closedform.plot needs Matplotlib; run: pip install 'closedform[plot]'"
+    ) from error
 
 Array = NDArray[np.float64]
 DIRECTIONS = 16

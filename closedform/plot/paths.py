@@ -85,7 +85,8 @@ def line(robot: ModuleType, n: int, *, params: Any = None) -> Array:
     way[list(places.values())] = [-1 / 6 if i else 1 / 4 for i in range(len(places))]
     for shorter in range(HALVED):
         along = np.linspace(-0.25, 0.25, n) * r.size / 2**shorter
-        targets = (target.reshape(-1) + along[:, None] * way).reshape(n, *target.shape)
+        moved = target.reshape(-1) + along[:, None] * way
+        targets: Array = moved.reshape(n, *target.shape)
         status = r.branches(targets[[0, -1]])[1]
         if (status == OK).all(0).any():
             return targets

@@ -8,17 +8,11 @@ from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
 
-from closedform.plot.robot import AZIMUTH, ELEVATION
-
-try:
-    import matplotlib as mpl
-    from matplotlib import pyplot as plt
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "closedform.plot needs Matplotlib; run: pip install 'closedform[plot]'"
-    ) from error
+import matplotlib as mpl
+from matplotlib import pyplot as plt
 
 from closedform.plot.labels import Layout, drawn_box
+from closedform.plot.robot import AZIMUTH, ELEVATION
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B", "#4D4D4D")
 """Colours that people with any colour vision can tell apart, after Okabe and Ito."""

@@ -86,6 +86,17 @@ assert not heavy, heavy
     )
 
 
+def test_without_a_compiler_the_numpy_modules_are_installed(built: Path, tmp_path: Path) -> None:
+    setup = built / "checkout/setup.py"
+    code = f"import os, runpy, sys; os.chdir({str(setup.parent)!r}); sys.argv[1:] = "
+    code += (
+        f"['--quiet', 'build', '--build-base', {str(tmp_path)!r}]; runpy.run_path({str(setup)!r})"
+    )
+    run("-c", code, CLOSEDFORM_COMPILE="0", CC="/nowhere/cc")
+    assert list(tmp_path.rglob("generated/numpy/planar_2r.py"))
+    assert not [*tmp_path.rglob("*.so"), *tmp_path.rglob("*.o")]
+
+
 def test_the_wheel_holds_everything(installed: Path) -> None:
     assert ROOT is not None
     package = installed / "closedform"

@@ -1,6 +1,8 @@
 """The figures: what is drawn, on which axes, and that files are the same on every run."""
 
 import shutil
+import subprocess
+import sys
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -281,3 +283,9 @@ def test_the_command_draws_a_printed_module(tmp_path: Path) -> None:
         target = tmp_path / f"{what}.svg"
         assert main(["plot", str(tmp_path / "numpy/my_arm.py"), what, "-o", str(target)]) == 0
         assert target.is_file()
+
+
+def test_without_matplotlib_a_message_says_what_to_install() -> None:
+    code = "import sys; sys.modules['matplotlib'] = None; import closedform.plot"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.rstrip().endswith("run: pip install 'closedform[plot]'")

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import sympy as sp
-
 from closedform.emit.backends.latex.article import Page
-from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.backends.latex.formulas import Printer
+from closedform.emit.backends.latex.prose import escape
+from closedform.emit.escape import markdown_text
 from closedform.model.claims import Claim, Erratum
 from closedform.model.derivation import Derivation
 from closedform.model.display import prints
@@ -44,16 +44,17 @@ def _row(equation: tuple[str, str]) -> str:
     return f"{left} &= {right}" if left else rf"&\quad {right}"
 
 
-@prints(Claim)
+@prints(Claim, "markdown")
 def claim(claim: Claim) -> str:
-    """A claim as it is printed, below its label."""
-    return rf"$\textbf{{{escape(claim.label)}}}\text{{: {mixed(claim.text)}}}$"
+    """A claim as it is printed, after its label."""
+    return f"**{markdown_text(claim.label)}:** {_text(claim.text)}"
 
 
-@prints(Erratum)
+@prints(Erratum, "markdown")
 def erratum(erratum: Erratum) -> str:
-    """What is wrong, and why."""
-    return rf"$\textbf{{{mixed(erratum.title)}}}\text{{: {mixed(erratum.why)}}}$"
+    """What is wrong, why, and what follows."""
+    parts = (f"**{_text(erratum.title)}.** {_text(erratum.why)}", _text(erratum.use))
+    return "\n\n".join(parts)
 
 
 @prints(Step, "markdown")
@@ -68,13 +69,14 @@ def step(step: Step) -> str:
 
 @prints(Lemma, "markdown")
 def lemma(lemma: Lemma) -> str:
-    """The equations to which a lemma was applied, and the closed forms that it gave."""
+    """What a lemma says, and the equations to which it was applied."""
     count = "one solution" if lemma.branches == 1 else f"{lemma.branches} solutions"
     return "\n\n".join(
         (
-            f"**Lemma ({lemma.name}).** These equations have {count}:",
-            _aligned([("0", sp.latex(e)) for e in lemma.equations]),
-            _aligned([(sp.latex(x), sp.latex(e)) for x, e in lemma.solution.items()]),
+            f"**Lemma ({lemma.name}).**",
+            f"$$\n{lemma.statement}\n$$",
+            f"It solves these equations, which have {count}:",
+            _aligned([("0", _math(e)) for e in lemma.equations]),
         )
     )
 
@@ -96,4 +98,14 @@ def _math(value: Any) -> str:
     """An expression, a chain of them, or LaTeX as it is."""
     if isinstance(value, (tuple, list)):
         return r",\quad ".join(map(_math, value))
-    return value if isinstance(value, str) else str(sp.latex(value))
+    return value if isinstance(value, str) else str(Printer(set()).doprint(value))
+
+
+def _text(text: str) -> str:
+    """Text with formulas between dollar signs, as Markdown."""
+    parts = text.split("$")
+    for i, part in enumerate(parts):
+        inner = markdown_text(part)
+        before, after = part[: len(part) - len(part.lstrip())], part[len(part.rstrip()) :]
+        parts[i] = f"${part}$" if i % 2 else f"{before}{inner}{after}" if inner else before
+    return "".join(parts)

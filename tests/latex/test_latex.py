@@ -270,10 +270,8 @@ def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
 def test_claims_and_errors_show_themselves_in_a_notebook() -> None:
     claim = Claim("eq. (1)", "{Two} of $x$", lambda *_: Undecidable("a figure"))
     erratum = Erratum("key", "It is $x$", Gravity.RESULT, "Since 5 % are lost.", "Use.")
-    assert claim._repr_latex_() == r"$\textbf{eq. (1)}\text{: Two of $\displaystyle x$}$"
-    assert erratum._repr_latex_() == (
-        r"$\textbf{It is $\displaystyle x$}\text{: Since 5 \% are lost.}$"
-    )
+    assert claim._repr_markdown_() == "**eq. (1):** Two of $x$"
+    assert erratum._repr_markdown_() == "**It is $x$.** Since 5 % are lost.\n\nUse."
 
 
 def test_without_proof_nothing_is_called_proved() -> None:

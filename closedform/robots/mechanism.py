@@ -290,5 +290,11 @@ def _parameters(module: ModuleType, given: Any) -> Any:
     if given is None:
         return module.Parameters()
     if isinstance(given, dict):
+        fields = module.Parameters._fields
+        if unknown := [name for name in given if name not in fields]:
+            raise TypeError(
+                f"{module.__name__.rpartition('.')[2]} has no dimension "
+                f"{' or '.join(map(str, unknown))}; there are {', '.join(fields)}"
+            )
         return module.Parameters(**given)
     return module.Parameters(*given)

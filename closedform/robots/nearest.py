@@ -14,6 +14,7 @@ from closedform.robots.search import Search
 from closedform.robots.selfmotion import SINGULAR, at_seed
 
 OK, UNREACHABLE, INVALID = 0, 1, 3
+STATUSES = ("OK", "UNREACHABLE", "SINGULAR", "INVALID")
 BLOCK = 1000
 """Targets that are compared at once: the arrays of all their branches then stay in the cache."""
 TIE = 1e-9
@@ -34,6 +35,17 @@ class Nearest(NamedTuple):
     branch: NDArray[np.intp]
     distance: Array
     outside: NDArray[np.bool_]
+
+    def __repr__(self) -> str:
+        """A line for one target; the arrays of several."""
+        if np.ndim(self.status):
+            return f"Nearest({', '.join(f'{n}={v!r}' for n, v in self._asdict().items())})"
+        told = f"{self.q.tolist()} {STATUSES[self.status]}"
+        if self.branch >= 0:
+            told += f", branch {self.branch}, distance {self.distance:.6g}"
+        elif lost := np.count_nonzero(self.outside.any(-1)):
+            told += f", branches outside the limits: {lost}"
+        return f"Nearest({told})"
 
 
 class Candidates(NamedTuple):

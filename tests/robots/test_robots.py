@@ -415,3 +415,17 @@ def test_what_does_not_fit_is_refused() -> None:
         Robot(math)
     with pytest.raises(ValueError, match="h6ar has no function jacobian_space"):
         robot("h6ar").jacobian_space(np.zeros(6))
+
+
+def test_what_is_found_is_told_on_a_line() -> None:
+    arm = robots.Robot(closedform.planar_2r, {"l1": 3, "l2": 1}, limits=[[-1, -1], [1, 1]])
+    near = repr(arm.nearest([3.9, 0], [0, 0]))
+    assert near.startswith("Nearest([") and " OK, branch 0, distance " in near
+    far = repr(arm.nearest([-3.5, 0], [0, 0]))
+    assert far == "Nearest([nan, nan] UNREACHABLE, branches outside the limits: 2)"
+    assert "array(" in repr(arm.nearest([[3.5, 0]], [0, 0]))
+
+
+def test_a_dimension_that_is_not_one_is_named() -> None:
+    with pytest.raises(TypeError, match="planar_2r has no dimension l9; there are l1, l2"):
+        robots.Robot(closedform.planar_2r, {"l9": 1})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any, Literal
@@ -12,6 +11,7 @@ from sympy.printing.pretty.pretty import PrettyPrinter
 from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.emit.errata import gathered, part
+from closedform.emit.terminal import decimal, expression, from_latex, mixed
 from closedform.emit.text import citation
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
@@ -54,7 +54,7 @@ def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterato
         yield from _heading("Singular set")
         yield from _wrap(", ".join(derivation.singularities), 2)
     if proof:
-        yield from _findings(derivation, proof)
+        yield from _findings(derivation, proof, pretty)
 
 
 def _head(derivation: Derivation) -> Iterator[str]:
@@ -64,7 +64,7 @@ def _head(derivation: Derivation) -> Iterator[str]:
     yield from _wrap(f"Source: {citation(derivation)}.")
     yield from _heading("Parameters")
     for p in derivation.parameters:
-        yield from _wrap(f"{p.name} = {p.value} {p.unit}: {p.meaning} ({p.source})", 2)
+        yield from _wrap(f"{p.name} = {decimal(p.value)} {p.unit}: {p.meaning} ({p.source})", 2)
     yield from _heading("Joints")
     for j in derivation.joints:
         role = "passive" if j.passive else "actuated" if j.coupling is None else f"= {j.coupling}"
@@ -76,21 +76,22 @@ def _step(number: int, step: Step, *, proved: bool, pretty: bool) -> Iterator[st
     yield from ("", f"{number}. {step.title}{published}")
     yield from textwrap.wrap(step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " ")
     for lhs, value in step.shown:
-        yield from _equation(plain(lhs), value, pretty)
+        yield from _equation(from_latex(lhs, pretty=pretty), value, pretty)
     for row in step.rows:
         yield from _wrap("  |  ".join(map(_cell, row)), 3)
     if step.vanishes and proved:
         yield f"   [identities proved: {len(step.vanishes)}]"
 
 
-def _findings(derivation: Derivation, proof: Proof) -> Iterator[str]:
+def _findings(derivation: Derivation, proof: Proof, pretty: bool) -> Iterator[str]:
     """The errata of the paper, and its claims by verdict."""
     if proof.errata:
         yield from _heading("Errata of the paper")
         for paper in gathered([part(derivation, proof)]):
             for entry in paper.entries:
                 labels = ", ".join(c.label for c in entry.claims)
-                about = f"{entry.erratum.title} ({entry.gravity.value}): {labels}"
+                title = mixed(entry.erratum.title, pretty=pretty)
+                about = f"{title} ({entry.gravity.value}): {labels}"
                 yield from _wrap(f"{entry.number}. {about}", 2)
     if proof.claims:
         yield from _heading("Claims of the paper")
@@ -115,7 +116,7 @@ def _function(derivation: Derivation, function: Function, proof: Proof | None) -
         for a in function.outputs:
             names = inverse.unknowns if inverse else [f"{a.name}{k + 1}" for k in range(a.size)]
             for name, e in zip(names, a.entries, strict=False):
-                yield from _wrap(f"{name} = {_text(e)}", 4)
+                yield from _wrap(f"{name} = {expression(e)}", 4)
     if function.branches and len(function.branches) > 1:
         for label, signs in function.cases():
             yield f"    branch {label}: " + ", ".join(f"{s} = {v:+d}" for s, v in signs.items())
@@ -135,31 +136,27 @@ def _entries(entries: Sequence[sp.Expr]) -> str:
 
 def _statement(statement: Statement) -> str:
     if isinstance(statement, Let):
-        return f"{statement.symbol} = {_text(statement.value)}"
+        return f"{statement.symbol} = {expression(statement.value)}"
     if isinstance(statement, Bound):
-        return f"{statement.symbol} = {statement.value} >= 0: {statement.meaning}"
+        return f"{statement.symbol} = {expression(statement.value)} >= 0: {statement.meaning}"
     if isinstance(statement, Vanishes):
         free = " and ".join(map(str, statement.free))
         effect = f"; then {free} is free" if free else ""
-        return f"{statement.symbol} if {statement.value} = 0: {statement.meaning}{effect}"
+        zero = f"{expression(statement.value)} = 0"
+        return f"{statement.symbol} if {zero}: {statement.meaning}{effect}"
     if isinstance(statement, Determined):
-        small = f"{statement.value} << {statement.scale}"
+        small = f"{expression(statement.value)} << {expression(statement.scale)}"
         return f"{small}: {statement.meaning}; rounded joints do not determine the posture"
     values = (statement.value,) if isinstance(statement, Match) else statement.values
-    return f"{statement.meaning}: " + ", ".join(f"{v} = 0" for v in values)
-
-
-def _text(value: sp.Expr) -> str:
-    """An expression as text; cases are written with "if" and "else"."""
-    if isinstance(value, sp.Piecewise):
-        return ", ".join(f"else {e}" if c == sp.true else f"{e} if {c}" for e, c in value.args)
-    return str(value)
+    return f"{statement.meaning}: " + ", ".join(f"{expression(v)} = 0" for v in values)
 
 
 def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
     """An equation in two dimensions if it fits, else on lines of text; a value may be LaTeX."""
     if isinstance(value, str):
-        return _wrap(f"{lhs} = {value}", 3)
+        return _wrap(f"{lhs} = {from_latex(value, pretty=pretty)}", 3)
+    if isinstance(value, list | tuple):
+        return _wrap(f"{lhs} = ({', '.join(map(expression, value))})", 3)
     before = pretty_use_unicode(pretty)  # roots and brackets depend on this, not on the setting
     try:
         form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(
@@ -181,11 +178,6 @@ def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
             for line in _equation(f"{lhs}[{i + 1},{j + 1}]", value[i, j], pretty)
         ]
     return _wrap(f"{lhs} = {value}", 3)
-
-
-def plain(latex: str) -> str:
-    """The LaTeX of a left-hand side, as text."""
-    return re.sub(r"_?\{(\w+)\}", r"_\1", latex.replace("\\", "")).strip()
 
 
 def _heading(title: str) -> tuple[str, ...]:

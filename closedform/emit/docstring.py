@@ -7,7 +7,6 @@ language is a :class:`Wording`.
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +14,7 @@ from itertools import groupby, pairwise
 
 import sympy as sp
 
+from closedform.emit.text import wrapped
 from closedform.lower.turns import Turns
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Array, Function, Require
@@ -120,9 +120,9 @@ def docstring(
 
 def opening(function: Function, width: int) -> list[str]:
     """The lines of the summary, and the source."""
-    lines = textwrap.wrap(function.summary, width)
+    lines = wrapped(function.summary, width)
     if function.source:
-        lines += ["", *textwrap.wrap(f"Source: {function.source}.", width)]
+        lines += ["", *wrapped(f"Source: {function.source}.", width)]
     return lines
 
 
@@ -133,7 +133,7 @@ def section(title: str, items: Sequence[Item], width: int) -> list[str]:
     lines = ["", title, "-" * len(title)]
     for item in items:
         lines.append(f"{item.name} : {item.kind}" if item.name else item.kind)
-        lines += textwrap.wrap(item.text, width, initial_indent=4 * " ", subsequent_indent=4 * " ")
+        lines += wrapped(item.text, width, 4 * " ", 4 * " ")
     return lines
 
 
@@ -151,7 +151,7 @@ def notes(
     if listed:
         yield from ("", "Notes", "-----")
     for note in listed:
-        yield from textwrap.wrap(note, width, initial_indent="- ", subsequent_indent="  ")
+        yield from wrapped(note, width, "- ", "  ")
 
 
 def _labels_name(derivation: Derivation, function: Function) -> str:

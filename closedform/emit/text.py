@@ -62,7 +62,7 @@ def interface(derivation: Derivation) -> Interface:
     return Interface(
         robot=derivation.name,
         title=derivation.title,
-        mechanism=textwrap.fill(derivation.mechanism, WIDTH),
+        mechanism="\n".join(wrapped(derivation.mechanism, WIDTH)),
         paper=citation(derivation),
         fields=fields,
         joints=repr(tuple(s.name for s in derivation.actuated)),
@@ -73,6 +73,13 @@ def interface(derivation: Derivation) -> Interface:
         functions=tuple(f.name for f in derivation.functions),
         skeleton=derivation.skeleton,
         limits=repr(derivation.limits).replace("inf", "float('inf')") if derivation.limits else "",
+    )
+
+
+def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
+    """Lines of text; a word with a hyphen stays whole, because what joins them adds a space."""
+    return textwrap.wrap(
+        text, width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
     )
 
 
@@ -93,8 +100,8 @@ def banner(derivation: Derivation, lowered: Mapping[str, Lowered], comment: str)
         lines.append(f"  {name}: {describe_operations(program)}")
         if program.common is not None:
             lines.append(f"  {name} where nothing vanishes: {describe_operations(program.common)}")
-    wrapped = [w for line in lines for w in textwrap.wrap(line, WIDTH, subsequent_indent="    ")]
-    return "\n".join(f"{comment} {line}" for line in wrapped)
+    folded = [w for line in lines for w in textwrap.wrap(line, WIDTH, subsequent_indent="    ")]
+    return "\n".join(f"{comment} {line}" for line in folded)
 
 
 def describe_operations(program: Lowered) -> str:

@@ -119,8 +119,8 @@ class Markdown:
 
     def cited(self, keys: str) -> str:
         """Links to the works at the end of the page."""
-        numbers = {key: n for n, key in enumerate(self.works, 1)}
-        links = (f'<a class="cited" href="#work-{k}">{numbers[k]}</a>' for k in keys.split(","))
+        cited = sorted((self.works.index(k) + 1, k) for k in keys.split(","))
+        links = (f'<a class="cited" href="#work-{k}">{n}</a>' for n, k in cited)
         return f"[{', '.join(links)}]"
 
     def display(self, block: Block) -> str:

@@ -7,6 +7,7 @@ import sympy as sp
 
 from closedform.emit.show import show
 from closedform.emit.terminal import decimal, expression, from_latex, mixed
+from closedform.emit.text import wrapped
 from closedform.pipeline import scripts
 
 
@@ -56,3 +57,7 @@ def test_no_latex_is_left_on_the_page_of_a_mechanism(name: str) -> None:
     (source,) = scripts.find([name])
     page = show(scripts.load(source), None)
     assert not re.search(r"\\[a-z]{2}|mathbf|Piecewise", page)
+
+
+def test_a_word_with_a_hyphen_stays_on_its_line() -> None:
+    assert wrapped("It turns counter-clockwise.", 20) == ["It turns", "counter-clockwise."]

@@ -205,3 +205,8 @@ def test_a_page_has_the_verdicts_of_the_article(site, name):
     claims = page[page.find('id="claims-of-the-paper"') :] if told else ""
     shown = Counter(re.findall(r'<span class="verdict [a-z -]+">([a-z ]+)</span>', claims))
     assert shown == +expected
+
+
+def test_works_are_cited_in_the_order_of_their_list() -> None:
+    cited = Markdown({}, ["clavel", "merlet"]).cited("merlet,clavel")
+    assert re.findall(r">(\d)<", cited) == ["1", "2"]

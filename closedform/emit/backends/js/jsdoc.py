@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from math import prod
 
 from closedform.emit.docstring import Item, Wording, inputs_of, notes, opening, results_of
+from closedform.emit.text import wrapped
 from closedform.lower import Lowered
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
@@ -70,7 +70,7 @@ def batch_doc(function: Function, program: Lowered, width: int) -> Iterator[str]
         for r in program.results
     ]
     place = inputs[0][0] if inputs else outputs[0][0]
-    yield from textwrap.wrap(
+    yield from wrapped(
         f"`{function.name}` of n postures, as planes: number k of posture i is at "
         f"`{place}[k * n + i]`.",
         width,
@@ -110,4 +110,4 @@ def _times_n(size: int) -> str:
 
 
 def _tag(tag: str, text: str, width: int) -> list[str]:
-    return textwrap.wrap(f"{tag} {text}".strip(), width, subsequent_indent="    ")
+    return wrapped(f"{tag} {text}".strip(), width, rest="    ")

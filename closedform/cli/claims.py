@@ -33,6 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]:
     """The lines of the report."""
+    from closedform.emit.terminal import mixed
     from closedform.model.claims import HOLDS
     from closedform.proof.claims import judge
 
@@ -50,12 +51,13 @@ def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]
         except Exception as error:  # a check may call anything that its author wrote
             yield f"{claim.label}: {type(error).__name__}: {error}"
             continue
-        yield f"{claim.label}: {result.kind}" + (f": {result.evidence}" if result.evidence else "")
+        evidence = f": {mixed(result.evidence)}" if result.evidence else ""
+        yield f"{claim.label}: {result.kind}{evidence}"
         for reading in result.readings:
-            evidence = f": {reading.evidence}" if reading.evidence else ""
-            yield f"    reading: {reading.text}: {reading.kind}{evidence}"
+            evidence = f": {mixed(reading.evidence)}" if reading.evidence else ""
+            yield f"    reading: {mixed(reading.text)}: {reading.kind}{evidence}"
         if result.corrected:
-            yield f"    holds instead: {result.corrected}"
+            yield f"    holds instead: {mixed(result.corrected)}"
         if not options.mutate:
             continue
         yield from _changed(claim, result.kind in HOLDS)

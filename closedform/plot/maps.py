@@ -34,6 +34,8 @@ WIDE = 30
 """Where a line of a legend is broken, in letters."""
 POLE = 8.0
 """Values beyond this multiple of their median, as beside a parallel singularity, are alike."""
+SIZE, AROUND = (5.2, 4.4), 1.2
+"""The largest figure of a map, and what its labels take of it, in inches."""
 ROUNDS, EDGE = 12, 120
 """How often a window is opened, and the points along its border that are tried."""
 AREA = 2
@@ -83,7 +85,7 @@ def workspace(
     grid = _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
-    ax = new_axes(False) if ax is None else ax
+    ax = _map_axes(grid) if ax is None else ax
     top = len(robot.BRANCHES)
     shown = np.where(reached > 0, reached, np.nan)
     ax.pcolormesh(
@@ -231,7 +233,7 @@ def field(
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
     values, label = _quantity(r, q, mode, function)
-    ax = new_axes(False) if ax is None else ax
+    ax = _map_axes(grid) if ax is None else ax
     high, cut = _highest(values)
     image = ax.pcolormesh(*grid.sides, values, cmap="viridis", vmax=high, rasterized=True)
     beyond = "max" if cut else "neither"
@@ -278,7 +280,7 @@ def singularities(
     """
     r = Robot.of(robot, params, given)
     grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
-    ax = new_axes(False) if ax is None else ax
+    ax = _map_axes(grid) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:
         factors = _factors(r, grid.targets)
@@ -295,6 +297,7 @@ def singularities(
     else:
         q, status = r.branches(grid.targets)
         drawn = {str(s.get_label()): s for s in _singular_curves(ax, r, grid, q, status)}
+    ax.set(xlim=grid.sides[0][[0, -1]], ylim=grid.sides[1][[0, -1]])
     if drawn:
         ax.figure.legend(drawn.values(), drawn.keys(), loc="outside lower center", ncols=1)
     _name(ax, grid)
@@ -494,6 +497,13 @@ def _quantity(
         with np.errstate(invalid="ignore", divide="ignore"):
             return sizes[..., -1] / sizes[..., 0], "inverse condition number of the Jacobian"
     return np.prod(sizes, axis=-1), "manipulability"
+
+
+def _map_axes(grid: _Grid) -> Any:
+    """Axes of a figure that is as low as the section is."""
+    width, height = (float(np.ptp(side)) for side in grid.sides)
+    low = SIZE[1] if grid.joints else AROUND + (SIZE[0] - AROUND) * height / width
+    return new_axes(False, (SIZE[0], min(max(low, 2 * AROUND), SIZE[1])))
 
 
 def _name(ax: Any, grid: _Grid) -> None:

@@ -289,3 +289,9 @@ def test_without_matplotlib_a_message_says_what_to_install() -> None:
     code = "import sys; sys.modules['matplotlib'] = None; import closedform.plot"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr.rstrip().endswith("run: pip install 'closedform[plot]'")
+
+
+def test_a_low_section_has_a_low_figure() -> None:
+    low = plot.singularities(module("scara"), ("x", "z"), resolution=SMALL)
+    square = plot.singularities(module("scara"), ("x", "y"), resolution=SMALL)
+    assert low.figure.get_figheight() < 0.6 * square.figure.get_figheight()

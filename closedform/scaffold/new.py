@@ -141,7 +141,7 @@ def new(
     if kind == "loop":
         loop = read_loop(path)
         text, kind = loop_script(name, loop, path.name)
-        return Script(text, f"{kind}, of {len(loop.joints)} joints")
+        return Script(text, f"{kind}, of {len(loop.joints)} joints", tuple(loop.notes))
     if kind == "dh":
         table = read_dh(path, modified=modified)
     elif kind in ("urdf", "mjcf"):

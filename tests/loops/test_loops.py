@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -487,6 +488,7 @@ def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
         ('hand = "P"', 'hand = "P\\n"', "letters, digits"),
         ('at = "O"', 'at = "U"', "x has no point U, where b1 is"),
         ('length = "L"', "length = -0.5", "must be positive, not -1/2"),
+        ('length = "L"', 'lenght = "L"', "did you mean length?"),
         ('length = "L"\n', 'length = "L"\nQ = [0, 0, 0]\n', "no points, but there is Q"),
         ('["z", "rod3"]', '["rod3", "rod3"]', "between names rod3 twice"),
         ('["rod3", "hand"]', '["rod3", "x"]', "it is joined to rod1 and rod3"),
@@ -536,6 +538,21 @@ c1 = {between = ["piston1", "platform"], at = "C1", kind = "spherical"}
 def test_a_hand_on_a_ball_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="o joins platform to the ground itself"):
         script_of("wrist", BALL, tmp_path)
+
+
+def test_a_revolute_joint_does_not_hold_a_hand_that_turns(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/gough.toml").read_text("utf-8")
+    with pytest.raises(ValueError, match="would hold platform by an axis"):
+        script_of("gough", text.replace('kind = "spherical"', 'kind = "revolute"'), tmp_path)
+
+
+def test_a_length_without_a_value_is_named(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/watt.toml").read_text("utf-8")
+    (tmp_path / "a.toml").write_text(text, "utf-8")
+    assert not new("a", "loop", tmp_path / "a.toml").notes
+    (tmp_path / "a.toml").write_text(re.sub(r"\nr = .*", "", text), "utf-8")
+    (note,) = new("a", "loop", tmp_path / "a.toml").notes
+    assert "no value is given for r, so 1 is taken" in note
 
 
 @pytest.mark.parametrize(

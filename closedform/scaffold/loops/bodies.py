@@ -40,6 +40,7 @@ class Loop:
     """The rods and cranks that are parallelograms, with a vector along their short sides."""
     joints: dict[str, Joint] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
     def of(self, body: str) -> list[Joint]:
         return [j for j in self.joints.values() if body in j.between]

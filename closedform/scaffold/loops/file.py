@@ -28,6 +28,7 @@ points.  :mod:`closedform.scaffold.loops.legs` finds the legs.
 
 from __future__ import annotations
 
+import difflib
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -108,8 +109,12 @@ def _check_names(loop: Loop) -> None:
                 raise loop.error(
                     f"{name} is a coordinate of the hand; give the {kind} another name"
                 )
-    for name in sorted(loop.symbols - set(loop.parameters)):
-        loop.parameters[name] = {}
+    loop.parameters |= {name: {} for name in sorted(loop.symbols - set(loop.parameters))}
+    if untold := [n for n, given in loop.parameters.items() if "value" not in given]:
+        loop.notes.append(
+            f"{loop.file}: no value is given for {', '.join(untold)}, so 1 is taken; write one in "
+            f'[parameters], such as {untold[0]} = {{value = "0.1", meaning = "what it is"}}'
+        )
     for name, given in loop.parameters.items():
         check_variable(name, f"{loop.file}, [parameters]", taken=name in USED)
         check_text(f"{loop.file}: {name}", given.get("meaning", ""), given.get("unit", ""))
@@ -155,7 +160,9 @@ def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
                     [expression(e, f"{where}, {key}") for e in given]
                 )
             else:
-                raise TableError(f"{where}: {key} must be a point, such as [0, 0]")
+                close = difflib.get_close_matches(key, ("length", "parallelogram"))
+                hint = f"; did you mean {close[0]}?" if close else ""
+                raise TableError(f"{where}: {key} must be a point, such as [0, 0]{hint}")
         if name in loop.rods:
             _check_rod(loop.rods[name], points, where)
         loop.bodies[name] = points

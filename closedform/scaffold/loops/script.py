@@ -100,6 +100,7 @@ def _on_legs(found: Legs) -> _Way:
         upright = [] if struts or loop.parallelograms else uprights(found)
         if not upright:
             _check_turning(found, driven, struts)
+        _check_ends(found, fixed=True)
         return _Way(upright or legs, [])
     kept = bool(found.halves) or not (struts or loop.parallelograms)
     if loop.dimensions == 3 and len(legs) == UPRIGHT and kept:
@@ -124,16 +125,19 @@ def _held(loop: Loop) -> list[str]:
     return [rod for rod in loop.rods if rod in loop.parallelograms]
 
 
-def _check_ends(found: Legs) -> None:
-    """Refuse legs in space that hold a hand that may turn by the axis of a revolute joint."""
+def _check_ends(found: Legs, *, fixed: bool = False) -> None:
+    """Refuse legs in space that hold a hand that may turn by the axis of a revolute joint.
+
+    Unless it is ``fixed`` that the hand turns, only where the file gives the axis.
+    """
     loop, body = found.loop, found.turning
     if not body or loop.dimensions == 2:
         return
-    fixed = [j.name for j in loop.of(body) if j.kind == "revolute" and j.axis is not None]
-    if fixed:
+    hinges = [j for j in loop.of(body) if j.kind == "revolute"]
+    if held := [j.name for j in hinges if fixed or j.axis is not None]:
         raise loop.error(
-            f"{listed(fixed)} would hold {body} by an axis; a leg is known to end on a hand that "
-            f"turns in a spherical or a universal joint.  {BY_HAND}"
+            f"{listed(held)} would hold {body} by an axis; a leg is known to end on a hand that "
+            f'turns in a spherical or a universal joint, as in kind = "spherical".  {BY_HAND}'
         )
 
 

@@ -64,8 +64,8 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
     found.upright = None
     if any(off):
         raise loop.error(
-            f"the plane of the leg of {joint.name} has to contain the z axis; put the origin where "
-            f"the planes of the three legs meet"
+            f"the plane of the leg of {joint.name}, which is normal to the axis of {hinged.name}, "
+            f"has to contain the z axis; put the origin where the planes of the three legs meet"
         )
     if leg.place[2] != 0:
         raise loop.error(

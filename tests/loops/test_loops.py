@@ -546,6 +546,13 @@ def test_a_revolute_joint_does_not_hold_a_hand_that_turns(tmp_path: Path) -> Non
         script_of("gough", text.replace('kind = "spherical"', 'kind = "revolute"'), tmp_path)
 
 
+def test_a_script_tells_of_legs_that_are_alike_once(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/gough.toml").read_text("utf-8")
+    told = read_script(script_of("gough", text, tmp_path)).mechanism
+    assert told.count("is the length of a leg") == 1
+    assert told.endswith("The same holds for q2, q3, q4, q5 and q6.")
+
+
 def test_a_length_without_a_value_is_named(tmp_path: Path) -> None:
     text = (TESTS / "held_out_loops/watt.toml").read_text("utf-8")
     (tmp_path / "a.toml").write_text(text, "utf-8")

@@ -260,7 +260,17 @@ class _Way:
         if self.linkage:
             return self.linkage.words
         passive = [self.guide.words] if self.guide else []
-        return "  ".join([*passive, *(f"{_sentence(leg)}." for leg in self.legs)])
+        alike: dict[str, list[LoopLeg]] = {}
+        for leg in self.legs:
+            alike.setdefault(leg.words.removeprefix(f"{leg.joint.name} "), []).append(leg)
+        return "  ".join([*passive, *(_sentences(legs) for legs in alike.values())])
+
+
+def _sentences(legs: Sequence[LoopLeg]) -> str:
+    """What legs are of which the same can be said."""
+    first, *others = legs
+    joints = listed([leg.joint.name for leg in others])
+    return f"{_sentence(first)}." + f"  The same holds for {joints}." * bool(others)
 
 
 def _sentence(leg: LoopLeg) -> str:

@@ -415,6 +415,11 @@ def _find(names: Sequence[str]) -> list[scripts.Source]:
 def _unknown(kind: str, name: str, known: Sequence[str]) -> str:
     if name.endswith(".py"):
         return f"there is no file {name}"
+    if Path(name).is_file():
+        return (
+            f"{name} is not a script; write one from it: closedform new NAME --from KIND {name}, "
+            f"where KIND FILE is one of {parsers.READ}"
+        )
     close = difflib.get_close_matches(name, known)
     hint = f"did you mean {' or '.join(close)}?" if close else f"known: {', '.join(known)}"
     return f"unknown {kind} {name}; {hint}"

@@ -529,3 +529,15 @@ def test_the_commands_for_figures_run(tmp_path: Path, monkeypatch: pytest.Monkey
         program, *arguments = shlex.split(line)
         assert program == "closedform" and main(arguments) == 0
         assert (tmp_path / arguments[-1]).stat().st_size
+
+
+@pytest.mark.parametrize("command", ["derive", "show", "claims"])
+def test_a_table_is_not_a_script(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "crane.csv"
+    table.write_text("a, alpha, d, theta\n", "utf-8")
+    assert main([command, str(table)]) == 2
+    assert "crane.csv is not a script; write one from it: closedform new NAME" in (
+        capsys.readouterr().err
+    )

@@ -93,6 +93,8 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="closedform",
         description="Published mechanisms as proved, fast, closed-form kinematics.",
+        epilog="Begin with: closedform show planar_2r.  Your own arm: closedform new my_arm --from dh "
+        "table.csv, then closedform derive my_arm.py -o out.",
     )
     top.add_argument("--version", action="version", version=f"closedform {__version__}")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
@@ -105,19 +107,20 @@ def parser() -> argparse.ArgumentParser:
         added.set_defaults(command=function)
         return added
 
+    # first what is there, then a mechanism of one's own, then what a checkout is for
     parsers.list_options(command("list", list_command))
     parsers.show_options(command("show", show_command))
+    plot.add_options(command("plot", plot_command))
+    parsers.errata_options(command("errata", errata_command))
+    parsers.new_options(command("new", new_command))
     parsers.derive_options(command("derive", derive_command))
-    parsers.check_options(command("check", check_command))
+    claims.add_options(command("claims", claims_command))
     parsers.verify_options(command("verify", verify_command))
+    parsers.check_options(command("check", check_command))
+    parsers.figures_options(command("figures", figures_command))
     built = command("site", site_command)
     site.add_options(built)
     parsers.jobs_option(built)
-    parsers.new_options(command("new", new_command))
-    claims.add_options(command("claims", claims_command))
-    plot.add_options(command("plot", plot_command))
-    parsers.figures_options(command("figures", figures_command))
-    parsers.errata_options(command("errata", errata_command))
     return top
 
 
@@ -270,7 +273,7 @@ def verify_command(options: argparse.Namespace) -> None:
 
 
 def new_command(options: argparse.Namespace) -> None:
-    """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
+    """Write the derivation of an arm or a closed loop from a table or a file, with an inverse."""
     kind, path = options.table[0], Path(options.table[1])
     if kind not in {given.split()[0] for given in parsers.FILES}:
         raise CommandError(f"--from takes {parsers.READ}, not {kind}", 2)
@@ -328,7 +331,7 @@ def claims_command(options: argparse.Namespace) -> None:
 
 
 def plot_command(options: argparse.Namespace) -> None:
-    """Draw a figure of a generated mechanism."""
+    """Draw a figure of a mechanism, listed or printed by derive."""
     try:
         console.write(plot.draw(options))
     except (ModuleNotFoundError, ValueError) as error:

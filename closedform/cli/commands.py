@@ -93,8 +93,8 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="closedform",
         description="Published mechanisms as proved, fast, closed-form kinematics.",
-        epilog="Begin with: closedform show planar_2r.  Your own arm: closedform new my_arm --from dh "
-        "table.csv, then closedform derive my_arm.py -o out.",
+        epilog="Begin with: closedform show planar_2r.  Your own arm: closedform new my_arm --from "
+        "dh table.csv, then closedform derive my_arm.py -o out.",
     )
     top.add_argument("--version", action="version", version=f"closedform {__version__}")
     commands = top.add_subparsers(required=True, metavar="COMMAND")

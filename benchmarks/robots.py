@@ -42,8 +42,8 @@ The lengths are nominal; compare them with the linked source before you rely on 
 numbers here, so what is proved is proved for these numbers; the derivations `puma560`, `ur_arm`,
 `stanford_arm` and `scara` have the lengths as parameters, and their proofs hold for any lengths. A
 robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
-given is an input of the inverse, and so is an arm angle (`--given arm_angle`). Where short lengths were
-left out (`--ignore`), the row says so; the tool is off by about as much.
+given is an input of the inverse, and so is an arm angle (`--given arm_angle`). If short lengths
+were left out (`--ignore`), the row says so; the tool is off by about as much.
 
 The seconds are those of one core for `closedform new`, which proves the inverse that it proposes,
 and for `closedform derive`, which proves it again, without printing. The nanoseconds are those of

@@ -21,7 +21,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, parts_first, unless, whole
 from closedform.emit.backends.latex.names import is_word, program_name
-from closedform.emit.backends.latex.plain import without_common_factors
+from closedform.emit.backends.latex.plain import divides_by_root, without_common_factors
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
@@ -309,7 +309,7 @@ class Algorithm:
                 found[angle] = y.args[0]
                 continue
             sides = [sp.Mul.make_args(sp.together(side)) for side in angle.args]
-            shared = [p for p in sides[0] if p in sides[1] and _is_below(p, roots)]
+            shared = [p for p in sides[0] if p in sides[1] and divides_by_root(p, roots)]
             if shared:
                 found[angle] = sp.atan2(
                     *(sp.Mul(*s) / sp.Mul(*shared) for s in sides), evaluate=False
@@ -588,12 +588,6 @@ class Algorithm:
         if self.function.has_status:
             return rf"\textsc{{{status}}}"
         return r"\textbf{return} false" if sp.true in self.outputs else "NaN"
-
-
-def _is_below(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool:
-    """Whether a factor divides by a root, or by the name of one."""
-    base, power = factor.as_base_exp()
-    return (power == -1 and base in roots) or (power == -sp.S.Half and base.is_Add)
 
 
 STATUS = {"unless": "unreachable", "invalid": "invalid"}

@@ -444,4 +444,17 @@ def _pairs(
     }
 
 
-__all__ = ["Plain", "angles_of_readers", "is_rounding", "plain", "without_common_factors"]
+def divides_by_root(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool:
+    """Whether a factor divides by a root, or by the name of one."""
+    base, power = factor.as_base_exp()
+    return (power == -1 and base in roots) or (power == -sp.S.Half and base.is_Add)
+
+
+__all__ = [
+    "Plain",
+    "angles_of_readers",
+    "divides_by_root",
+    "is_rounding",
+    "plain",
+    "without_common_factors",
+]

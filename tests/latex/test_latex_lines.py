@@ -226,3 +226,7 @@ def test_a_sum_behind_a_fraction_has_no_name() -> None:
     lines.line_width = 60
     (left, right), (name, _) = lines.equations("v", value)[:2]
     assert right.startswith(r"\frac{\pi}{36} \Bigl(") and name == "u_{1}" and left == "v"
+    context = document(page("irb260").derivation, Proof("irb260", "", (), 0, ()))
+    blocks = [block for step in context["steps"] for block in step["blocks"]]
+    velocity = next(row.right for block in blocks for row in block.rows if row.left == "v_{1}")
+    assert velocity.startswith(r"\frac{\pi}{36} \Bigl(2 l_{3}")

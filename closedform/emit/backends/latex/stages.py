@@ -7,7 +7,6 @@ what the lemma gives, and where the answer is not determined.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
@@ -29,6 +28,7 @@ from closedform.emit.backends.latex.prose import mixed
 from closedform.emit.backends.latex.roles import primed, roles
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet, block, blocks
+from closedform.emit.backends.latex.solving import Solving, solvings
 from closedform.emit.backends.latex.sources import (
     Stated,
     explained,
@@ -36,7 +36,6 @@ from closedform.emit.backends.latex.sources import (
     of_the_target,
 )
 from closedform.emit.backends.latex.wide import Equation
-from closedform.model.derivation import Solved
 from closedform.model.functions import (
     Bound,
     Let,
@@ -44,43 +43,12 @@ from closedform.model.functions import (
     free_symbols,
     substitute,
 )
-from closedform.model.inverse import Inverse, Link, Rank
-from closedform.model.lemma import Lemma
 
 FEW = 4
 """More parts of the target than that are not listed."""
 WIDE = 0.8
 """The part of a line that the left side of an equation may take."""
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
-
-
-@dataclass(frozen=True)
-class Solving:
-    """A lemma applied: its equations, its unknowns, and what it handed on."""
-
-    lemma: Lemma
-    equations: tuple[sp.Expr, ...]
-    unknowns: tuple[sp.Symbol, ...]
-    link: Link | None = None
-
-
-def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
-    """The lemmas of an inverse, in their order."""
-    if isinstance(inverse.glue, Rank) or not solved:
-        return [
-            Solving(link.lemma, link.lemma.equations, tuple(link.lemma.solution), link)
-            for link in inverse.links
-            if link.lemma
-        ]
-    found = []
-    for s in solved:
-        others = {o.unknown for o in solved if o is not s}
-        sought = {*inverse.unknowns, *inverse.passive}
-        joints = [u for u in s.lemma.solution if u in sought and u not in others]
-        unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
-        equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
-        found.append(Solving(s.lemma, equations, unknowns))
-    return found
 
 
 class Stages:

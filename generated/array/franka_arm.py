@@ -16,9 +16,9 @@
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
 offset from the upper arm and from the forearm.  The axes of theta5 and theta6 meet in the
-wrist, and the axis of theta7 is offset from it.  As in the maker's table, the Denavit-
-Hartenberg parameters are modified (Craig's).  At zero angles the arm points upwards and its
-hand downwards.  theta7 is an input of the inverse.
+wrist, and the axis of theta7 is offset from it.  As in the maker's table, the
+Denavit-Hartenberg parameters are modified (Craig's).  At zero angles the arm points upwards and
+its hand downwards.  theta7 is an input of the inverse.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,

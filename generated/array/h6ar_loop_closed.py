@@ -23,9 +23,10 @@
 A waist carries two equal arms of two links, each at the distance d from the mid-plane.  Their
 tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
 move apart, and an actuator for the pitch (theta).  In this model the loop closes: the base line
-of the wrist joins the tips, and the invariant point is its middle.  A virtual arm in the mid-
-plane, bent to the same side as the right arm, reaches that point.  Yaw and roll are measured
-against the virtual fore-arm; as in (9), the right tip goes down if the roll is positive.
+of the wrist joins the tips, and the invariant point is its middle.  A virtual arm in the
+mid-plane, bent to the same side as the right arm, reaches that point.  Yaw and roll are
+measured against the virtual fore-arm; as in (9), the right tip goes down if the roll is
+positive.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,

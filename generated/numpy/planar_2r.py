@@ -17,8 +17,8 @@
 """Planar 2R arm.
 
 Two links of lengths l1 and l2 move in the plane of x and y.  theta1 is the angle of the first
-link against the x axis, theta2 that of the second link against the first; both are counter-
-clockwise.
+link against the x axis, theta2 that of the second link against the first; both are
+counter-clockwise.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.

@@ -1,4 +1,7 @@
-"""Formulas as text for a terminal: LaTeX, and expressions with cases."""
+"""Formulas as text for a terminal: LaTeX, and expressions with cases.
+
+A library such as pylatexenc leaves out the brackets of a numerator: ``a+b/c`` for a fraction of a+b.
+"""
 
 from __future__ import annotations
 

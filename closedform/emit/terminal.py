@@ -1,6 +1,6 @@
 """Formulas as text for a terminal: LaTeX, and expressions with cases.
 
-A library such as pylatexenc leaves out the brackets of a numerator: ``a+b/c`` for a fraction of a+b.
+A library such as pylatexenc leaves out the brackets of a numerator: ``a+b/c`` for ``(a+b)/c``.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.universal import Universal
 from closedform.loops.platform_legs import Platform, counted_degree
 from closedform.scaffold.inputs.tables import TableError
+from closedform.scaffold.new import new
 
 GUIDE = (ROOT / "docs" / "closed-loops.md").read_text("utf-8")
 FILES = {
@@ -244,6 +245,13 @@ def test_a_file_with_other_halves_says_why(
     assert text != FILES["par4"]
     with pytest.raises(TableError, match=message):
         script_of("par4", text, tmp_path)
+
+
+def test_new_says_that_the_hand_stays_upright(tmp_path: Path) -> None:
+    (tmp_path / "par4.toml").write_text(FILES["par4"], "utf-8")
+    script = new("par4", "loop", tmp_path / "par4.toml")
+    assert script.inverse == "a hand that stays upright, of 16 joints"
+    assert "Two parallel bars with vertical pins join the halves of the hand.  " in script.text
 
 
 def test_one_bar_between_the_halves_is_not_enough(tmp_path: Path) -> None:

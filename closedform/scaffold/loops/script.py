@@ -58,7 +58,7 @@ def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
             kind = "prismatic" if joint.kind == "prismatic" else "revolute"
             add_joint(table, joint.name, kind, loop.file)
     text = "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
-    return text, KINDS[way.name]
+    return text, way.kind
 
 
 def _way(found: Legs) -> _Way:
@@ -236,6 +236,12 @@ class _Way:
         return {0: "platform", 1: "coupled"}.get(len(self.task), "parallel")
 
     @property
+    def kind(self) -> str:
+        """The same in words."""
+        upright = self.name == "platform" and len(self.legs) == UPRIGHT
+        return "a hand that stays upright" if upright else KINDS[self.name]
+
+    @property
     def arguments(self) -> list[str]:
         """Those after the derivation and the task."""
         if self.linkage:
@@ -260,6 +266,8 @@ class _Way:
         if self.linkage:
             return self.linkage.words
         passive = [self.guide.words] if self.guide else []
+        if self.legs[0].call.startswith("Half"):
+            passive.append("Two parallel bars with vertical pins join the halves of the hand.")
         alike: dict[str, list[LoopLeg]] = {}
         for leg in self.legs:
             alike.setdefault(leg.words.removeprefix(f"{leg.joint.name} "), []).append(leg)

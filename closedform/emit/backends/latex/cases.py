@@ -27,6 +27,11 @@ class Case:
     status: str = ""
 
 
+def are_free(names: Sequence[str]) -> str:
+    """That joints are free, by what formulas call them."""
+    return f"{listed(names)} {'are' if len(names) > 1 else 'is'} free"
+
+
 class Cases:
     """The special cases of an algorithm."""
 
@@ -35,7 +40,7 @@ class Cases:
 
     def told(self) -> list[Case]:
         """Where the lines above do not apply, and what holds there that the model does not say."""
-        found = []
+        found: dict[tuple[str, str, str], list[str]] = {}
         twins = self.algorithm.twins
         for flag in self.algorithm.flags.values():
             if twins and flag.symbol in twins.second:
@@ -45,11 +50,13 @@ class Cases:
                 effect = [e for e in self._effect(flag) if told is None or e not in told]
                 free = flag.free if told is None else ()
                 if not is_rounding(flag) and (effect or free):
-                    found.append(self._case(flag, effect, free))
+                    names = found.setdefault(self._where(flag, effect), [])
+                    names += [f"${self.page.math(s)}$" for s in free]
+        cases = [self._case(*where, names) for where, names in found.items()]
         for statement in self.algorithm.function.body:
             if isinstance(statement, Determined):
-                found.append(self._determined(statement))
-        return found
+                cases.append(self._determined(statement))
+        return cases
 
     def _told(self, flag: Vanishes) -> list[str] | None:
         """What the algorithms before this one say of a flag that they have."""
@@ -115,20 +122,17 @@ class Cases:
     def entries(self) -> list[sp.Expr]:
         return [e for a in self.algorithm.function.outputs for e in a.entries]
 
-    def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
-        returned = ", ".join(effect)
-        if free:
-            names = listed([f"${self.page.math(s)}$" for s in free])
-            verb = "are" if len(free) > 1 else "is"
-            returned = f"{names} {verb} free" + (f"; {returned}" if returned else "")
+    def _where(self, flag: Vanishes, effect: Sequence[str]) -> tuple[str, str, str]:
+        """The condition of a flag, what it means, and the values that it replaces."""
         value = self.algorithm.full(flag.value)
         value = self.algorithm.quantities.get(value, value)
-        return Case(
-            self.vanishing(value),
-            self.page.prose(flag.meaning),
-            returned,
-            "singular" if free else "",
-        )
+        return self.vanishing(value), self.page.prose(flag.meaning), ", ".join(effect)
+
+    @staticmethod
+    def _case(where: str, meaning: str, effect: str, names: Sequence[str]) -> Case:
+        """A case of one flag, or of several that are the same but for what is free."""
+        freed = f"{are_free(names)}; {effect}".removesuffix("; ") if names else effect
+        return Case(where, meaning, freed, "singular" if names else "")
 
     def vanishing(self, value: sp.Expr) -> str:
         """The condition that a nonnegative value is zero."""
@@ -163,4 +167,4 @@ class Cases:
         return Case(where, meaning, answer, "singular")
 
 
-__all__ = ["Case", "Cases"]
+__all__ = ["Case", "Cases", "are_free"]

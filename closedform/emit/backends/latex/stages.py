@@ -13,7 +13,7 @@ import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.angles import same_angle
-from closedform.emit.backends.latex.cases import Cases
+from closedform.emit.backends.latex.cases import Cases, are_free
 from closedform.emit.backends.latex.equations import (
     Numbered,
     listed,
@@ -159,7 +159,7 @@ class Stages:
             "seen": reference(self.seen.values()),
             "seen_names": listed([f"${n}$" for n in self.seen]) if len(self.seen) <= FEW else "",
             "exists": ", ".join(dict.fromkeys(e for s in step if (e := self.exists(s)))),
-            "degenerate": "; ".join(dict.fromkeys(e for s in step if (e := self.degenerate(s)))),
+            "degenerate": self.degenerate(step),
         }
 
     def numbered(self, solved: Sequence[list[Equation]]) -> tuple[list[Numbered], list[str]]:
@@ -529,17 +529,14 @@ class Stages:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]
         return flat(", ".join(self.algorithm.conditions([b.symbol for b in bounds])))
 
-    def degenerate(self, solving: Solving) -> str:
-        """Where an unknown of the lemma is free."""
-        texts = []
-        for flag in self.freeing(solving):
-            free = listed([f"${self.page.math(s)}$" for s in flag.free])
+    def degenerate(self, step: Sequence[Solving]) -> str:
+        """Where the unknowns of a step are free."""
+        found: dict[str, list[str]] = {}
+        for flag in dict.fromkeys(f for solving in step for f in self.freeing(solving)):
             where = Cases(self.algorithm).vanishing(self.vanishing(flag))
-            texts.append(
-                f"{self.page.prose(flag.meaning)} ({where}): "
-                f"{free} {'are' if len(flag.free) > 1 else 'is'} free"
-            )
-        return "; ".join(texts)
+            names = found.setdefault(f"{self.page.prose(flag.meaning)} ({where})", [])
+            names += [f"${self.page.math(s)}$" for s in flag.free]
+        return "; ".join(f"{where}: {are_free(names)}" for where, names in found.items())
 
     def vanishing(self, flag: Vanishes) -> sp.Expr:
         """What a flag compares with zero, by its name if it has one."""

@@ -99,8 +99,13 @@ class Robot:
 
     @property
     def size(self) -> float:
-        """The sum of the lengths, which is the scale of every figure."""
-        return float(np.sum(np.abs(np.asarray(self.params, dtype=float)))) or 1.0
+        """The sum of the lengths, which is the scale of every figure; 1 on a sphere."""
+        record = self.module.Parameters
+        found = 0.0
+        for name, value in zip(record._fields, self.params, strict=True):
+            if ", in rad" not in (getattr(record, name).__doc__ or ""):
+                found += abs(float(value))
+        return found or 1.0
 
     @property
     def slides(self) -> list[int]:

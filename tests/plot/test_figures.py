@@ -27,7 +27,15 @@ from closedform.derivations.figures import figures as figures_of
 from libraries import FORWARD
 from matplotlib import pyplot as plt
 
-from closedform import hybrid_five_bar, irb260, plot, puma560, ur_arm
+from closedform import (
+    delta,
+    hybrid_five_bar,
+    irb260,
+    plot,
+    puma560,
+    spherical_five_bar,
+    ur_arm,
+)
 from closedform.cli import figures
 from closedform.cli.commands import main
 from closedform.plot import labels
@@ -362,3 +370,10 @@ def test_the_page_says_which_mechanisms_have_no_map() -> None:
         for figure in ("mechanism", "branches", "workspace", "conditioning"):
             assert (f"`{name}`" in lines[figure]) == (figure not in drawn), (name, figure)
     assert "four_bar" in lines["workspace"] and "`hybrid_five_bar` only: " in lines["volume"]
+
+
+def test_the_size_of_a_mechanism_counts_no_angles() -> None:
+    default = delta.Parameters()
+    lengths = [value for name, value in default._asdict().items() if "alpha" not in name]
+    assert Robot(delta, default).size == pytest.approx(sum(lengths))
+    assert Robot(spherical_five_bar, spherical_five_bar.Parameters()).size == 1

@@ -95,6 +95,18 @@ def test_without_a_compiler_the_numpy_modules_are_installed(built: Path, tmp_pat
     run("-c", code, CLOSEDFORM_COMPILE="0", CC="/nowhere/cc")
     assert list(tmp_path.rglob("generated/numpy/planar_2r.py"))
     assert not [*tmp_path.rglob("*.so"), *tmp_path.rglob("*.o")]
+    (package,) = tmp_path.rglob("lib*/closedform")
+    alone(
+        package.parent,
+        """
+try:
+    from closedform.generated.c import planar_2r
+except ImportError as error:
+    assert "take closedform.generated.numpy" in str(error), error
+else:
+    raise AssertionError
+""",
+    )
 
 
 def test_the_wheel_holds_everything(installed: Path) -> None:

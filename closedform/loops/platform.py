@@ -38,7 +38,7 @@ TASK_IN_PLANE = 3
 TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 
 
-def platform(d: Derivation, legs: Sequence[Leg | Half]) -> None:
+def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> None:
     """Derive and export a hand with three legs in a plane, or with four or six in space.
 
     Four legs in space keep the hand upright.  Their rods have universal joints with vertical outer
@@ -59,12 +59,14 @@ def platform(d: Derivation, legs: Sequence[Leg | Half]) -> None:
         with six.  If it has no ``singularities``, they are named after the legs
     legs
         see :mod:`closedform.lemmas.legs`; ``on_hand`` is seen in the frame of the hand
+    bars
+        how many bars join the halves of a hand: two, as in a Par 4, or one, as in an H4
     """
     rails = [leg for leg in legs if isinstance(leg, Rail)]
     if len(rails) == len(legs) == len(d.actuated) == TASK_IN_PLANE:
         on_rails(d, rails)
         return
-    m = Platform(d, tuple(legs))
+    m = Platform(d, tuple(legs), bars)
     upright = len(m.legs) == UPRIGHT
     if upright:
         check_upright(m)
@@ -90,9 +92,10 @@ def _close(m: Platform) -> Step:
     ]
     e, s = letters(m.d, "es")
     columns = ("i", "b", e, *[s] * bool(m.halves), "length of the rod")
+    joined = "a bar joins them" if m.bars == 1 else "two bars join them"
     far = (
-        "The halves of the hand do not turn, and bars join them, which R turns.  The pin of the "
-        f"half that holds rod i is {e} in the frame of the bars, and {s} leads from it to the far "
+        f"The halves of the hand do not turn, and {joined}, which R turns.  The pin of the "
+        f"half that holds rod i is {e} in the frame of that bar, and {s} leads from it to the far "
         f"end of the rod.  The rod keeps the distance of its ends: |p + R*{e} + {s} - b| is its "
         "length."
         if m.halves

@@ -30,10 +30,10 @@ DIGITS = 50
 
 @dataclass(frozen=True)
 class Half:
-    """A leg that ends on one half of a hand of two bodies, as that of a Par 4.
+    """A leg that ends on one half of a hand of two bodies, as that of a Par 4 or an H4.
 
-    Two equal, parallel bars join the halves by pins with vertical axes.  So the bars turn, and the
-    halves keep their direction.  The rod of the ``leg`` is a
+    One bar joins the halves by pins with vertical axes, or two equal, parallel ones.  So the bars
+    turn, and the halves keep their direction.  The rod of the ``leg`` is a
     :class:`~closedform.lemmas.parallelogram.Parallelogram`.  Its ``on_hand`` is the pin, in the
     frame of the bars, as seen from the point that is the hand.  ``offset`` leads from there to the
     end of the rod, and does not turn.
@@ -49,6 +49,8 @@ class Platform:
 
     d: Derivation
     given: tuple[Leg | Half, ...]
+    bars: int = 2
+    """How many bars join the halves of a hand, if it has halves."""
 
     def __post_init__(self) -> None:
         name, n = self.d.name, len(self.legs)
@@ -61,6 +63,8 @@ class Platform:
             if isinstance(leg, Strut):
                 raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
         check_order(self.d, self.legs)
+        if self.bars not in (1, 2):
+            raise ShapeError(f"{name}: one bar joins the halves of a hand, or two")
         if self.halves and n != UPRIGHT:
             raise ShapeError(f"{name}: a hand of two halves has four legs in space")
         if n != UPRIGHT:

@@ -1,7 +1,7 @@
 """What keeps a hand on four legs upright, so that it turns about the z axis alone.
 
 Rods with universal joints do, whose outer axes are vertical.  The hand may also consist of two
-halves, which parallelograms keep from turning, and which bars join that turn.
+halves, which parallelograms keep from turning; one or two bars join them, and turn.
 """
 
 from __future__ import annotations
@@ -26,6 +26,18 @@ from closedform.loops.letters import letters
 from closedform.loops.modes import Exported
 from closedform.loops.platform_legs import Platform
 from closedform.model.step import Step
+
+TWO_BARS = (
+    "Two equal, parallel bars with vertical pins join the halves, so both halves turn with one "
+    "rate, and the bars turn against them about z alone.  So the halves cannot turn, unless all "
+    "normals are in one plane (constraint singularity)."
+)
+ONE_BAR = (
+    "One bar with vertical pins joins the halves, so both tilt with one rate, and each may turn "
+    "about z by itself.  The two parallelograms of a half leave it a turn about the cross product "
+    "of their normals.  So the halves cannot turn, unless the horizontal parts of both cross "
+    "products are parallel (constraint singularity)."
+)
 
 
 def check_upright(m: Platform) -> None:
@@ -65,9 +77,7 @@ def state_upright(m: Platform, loop: Step) -> None:
             loop,
             then="  Each parallelogram takes one freedom of turning from the half that it holds: "
             f"the rate omega with which it turns is at right angles to the normal {normal} of the "
-            "parallelogram.  Two equal, parallel bars with vertical pins join the halves, so both "
-            "halves turn with one rate, and the bars turn against them about z alone.  So the "
-            "halves cannot turn, unless all normals are in one plane (constraint singularity).",
+            f"parallelogram.  {ONE_BAR if m.bars == 1 else TWO_BARS}",
         )
         return
     state_universals(
@@ -85,7 +95,16 @@ def state_upright(m: Platform, loop: Step) -> None:
 def constraint(m: Platform, rods: Sequence[sp.Matrix]) -> Exported:
     """The function whose factors all vanish where the hand can tilt."""
     couples = [leg.rod.couple(rod) for leg, rod in zip(m.legs, rods, strict=True)]
-    if m.halves:
+    if m.bars == 1:
+        first = [k for k, place in enumerate(m.places) if place == m.places[0]]
+        of_halves = first, [k for k in range(len(couples)) if k not in first]
+        left = [couples[i].cross(couples[j]) for i, j in of_halves]
+        factors = [cross_in_plane(*left)]
+        of = "the horizontal parts of two vectors, each the cross product of the normals of the "
+        end = (
+            "parallelograms of a half (unit vector along the bars times the vector along the rods)."
+        )
+    elif m.halves:
         factors = [sp.Matrix.hstack(*some).det() for some in combinations(couples, 3)]
         of = "three normals of the parallelograms (unit vector along the bars times the vector "
         end = "along the rods), for each three of the four legs."

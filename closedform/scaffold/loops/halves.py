@@ -1,4 +1,4 @@
-"""Recognises a hand of two halves, which two parallel bars join, as that of a Par 4."""
+"""Recognises a hand of two halves, which one bar joins, or two parallel ones, as in a Par 4."""
 
 from __future__ import annotations
 
@@ -21,30 +21,28 @@ class Pin:
     on_bar: sp.Matrix
 
 
-def halves(loop: Loop) -> dict[str, Pin]:
-    """The halves of the hand, with their pins on the bar that has the point of the hand.
+def halves(loop: Loop) -> tuple[dict[str, Pin], int]:
+    """The halves of the hand, with their pins on the bar that has its point, and how many bars.
 
-    Empty if the hand is one body.
+    There are none if the hand is one body.
     """
     bars = [body for body, points in loop.bodies.items() if loop.hand in points]
     if loop.dimensions == PAIR or len(bars) != 1:
-        return {}
+        return {}, 0
     (bar,) = bars
     pins = [j for j in loop.of(bar) if j.kind == "revolute" and j.other(bar) not in loop.rods]
     if len(pins) != PAIR or any(j.driven or GROUND in j.between for j in pins):
-        return {}
+        return {}, 0
     found = {j.other(bar): _pin(loop, j, bar) for j in pins}
     second = {
         j.other(half) for half in found for j in loop.of(half) if j.other(half) not in loop.rods
     } - {bar}
-    if len(second) != 1:
-        names = " and ".join(found)
-        raise loop.error(
-            f"{bar}, which has the point {loop.hand}, joins {names}; one more bar has to join them,"
-            f" equal and parallel, so that they do not turn against each other"
-        )
-    _check_parallel(loop, found, bar, *second)
-    return found
+    if len(second) > 1:
+        more = " and ".join(sorted(second))
+        raise loop.error(f"{more} join {' and '.join(found)} beside {bar}; two bars are enough")
+    if second:
+        _check_parallel(loop, found, bar, *second)
+    return found, 1 + len(second)
 
 
 def _pin(loop: Loop, joint: Joint, bar: str) -> Pin:

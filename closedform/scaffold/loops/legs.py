@@ -46,8 +46,8 @@ class Legs:
         """The rod that has the point of the hand, if the hand is not where rods end."""
         self.end = "the hand"
         """What a rod joins a leg to."""
-        self.halves = halves(loop)
-        """The halves of the hand, if it has two."""
+        self.halves, self.bars = halves(loop)
+        """The halves of the hand, if it has two, and the number of bars that join them."""
         self.offset: sp.Matrix | None = None
         """From the pin of a half to the end of a leg, while the leg is written."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None

@@ -104,7 +104,7 @@ def _on_legs(found: Legs) -> _Way:
         return _Way(upright or legs, [])
     kept = bool(found.halves) or not (struts or loop.parallelograms)
     if loop.dimensions == 3 and len(legs) == UPRIGHT and kept:
-        return _Way(legs, [])
+        return _Way(legs, [], bars=found.bars)
     if found.halves:
         raise loop.error(
             f"{len(driven)} joints are driven, but a hand of two halves needs {UPRIGHT}, two on "
@@ -211,7 +211,8 @@ def _beyond(loop: Loop, joint: Joint) -> Joint:
 class _Way:
     """What derives the loop: its legs, its task, and where the second rod ends on the first.
 
-    A linkage has bodies instead of legs.  A passive leg may rule the motion of the hand.
+    A linkage has bodies instead of legs.  A passive leg may rule the motion of the hand, and bars
+    may join its halves.
     """
 
     legs: Sequence[LoopLeg]
@@ -219,6 +220,7 @@ class _Way:
     at: str = ""
     linkage: LinkageLines | None = None
     guide: GuideLine | None = None
+    bars: int = 0
 
     @property
     def name(self) -> str:
@@ -251,7 +253,8 @@ class _Way:
         if self.name in ("coupled", "slotted", "on_rod"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
         first = [f"    {self.guide.call},"] if self.guide else []
-        return [*first, "    [", *(f"        {leg}," for leg in legs), "    ],"]
+        one = ["    bars=1,"] * (self.bars == 1)
+        return [*first, "    [", *(f"        {leg}," for leg in legs), "    ],", *one]
 
     @property
     def parts(self) -> Sequence[str]:
@@ -266,8 +269,12 @@ class _Way:
         if self.linkage:
             return self.linkage.words
         passive = [self.guide.words] if self.guide else []
-        if self.legs[0].call.startswith("Half"):
-            passive.append("Two parallel bars with vertical pins join the halves of the hand.")
+        if self.bars:
+            bars = {
+                1: "One bar with vertical pins joins",
+                2: "Two parallel bars with vertical pins join",
+            }
+            passive.append(f"{bars[self.bars]} the halves of the hand.")
         alike: dict[str, list[LoopLeg]] = {}
         for leg in self.legs:
             alike.setdefault(leg.words.removeprefix(f"{leg.joint.name} "), []).append(leg)

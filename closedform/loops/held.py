@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -188,42 +187,45 @@ def _in_space(m: Hand, loop: Step) -> None:
         f"which it turns is at right angles to the normal {normal} of the parallelogram.  So the "
         "hand cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
-    held = _with(m, Parallelogram)
-    bars = m.as_shown([(k, leg.rod.direction) for k, leg in held])
-    one = INDEX if m.alike else "k"
-    factor, then = _determinant(m, normal), all_three * (len(held) == 3)
-    state_parallelograms(m.d, held, bars, loop, then=then, one=one, vanishing=factor)
+    state_parallelograms(_held_by(m, loop, Parallelogram, normal, all_three))
 
 
-def state_parallelograms(
-    d: Derivation,
-    held: Sequence[tuple[int, Leg]],
-    bars: Sequence[tuple[int | str, sp.Matrix]],
-    loop: Step,
-    *,
-    then: str,
-    one: str = "k",
-    vanishing: Mapping[str, str] = MappingProxyType({}),
-) -> None:
-    """The step on parallelograms in space.
+@dataclass(frozen=True)
+class Held:
+    """Legs that keep a hand from turning, as a step tells of them."""
 
-    Parameters
-    ----------
-    d
-        the derivation
-    held
-        the legs that have them
-    bars
-        the directions of their bars as they are shown
-    loop
-        the step on the loop
-    then
-        what follows for the hand: a sentence
-    one
-        how any of the legs is called
-    vanishing
-        what vanishes where the hand can turn, as an equation
-    """
+    d: Derivation
+    legs: Sequence[tuple[int, Leg]]
+    loop: Step
+    """The step on the loop."""
+    shown: Sequence[tuple[int | str, sp.Matrix]]
+    """The directions of their bars or outer axes as they are shown."""
+    then: str
+    """What follows for the hand: a sentence."""
+    one: str = "k"
+    """How any of the legs is called."""
+    vanishing: Mapping[str, str] = field(default_factory=dict)
+    """What vanishes where the hand can turn, as an equation."""
+
+
+def _held_by(m: Hand, loop: Step, kind: type, letter: str, all_three: str) -> Held:
+    """The legs of a hand with rods of a kind, and what three of them do."""
+    held = _with(m, kind)
+    shown = m.as_shown([(k, leg.rod.direction) for k, leg in held])
+    return Held(
+        d=m.d,
+        legs=held,
+        loop=loop,
+        shown=shown,
+        then=all_three * (len(held) == 3),
+        one=INDEX if m.alike else "k",
+        vanishing=_determinant(m, letter),
+    )
+
+
+def state_parallelograms(by: Held) -> None:
+    """The step on parallelograms in space."""
+    d, held, one = by.d, by.legs, by.one
     any_vectors = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
     first, second, along, rate = any_vectors
     half, difference = real("h"), second - first
@@ -232,7 +234,7 @@ def state_parallelograms(
     of_rods = {sp.sympify(leg.rod, strict=True) for _, leg in held}
     same = next(iter(of_rods)) if len(of_rods) == 1 else sp.S.Zero
     l, squared = (same, same**2) if same.is_Symbol else (letter, f"{letter}^2")
-    d.explain({rf"\mathbf {u}_{k}": "direction of the bars of a leg" for k, _ in bars})
+    d.explain({rf"\mathbf {u}_{k}": "direction of the bars of a leg" for k, _ in by.shown})
     d.explain({rf"\mathbf {n}_{one}": f"normal of the parallelogram of leg {one}"})
     d.step(
         "The parallelograms",
@@ -242,14 +244,14 @@ def state_parallelograms(
         f"the second.  The two rods are {r} + {h}*({v} - {u}) and {r} - {h}*({v} - {u}), and both "
         f"must have this length.  In a parallelogram {v} = {u}, and {r} is as long as a rod, "
         "whatever the width.  The other solutions are left out: the crossed one "
-        f"(antiparallelogram) and twisted ones.{then}",
+        f"(antiparallelogram) and twisted ones.{by.then}",
         {
             rf"\mathbf {r}\cdot(\mathbf {v} - \mathbf {u})": sp.S.Zero,
             rf"|\mathbf {r}|^2 + {h}^2\,|\mathbf {v} - \mathbf {u}|^2": squared,
-            **{rf"\mathbf {u}_{k}": direction for k, direction in bars},
+            **{rf"\mathbf {u}_{k}": direction for k, direction in by.shown},
             rf"\mathbf {n}_{one}": rf"\mathbf {u}_{one}\times\mathbf {r}_{one}",
             rf"\boldsymbol\omega\cdot\mathbf {n}_{one}": sp.S.Zero,
-            **vanishing,
+            **by.vanishing,
         },
         proves=f"The rods fit if and only if the first two equations hold.  At {v} = {u}, the "
         "derivative of the first equation gives the last one.  The bars are unit vectors, "
@@ -263,7 +265,7 @@ def state_parallelograms(
             (along.dot(rate.cross(first)), rate.dot(first.cross(along))),
             *_unit_and_still(held),
         ],
-        uses=[loop],
+        uses=[by.loop],
     )
 
 
@@ -322,51 +324,21 @@ def _by_parallel_axes(m: Hand, loop: Step) -> None:
 
 def _by_axes(m: Hand, loop: Step) -> None:
     """The step on universal joints with parallel axes."""
-    held = _with(m, Universal)
-    axes = m.as_shown([(k, leg.rod.direction) for k, leg in held])
-    one = INDEX if m.alike else "k"
     (part,) = letters(m.d, "m")
     all_three = (
         "  Each leg takes one freedom of turning from the hand: the rate omega with which it turns "
         f"is at right angles to {part}, the part of the rod across the outer axes.  So the hand "
         f"cannot turn, unless the three vectors {part} are in one plane (constraint singularity)."
     )
-    factor, then = _determinant(m, part), all_three * (len(held) == 3)
-    state_universals(m.d, held, axes, loop, then=then, one=one, vanishing=factor)
+    state_universals(_held_by(m, loop, Universal, part, all_three))
 
 
-def state_universals(
-    d: Derivation,
-    held: Sequence[tuple[int, Leg]],
-    axes: Sequence[tuple[int | str, sp.Matrix]],
-    loop: Step,
-    *,
-    then: str,
-    one: str = "k",
-    vanishing: Mapping[str, str] = MappingProxyType({}),
-) -> None:
-    """The step on universal joints with parallel axes.
-
-    Parameters
-    ----------
-    d
-        the derivation
-    held
-        the legs that have them
-    axes
-        the directions of their outer axes as they are shown
-    loop
-        the step on the loop
-    then
-        what follows for the hand: a sentence
-    one
-        how any of the legs is called
-    vanishing
-        what vanishes where the hand can turn, as an equation
-    """
+def state_universals(by: Held) -> None:
+    """The step on universal joints with parallel axes."""
+    d, held, one = by.d, by.legs, by.one
     first, along, rate = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "r", "omega"))
     u, v, r, part = letters(d, "uvrm")
-    d.explain({rf"\mathbf {u}_{k}": "direction of the outer axes of a leg" for k, _ in axes})
+    d.explain({rf"\mathbf {u}_{k}": "direction of the outer axes of a leg" for k, _ in by.shown})
     d.explain({rf"\mathbf {part}_{one}": f"part of the rod of leg {one} across its outer axes"})
     d.step(
         "The universal joints",
@@ -375,14 +347,14 @@ def state_universals(
         "two axes that are fixed to the rod are parallel, and at right angles to the rod, to "
         f"{u} and to {v}.  So {u}, {v} and the vector {r} along the rod are in one plane.  They "
         f"are if {v} = {u}, wherever the hand is.  The other solutions, in which the hand is "
-        f"turned, are left out.{then}",
+        f"turned, are left out.{by.then}",
         {
             rf"(\mathbf {u}\times\mathbf {r})\cdot\mathbf {v}": sp.S.Zero,
-            **{rf"\mathbf {u}_{k}": e for k, e in axes},
+            **{rf"\mathbf {u}_{k}": e for k, e in by.shown},
             rf"\mathbf {part}_{one}": rf"\mathbf {r}_{one} - "
             rf"(\mathbf {u}_{one}\cdot\mathbf {r}_{one})\,\mathbf {u}_{one}",
             rf"\boldsymbol\omega\cdot\mathbf {part}_{one}": sp.S.Zero,
-            **vanishing,
+            **by.vanishing,
         },
         proves=f"At {v} = {u} the first equation holds for any {r}, and its derivative, while the "
         "hand turns and moves in any way, is that of the last one.  The axes are unit vectors, and "
@@ -395,7 +367,7 @@ def state_universals(
             ),
             *_unit_and_still(held),
         ],
-        uses=[loop],
+        uses=[by.loop],
     )
 
 
@@ -441,6 +413,7 @@ __all__ = [
     "LEFT_OUT",
     "TURNED",
     "Bars",
+    "Held",
     "bars_of",
     "check_directions",
     "check_held",

@@ -87,7 +87,13 @@ def _close(m: Platform) -> Step:
     """The step on the loop."""
     ends = zip(m.numbered, m.places, m.offsets, strict=True)
     rows = [
-        (str(k), leg.end().T, place.T, *[offset.T] * bool(m.halves), _rod(leg))
+        (
+            str(k),
+            leg.end().T,
+            place.T,
+            *[offset.T] * bool(m.halves),
+            sp.sympify(leg.rod, strict=True),
+        )
         for (k, leg), place, offset in ends
     ]
     e, s = letters(m.d, "es")
@@ -113,10 +119,6 @@ def _close(m: Platform) -> Step:
     )
 
 
-def _rod(leg: Leg) -> sp.Expr:
-    return sp.sympify(leg.rod, strict=True)
-
-
 def _forward(m: Platform, loop: Step) -> int:
     """The degree of the forward problem, which has no closed form."""
     if m.tilts:
@@ -139,7 +141,6 @@ def _forward(m: Platform, loop: Step) -> int:
 
 def _velocity(m: Platform, loop: Step) -> None:
     d = m.d
-    rows = [rod.col_join(m.moment(arm, rod)).T for arm, rod in zip(m.arms, m.rods, strict=True)]
     rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, m.rods, strict=True)]
     n = m.dimensions
     v, omega = (sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in ("v", "omega"))
@@ -174,7 +175,7 @@ def _velocity(m: Platform, loop: Step) -> None:
             *(
                 pair
                 for leg, rod, row, rate, by, e in zip(
-                    m.legs, m.rods, rows, rates, moved, m.loop, strict=True
+                    m.legs, m.rods, m.rows, rates, moved, m.loop, strict=True
                 )
                 for pair in ((rod.dot(by), (row * twist)[0]), (e.diff(leg.joint), -2 * rate))
             ),

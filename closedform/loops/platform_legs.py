@@ -187,6 +187,12 @@ class Platform:
             for leg, rod in zip(self.legs, self.rods, strict=True)
         )
 
+    @property
+    def rows(self) -> list[sp.Matrix]:
+        """The rows of A: a rod and its moment."""
+        ends = zip(self.arms, self.rods, strict=True)
+        return [rod.col_join(self.moment(arm, rod)).T for arm, rod in ends]
+
     def moment(self, arm: sp.Matrix, force: sp.Matrix) -> sp.Matrix:
         """The moment of a vector at the end of an arm, about the axes of turning."""
         if self.tilts:
@@ -200,8 +206,7 @@ def check_holds(m: Platform) -> None:
     This is tried with 50 digits at a posture and lengths that are drawn at random.
     """
     draw = random.Random(len(m.legs))
-    rows = zip(m.arms, m.rods, strict=True)
-    A = sp.Matrix.vstack(*(rod.col_join(m.moment(arm, rod)).T for arm, rod in rows))
+    A = sp.Matrix.vstack(*m.rows)
     at = {s: sp.Rational(draw.randint(50, 999), 100) for s in sorted(A.free_symbols, key=str)}
     if m.tilts:
         half = hat(sp.Matrix([sp.Rational(draw.randint(50, 999), 100) for _ in "xyz"]))

@@ -18,6 +18,7 @@ from closedform.lemmas.universal import Universal
 from closedform.loops.held import (
     LEFT_OUT,
     TURNED,
+    Held,
     check_directions,
     state_parallelograms,
     state_universals,
@@ -70,26 +71,20 @@ def state_upright(m: Platform, loop: Step) -> None:
     shown = [(k, leg.rod.direction) for k, leg in m.numbered]
     u, normal, part = letters(m.d, "unm")
     if m.halves:
-        state_parallelograms(
-            m.d,
-            m.numbered,
-            shown,
-            loop,
-            then="  Each parallelogram takes one freedom of turning from the half that it holds: "
+        then = (
+            "  Each parallelogram takes one freedom of turning from the half that it holds: "
             f"the rate omega with which it turns is at right angles to the normal {normal} of the "
-            f"parallelogram.  {ONE_BAR if m.bars == 1 else TWO_BARS}",
+            f"parallelogram.  {ONE_BAR if m.bars == 1 else TWO_BARS}"
         )
+        state_parallelograms(Held(m.d, m.numbered, loop, shown, then))
         return
-    state_universals(
-        m.d,
-        m.numbered,
-        shown,
-        loop,
-        then=f"  Here {u} is vertical in all legs, so the hand may turn about z.  Each leg takes "
+    then = (
+        f"  Here {u} is vertical in all legs, so the hand may turn about z.  Each leg takes "
         "one freedom of tilting from it: the rate omega with which it turns is at right angles to "
         f"{part}, the part of the rod across the outer axes, which is horizontal.  So the hand "
-        f"cannot tilt, unless all vectors {part} are parallel (constraint singularity).",
+        f"cannot tilt, unless all vectors {part} are parallel (constraint singularity)."
     )
+    state_universals(Held(m.d, m.numbered, loop, shown, then))
 
 
 def constraint(m: Platform, rods: Sequence[sp.Matrix]) -> Exported:

@@ -27,7 +27,7 @@ def halves(loop: Loop) -> tuple[dict[str, Pin], int]:
     There are none if the hand is one body.
     """
     bars = [body for body, points in loop.bodies.items() if loop.hand in points]
-    if loop.dimensions == PAIR or len(bars) != 1:
+    if loop.dimensions != 3 or len(bars) != 1:
         return {}, 0
     (bar,) = bars
     pins = [j for j in loop.of(bar) if j.kind == "revolute" and j.other(bar) not in loop.rods]

@@ -19,7 +19,7 @@ from sharing import compile_quickly, shared
 from closedform.pipeline.memory import spend_memory
 
 if TYPE_CHECKING:  # most processes that run pytest need no SymPy for it
-    from closedform.check.crosscheck import Finding
+    from closedform.check.finding import Finding
 
 # The same examples on every run: a failure can be repeated, and a build is stable.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -101,7 +101,7 @@ def pytest_terminal_summary(
 ) -> None:
     found = config.stash.get(FINDINGS, [])
     if found:
-        from closedform.check.crosscheck import table
+        from closedform.check.finding import table
 
         terminalreporter.section("worst error of each generated function")
         found.sort(key=lambda f: (f.robot, f.function, f.backend))

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from closedform.check import runners
-from closedform.check.crosscheck import Finding, crosscheck
+from closedform.check.crosscheck import crosscheck
 from closedform.check.failures import UnavailableError
+from closedform.check.finding import Finding
 from closedform.emit.backends import load
 from closedform.emit.escape import markdown_text
 from closedform.model.derivation import Derivation

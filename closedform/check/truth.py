@@ -7,7 +7,7 @@ in Arb.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from typing import Any, TypeVar
 
@@ -203,6 +203,8 @@ class Solutions:
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         self._matches = [_margins(function, given, signs, Match) for _, signs in function.cases()]
+        outputs = [e for a in function.outputs for e in a.entries]
+        self._answers = [_in_case(function, given, signs, outputs) for _, signs in function.cases()]
         required = [e for s in function.body if isinstance(s, Require) for e in s.values]
         self._required = RowEvaluator(given, function.explicit(required, {})[0])
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
@@ -329,6 +331,16 @@ class Solutions:
         )
         return np.where(missed >= -matched, least, np.fmin(least, missed))
 
+    def answers(self, given: Array, parameters: Sequence[float]) -> tuple[Array, Array]:
+        """The answer of each branch and a bound on its error, infinite where nothing is known.
+
+        The branches are the second axis.  All flags are taken as false.
+        """
+        rows = with_parameters(given, parameters)
+        balls = [answer.balls(rows) for answer in self._answers]
+        middle = np.stack([m for m, _ in balls], axis=1)
+        return middle, np.stack([r.max(axis=-1) for _, r in balls], axis=1)
+
     def violation(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
         """How far an input violates its requirement, such as that a matrix is a rotation."""
         missed = self._required.exactly([*map(float, given), *parameters])
@@ -411,29 +423,37 @@ def _margins(
     """The bounds of a branch (or the values of flags and matches) over their scales.
 
     For a match this is minus its size, which is never positive.
-
-    All flags are taken as false, and values that are chosen only where one holds are left out.
     """
-    named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
-    lowered: dict[sp.Basic, sp.Basic] = {}
     margins = []
     for statement in function.body:
-        if isinstance(statement, (Let, Bound)):
-            named[statement.symbol] = substitute(statement.value, lowered)
-        elif isinstance(statement, Vanishes):
-            lowered[statement.symbol] = sp.false
         if isinstance(statement, kind) and isinstance(statement, (Bound, Match, Vanishes)):
             value = -sp.Abs(statement.value) if isinstance(statement, Match) else statement.value
             margin = value / statement.scale
             if isinstance(statement, Vanishes) and statement.squares:
                 margin = sp.sqrt(margin)
-            margins.append(substitute(margin, lowered))
+            margins.append(margin)
+    return _in_case(function, symbols, signs, margins)
+
+
+def _in_case(
+    function: Function,
+    symbols: Sequence[sp.Symbol],
+    signs: Mapping[sp.Symbol, int],
+    exprs: Iterable[sp.Expr],
+) -> RowEvaluator:
+    """Expressions in the names of a function, for one of its cases.
+
+    All flags are taken as false, and values that are chosen only where one holds are left out.
+    """
+    flags = dict.fromkeys(_flags_of(function), sp.false)
+    named = _names(function, signs)
+    chosen = tuple(substitute(e, flags) for e in exprs)
     used: set[sp.Basic] = set()
-    pending = {s for e in margins for s in e.free_symbols}
+    pending = {s for e in chosen for s in e.free_symbols}
     while pending:
         used |= pending
         pending = {s for n in pending & named.keys() for s in named[n].free_symbols} - used
-    return _shared(tuple(symbols), tuple(margins), tuple((n, named[n]) for n in named if n in used))
+    return _shared(tuple(symbols), chosen, tuple((n, named[n]) for n in named if n in used))
 
 
 @lru_cache(KEPT)

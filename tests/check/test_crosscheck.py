@@ -10,46 +10,17 @@ from places import ROOT
 
 from closedform.check import runners
 from closedform.check.clibrary import CLibrary
-from closedform.check.crosscheck import (
-    Backend,
-    Finding,
-    check_boolean,
-    check_forward,
-    check_inverse,
-    crosscheck,
-    float_backend,
-    module_backend,
-)
+from closedform.check.crosscheck import crosscheck
 from closedform.check.failures import UnavailableError
+from closedform.check.finding import Backend, Finding, float_backend, module_backend
+from closedform.check.inverses import check_inverse
+from closedform.check.values import check_boolean, check_forward
 from closedform.emit.backends import load, names
 from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE
+from closedform.pipeline.scripts import sources
 
-ROBOTS = (
-    "agile_wrist",
-    "delta",
-    "five_bar",
-    "four_bar",
-    "franka_arm",
-    "h6ar",
-    "h6ar_loop_closed",
-    "hybrid_five_bar",
-    "irb2400",
-    "irb260",
-    "linear_delta",
-    "opw_arm",
-    "orthoglide",
-    "planar_2r",
-    "puma560",
-    "rpr_planar",
-    "scara",
-    "slider_crank",
-    "spherical_five_bar",
-    "spherical_wrist",
-    "srs_arm",
-    "stanford_arm",
-    "ur_arm",
-)
+ROBOTS = [source.name for source in sources()]
 all_robots = pytest.mark.parametrize("robot", ROBOTS, scope="module")
 """Robot by robot: what is compared with is evaluated once."""
 GENERATED = ROOT / "generated"
@@ -113,7 +84,13 @@ def swapped_sign(solutions):
 
 
 def first_branch_only(solutions):
-    return solutions._replace(q=np.repeat(solutions.q[:, :1], solutions.q.shape[1], axis=1))
+    answers = np.repeat(solutions[0][:, :1], solutions[0].shape[1], axis=1)
+    return solutions._replace(**{solutions._fields[0]: answers})
+
+
+def backwards(solutions):
+    """The right answers, in another order than the names of the branches."""
+    return type(solutions)(*(part[:, ::-1] for part in solutions))
 
 
 def slightly_off(x):
@@ -132,11 +109,15 @@ def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
 
 
+@pytest.mark.parametrize("change", [first_branch_only, backwards])
 @all_robots
-def test_a_missing_branch_is_found(robot: str) -> None:
-    if robot == "rpr_planar":
-        pytest.skip("it has one branch")
-    assert broken(robot, "ik", first_branch_only)
+def test_a_missing_or_misnamed_branch_is_found(robot: str, change) -> None:
+    """Also an assembly mode, where the forward map of a loop has several."""
+    d = derivation(robot)
+    several = [i.function for i in d.inverses if len(list(d[i.function].cases())) > 1]
+    assert several
+    for function in several:
+        assert broken(robot, function, change)
 
 
 def never_singular(solutions):
@@ -153,8 +134,10 @@ def test_an_answer_that_joints_do_not_determine_is_found(robot: str) -> None:
 
 @all_robots
 def test_a_wrong_value_is_found(robot: str) -> None:
-    assert broken(robot, "fk", slightly_off)
-    off = 1e-9 if robot == "hybrid_five_bar" else 1e-13  # long products have a large natural scale
+    first = next(f.name for f in derivation(robot).functions if f.name in ("fk", "hand_pose"))
+    assert broken(robot, first, slightly_off)
+    large = robot in ("hybrid_five_bar", "three_prs")  # long products have a large natural scale
+    off = 1e-9 if large else 1e-13
     square = any(f.name == "determinant" for f in derivation(robot).functions)
     name = "determinant" if square else "jacobian"
     assert broken(robot, name, lambda x: x + off * (1 + np.abs(x)))

@@ -8,7 +8,8 @@ from loop_files import derived, newton, read_script, script_of
 
 from closedform import Derivation, Paper, Rail, plot, real
 from closedform.algebra.shapes import ShapeError
-from closedform.check.crosscheck import crosscheck, module_backend
+from closedform.check.crosscheck import crosscheck
+from closedform.check.finding import module_backend
 from closedform.loops.on_rails import on_rails
 from closedform.robots import Robot
 

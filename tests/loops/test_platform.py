@@ -12,7 +12,9 @@ from places import ROOT
 
 from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
-from closedform.check.crosscheck import Backend, check_forward, crosscheck, module_backend
+from closedform.check.crosscheck import crosscheck
+from closedform.check.finding import Backend, module_backend
+from closedform.check.values import check_forward
 from closedform.loops.platform_legs import Platform, counted_degree
 from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot

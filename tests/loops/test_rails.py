@@ -23,7 +23,8 @@ from closedform import (
     real,
 )
 from closedform.algebra.shapes import ShapeError
-from closedform.check.crosscheck import crosscheck, module_backend
+from closedform.check.crosscheck import crosscheck
+from closedform.check.finding import module_backend
 from closedform.scaffold.inputs.tables import TableError
 from closedform.scaffold.loops.script import DEGREES
 

@@ -15,7 +15,8 @@ from sympy import cos, sin
 from toys import PAPER, TOYS, five_bar, polar_arm
 
 from closedform.check.clibrary import CLibrary
-from closedform.check.crosscheck import Backend, crosscheck, float_backend, module_backend
+from closedform.check.crosscheck import crosscheck
+from closedform.check.finding import Backend, float_backend, module_backend
 from closedform.emit.pages import pages, shared_files
 from closedform.lemmas.triangle import Triangle
 from closedform.model.derivation import Derivation

@@ -13,9 +13,11 @@ from sharing import shared
 from sympy import pi
 
 from closedform import robots
-from closedform.check.crosscheck import check_forward, check_inverse, module_backend
+from closedform.check.finding import module_backend
+from closedform.check.inverses import check_inverse
 from closedform.check.runners.python import module
 from closedform.check.truth import Solutions
+from closedform.check.values import check_forward
 from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove

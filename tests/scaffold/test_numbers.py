@@ -7,9 +7,11 @@ import pytest
 from chains import printed
 
 import closedform.check.crosscheck
-from closedform.check.crosscheck import check_forward, check_inverse, module_backend
+from closedform.check.finding import module_backend
+from closedform.check.inverses import check_inverse
 from closedform.check.runners.python import module
 from closedform.check.samples import Sample
+from closedform.check.values import check_forward
 from closedform.model.derivation import Derivation
 from closedform.pipeline import scripts
 from closedform.proof.prove import prove

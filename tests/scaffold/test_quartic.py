@@ -19,7 +19,8 @@ from sympy import cos, pi, sin
 
 from closedform.algebra.balls import Evaluator, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, enclosed
-from closedform.check.crosscheck import check_inverse, module_backend
+from closedform.check.finding import module_backend
+from closedform.check.inverses import check_inverse
 from closedform.check.rows import RowEvaluator
 from closedform.emit.backends.latex.article import Page
 from closedform.lemmas.chain import Chain

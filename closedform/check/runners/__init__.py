@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from closedform.model.functions import Function
 
 if TYPE_CHECKING:
-    from closedform.check.crosscheck import Backend
+    from closedform.check.finding import Backend
     from closedform.model.derivation import Derivation
 
     Run = Callable[[str, Derivation, Path, Path], Iterator[Backend]]

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.check.crosscheck import Backend
 from closedform.check.failures import UnavailableError
+from closedform.check.finding import Backend
 from closedform.check.runners.python import module
 from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE, FLOAT

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from closedform.check.clibrary import CLibrary, compiler
-from closedform.check.crosscheck import Backend, float_backend
+from closedform.check.finding import Backend, float_backend
 from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE
 

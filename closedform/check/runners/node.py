@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.check.crosscheck import Backend
 from closedform.check.failures import FailedError, UnavailableError
+from closedform.check.finding import Backend
 from closedform.check.runners import shaped
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
-from closedform.check.crosscheck import Backend, module_backend
+from closedform.check.finding import Backend, module_backend
 from closedform.model.derivation import Derivation
 
 _PACKAGE = "_closedform_printed"

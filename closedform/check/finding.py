@@ -1,0 +1,112 @@
+"""What is checked, and what is found: a back end, a finding for each function, and their table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from closedform.check.samples import Sample
+from closedform.model.functions import Function
+from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
+
+MENTIONED = 5
+"""The number of failures of a function that are reported."""
+
+
+@dataclass(frozen=True)
+class Backend:
+    """Generated code under test: its functions by name, its float type and its tolerances."""
+
+    name: str
+    function: Callable[[str], Callable[..., Any]]
+    dtype: type
+    tolerances: Tolerances
+
+    @property
+    def eps(self) -> float:
+        return float(np.finfo(self.dtype).eps)
+
+
+def module_backend(name: str, module: ModuleType) -> Backend:
+    """A generated Python module, NumPy or compiled C."""
+    return Backend(name, lambda function: getattr(module, function), np.float64, DOUBLE)
+
+
+def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
+    """Single-precision C, called through ``call(name)(*inputs, params)``."""
+    return Backend("c float", call, np.float32, FLOAT)
+
+
+@dataclass
+class Finding:
+    """The worst error of one function in one backend, and where; no ``failures`` if it is right."""
+
+    robot: str
+    function: str
+    backend: str
+    unit: str = "ulp"
+    worst: float = 0.0
+    where: str = ""
+    compared: int = 0
+    failures: list[str] = field(default_factory=list)
+
+    @property
+    def full(self) -> bool:
+        """Whether further failures are left out of the report."""
+        return len(self.failures) >= MENTIONED
+
+    def see(self, error: float, where: Callable[[], str]) -> None:
+        if error > self.worst or math.isnan(error):
+            self.worst, self.where = error, where()
+
+    def fail(self, message: str) -> None:
+        if not self.full:
+            self.failures.append(message)
+
+
+def rounded(sample: Sample, backend: Backend) -> Sample:
+    """The sample in the float type of the backend, as doubles."""
+    if backend.dtype is np.float64:
+        return sample
+    with np.errstate(over="ignore", under="ignore"):
+        values = sample.values.astype(backend.dtype).astype(np.float64)
+        parameters = np.asarray(sample.parameters, backend.dtype).astype(np.float64)
+    keep = np.isfinite(values).all(axis=1)
+    return Sample(sample.name, values[keep], tuple(float(p) for p in parameters))
+
+
+def thinned(sample: Sample, entries: int) -> Sample:
+    """Fewer rows for a function with many entries, because each entry is evaluated in Arb."""
+    return Sample(sample.name, sample.values[:: max(1, entries // 12)], sample.parameters)
+
+
+def called(backend: Backend, function: Function, sample: Sample) -> tuple[NDArray[Any], ...]:
+    inputs, column = [], 0
+    for argument in function.inputs:
+        part = sample.values[:, column : column + argument.size]
+        inputs.append(part.reshape((len(part), *argument.shape)))
+        column += argument.size
+    result = backend.function(function.name)(*inputs, sample.parameters)
+    parts = [np.asarray(p) for p in (result if isinstance(result, tuple) else (result,))]
+    if function.has_status:  # the entries of a matrix are the unknowns of a solution
+        answers, status = parts
+        return answers.reshape(*status.shape, -1), status
+    return tuple(parts)
+
+
+def table(findings: Sequence[Finding]) -> Iterator[str]:
+    """The worst errors as lines of text: a row for each function, a column for each backend."""
+    names = list(dict.fromkeys(f.backend for f in findings))
+    rows: dict[tuple[str, str], dict[str, Finding]] = {}
+    for f in findings:
+        rows.setdefault((f"{f.robot}.{f.function}", f.unit), {})[f.backend] = f
+    yield f"{'function':34}{'unit':>16}" + "".join(f"{n:>12}" for n in names)
+    for (name, unit), cells in rows.items():
+        shown = "".join(f"{cells[n].worst:12.2f}" if n in cells else " " * 12 for n in names)
+        yield f"{name:34}{unit:>16}{shown}"

@@ -1,0 +1,284 @@
+"""Compares the answers of an inverse with its equations, bounds, branches and known postures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from closedform.check.finding import Backend, Finding, called, rounded, thinned
+from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
+from closedform.check.singular import singular_samples
+from closedform.check.truth import Solutions, cached, solutions_of
+from closedform.check.values import check_forward
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+from closedform.model.inverse import Inverse
+
+SUSPECTS = 5
+"""The number of worst answers on and near the singular set that are evaluated in Arb."""
+
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
+
+
+_singular_samples = cached(singular_samples)
+
+
+def check_inverse(
+    derivation: Derivation, function: Function, inverse: Inverse, backend: Backend
+) -> Finding:
+    """Put the answers into the exact equations; compare statuses; look for known postures.
+
+    If the inputs are images of the unknowns, they are made from postures, which the inverse must
+    return.  Otherwise (the assembly modes of a loop) the inputs are sampled directly.
+    """
+    finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
+    truth = solutions_of(derivation, function, inverse)
+    if not truth.has_images:
+        if not truth.stated:
+            return check_forward(derivation, function, backend)
+        for sample in joint_samples(derivation, function):
+            posed = rounded(sample, backend)
+            _Batch(finding, truth, backend, posed, exact=True).check(None)
+            _check_branches(finding, truth, backend, posed)
+        return finding
+    answers = len(inverse.unknowns) * len(list(function.cases()))
+    for sample in inverse_postures(derivation, inverse.unknowns):
+        postures = rounded(thinned(sample, answers), backend)
+        images, known_postures = truth.images(postures)
+        if not len(images):
+            continue
+        for values, known in ((images, known_postures), (perturbed(images), None)):
+            posed = rounded(Sample(sample.name, values, sample.parameters), backend)
+            _Batch(finding, truth, backend, posed, exact=known is not None).check(known)
+            if known is not None:
+                _check_branches(finding, truth, backend, posed)
+    for sample in _singular_samples(derivation, inverse.unknowns):
+        _check_round_trips(finding, truth, backend, rounded(sample, backend))
+    return finding
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """A batch of targets whose answers are compared with the exact equations.
+
+    With ``exact`` the targets are images of postures, so they can be reached.
+    """
+
+    finding: Finding
+    truth: Solutions
+    backend: Backend
+    sample: Sample
+    exact: bool
+
+    def check(self, known: NDArray[Any] | None) -> None:
+        """Compare all answers; only what may be wrong, or worse than the worst so far, needs Arb.
+
+        The ``known`` postures must be among the answers.
+        """
+        truth, sample, eps = self.truth, self.sample, self.backend.eps
+        solutions, status = called(self.backend, truth.function, sample)
+        feasibility = self.backend.tolerances.feasibility
+        slack, matched = 2 * feasibility, min(16 * eps, feasibility / 8)
+        limits = (slack, -slack, -16 * eps)
+        margins = truth.margins(sample.values, sample.parameters, *limits, matched=matched)
+        feasible = np.where(abs(margins) > slack, np.sign(margins), 0)
+        wrong = self._suspicious(solutions, status, feasible)
+        for row, branch in np.argwhere(wrong):
+            code, reached = int(status[row, branch]), feasible[row, branch]
+            problem = self._problem(row, solutions[row, branch], code, reached)
+            if problem:
+                self.finding.fail(f"branch {branch} {problem}; {self._where(row)}")
+            wrong[row, branch] = bool(problem)
+            if self.finding.full:
+                return
+        if self.exact and truth.stated:
+            answered = np.argwhere(~wrong & np.isin(status, (OK, SINGULAR)))
+            self._see_residuals(solutions, margins, answered)
+        if known is not None:
+            spread = eps * _spread(sample.parameters)
+            gap = np.fmin.reduce(truth.gap(solutions, known[:, None]), axis=1, initial=np.inf)
+            for row in np.flatnonzero(~(gap <= 1e3 * spread) & ~(status == SINGULAR).any(axis=1)):
+                self._check_known(row, solutions[row], known[row])
+                if self.finding.full:
+                    return
+
+    def _where(self, row: Any) -> str:
+        sample = self.sample
+        return f"{sample.name}: {sample.values[row].tolist()}, parameters {sample.parameters}"
+
+    def _suspicious(
+        self, solutions: NDArray[Any], status: NDArray[Any], feasible: NDArray[Any]
+    ) -> NDArray[np.bool_]:
+        """The answers in which :meth:`_contradiction` finds something."""
+        empty, whole = np.isnan(solutions).all(axis=-1), np.isfinite(solutions).all(axis=-1)
+        with np.errstate(invalid="ignore"):
+            turned = abs(solutions[..., self.truth.angular]) > np.pi * (1 + self.backend.eps)
+        refused = ~empty | ((feasible > 0) & self.exact)
+        accepted = (feasible < 0) | ~whole | turned.any(axis=-1)
+        return np.asarray(np.where(np.isin(status, (UNREACHABLE, INVALID)), refused, accepted))
+
+    def _problem(self, row: Any, solution: NDArray[Any], code: int, feasible: float) -> str:
+        """What is wrong with an answer; empty if nothing is, or if a free joint explains it."""
+        problem = self._contradiction(solution, code, feasible)
+        if problem and feasible < 0 and code in (OK, SINGULAR):
+            # where a joint is free, another turn of it may reach what the generic one does not
+            given, parameters = self.sample.values[row], self.sample.parameters
+            missed = self.truth.residual(solution, given, parameters)
+            allowed = self.backend.tolerances.round_trip + self.truth.violation(given, parameters)
+            return "" if missed <= allowed else problem
+        return problem
+
+    def _contradiction(self, solution: NDArray[Any], code: int, feasible: float) -> str:
+        """What is wrong with a status and its answer; empty if nothing is."""
+        if code in (UNREACHABLE, INVALID):
+            if not np.isnan(solution).all():
+                return f"has status {code} and an answer"
+            return f"has status {code} but can be reached" if feasible > 0 and self.exact else ""
+        # a pin that is free may have a place that the generic one does not have
+        if feasible < 0 and (self.truth.stated or code == OK):
+            return f"has status {code} but is out of reach"
+        angles = solution[self.truth.angular]
+        if not np.isfinite(solution).all() or (abs(angles) > np.pi * (1 + self.backend.eps)).any():
+            return f"has status {code} and the answer {solution.tolist()}"
+        return ""
+
+    def _see_residuals(
+        self, solutions: NDArray[Any], margins: NDArray[Any], answered: NDArray[np.intp]
+    ) -> None:
+        """Record by how much the answers violate the equations."""
+        row, branch = answered.T
+        eps, parameters = self.backend.eps, self.sample.parameters
+        # where it is out of reach, an answer misses by that
+        counted = ~(margins[row, branch] < -16 * eps)
+        self.finding.compared += int(counted.sum())
+        answers, given = solutions[row, branch].astype(float), self.sample.values[row]
+        bounds = self.truth.residual_bounds(answers, given, parameters)
+        allowed = self.backend.tolerances.violated(float(self.truth.amplified(*parameters)))
+        for k in np.argsort(-bounds):
+            worse = counted[k] and bounds[k] > self.finding.worst * eps
+            if not (worse or bounds[k] > allowed):
+                continue
+            residual = self.truth.residual(solutions[row[k], branch[k]], given[k], parameters)
+            where = self._where(row[k])
+            if counted[k]:
+                self.finding.see(residual / eps, lambda: where)  # noqa: B023
+            if not residual <= allowed:
+                self.finding.fail(f"branch {branch[k]} misses by {residual:.3g}; {where}")
+                if self.finding.full:
+                    return
+
+    def _check_known(self, row: Any, solutions: NDArray[Any], posture: NDArray[Any]) -> None:
+        """Check that the posture behind a target is among the branches, unless a joint is free."""
+        truth, backend, parameters = self.truth, self.backend, self.sample.parameters
+        one = Sample(self.sample.name, self.sample.values[row : row + 1], parameters)
+        condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
+        nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
+        if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
+            return
+        if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
+            return
+        allowed = backend.eps * _spread(parameters) / condition
+        if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
+            allowed += _movement(truth, backend, one, solutions)
+        if not nearest <= 1e3 * allowed:
+            self.finding.fail(
+                f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
+            )
+
+
+def _check_branches(finding: Finding, truth: Solutions, backend: Backend, sample: Sample) -> None:
+    """No branch has the answer of another one.
+
+    Only answers are judged that are far from their own branch and on another one, at random
+    postures: near a singular one, rounding may move an answer from one branch to another.
+    """
+    if sample.name != "random" or sum(1 for _ in truth.function.cases()) < 2:
+        return
+    apart = 1e3 * math.sqrt(backend.eps)  # branches that meet differ by the root of a rounding
+    solutions, status = called(backend, truth.function, sample)
+    exact, radius = truth.answers(sample.values, sample.parameters)
+    known = radius < apart
+    gaps = truth.gap(solutions[:, :, None], exact[:, None])
+    own = np.diagonal(gaps, axis1=1, axis2=2)[:, :, None]
+    judged = ((status == OK) & known)[:, :, None] & known[:, None] & (own > apart)
+    for row, branch, other in np.argwhere(judged & (gaps < own / 1e3)):
+        finding.fail(
+            f"branch {branch} has the answer of branch {other}; "
+            f"{sample.name}: {sample.values[row].tolist()}, parameters {sample.parameters}"
+        )
+
+
+def _check_round_trips(
+    finding: Finding, truth: Solutions, backend: Backend, postures: Sample
+) -> None:
+    """The exact forward map takes every answer that is OK to the target.
+
+    Answers that seem to miss by more than half of the tolerance are evaluated in Arb, worst first.
+    """
+    parameters = postures.parameters
+    allowed = backend.tolerances.promised(float(truth.amplified(*parameters)))
+    images = truth.wide_images(postures.values, parameters)
+    targets = np.concatenate(list(images)).astype(float)
+    posed = rounded(
+        Sample(postures.name, targets[np.isfinite(targets).all(axis=-1)], parameters), backend
+    )
+    if not len(posed.values):
+        return
+    solutions, status = called(backend, truth.function, posed)
+    row, branch = np.nonzero(status == OK)
+    answers, given = solutions[row, branch].astype(float), posed.values[row]
+    missed = truth.missed(truth.wide_images(answers, parameters), answers, given, parameters)
+    for k in np.argsort(-missed)[:SUSPECTS]:
+        if missed[k] > allowed / 2:
+            exact = truth.exact_miss(answers[k], given[k], parameters)
+            if not exact <= allowed:
+                finding.fail(
+                    f"branch {branch[k]} is OK, but fk misses by {exact:.3g}; "
+                    f"{posed.name}: {given[k].tolist()}, parameters {parameters}"
+                )
+
+
+def _spread(parameters: Sequence[float]) -> float:
+    """The largest length over the smallest."""
+    sizes = [abs(p) for p in parameters if p]
+    return max(sizes) / min(sizes) if sizes else 1.0
+
+
+def _movement(truth: Solutions, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
+    """How far the answers move when every coordinate of the target moves by an ulp.
+
+    The first rounding may hide a single ulp, so four ulps are tried as well.
+    """
+    largest = 0.0
+    for ulps in (1, 4):
+        nearby = _nearby(backend, sample, ulps)
+        moved = truth.gap(called(backend, truth.function, nearby)[0], solutions) / ulps
+        largest = float(np.max(moved, initial=largest, where=np.isfinite(moved)))
+    return largest
+
+
+def _leaves_the_workspace(truth: Solutions, backend: Backend, sample: Sample) -> bool:
+    """Whether a target an ulp away is out of reach by more than the tolerance in all branches.
+
+    If a large offset is subtracted from a large distance, an ulp of the target moves far inside.
+    """
+    slack = backend.tolerances.feasibility
+    nearby = _nearby(backend, sample).values
+    margins = truth.margins(nearby, sample.parameters, -slack, matched=slack)
+    return bool((margins < -slack).all(axis=1).any())
+
+
+def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
+    """Targets that differ from one target by some ulps in every coordinate."""
+    columns = np.arange(sample.values.shape[1])
+    signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
+    moved = sample.values * (1 + ulps * signs * backend.eps)
+    return Sample(sample.name, moved, sample.parameters)
+
+
+__all__ = ["check_inverse"]

@@ -1,0 +1,218 @@
+"""Compares computed values with the exact ones: numbers in ulps, truth values one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+from numpy.typing import NDArray
+
+from closedform.algebra.balls import Undetermined, to_float
+from closedform.check.finding import Backend, Finding, called, rounded, thinned
+from closedform.check.samples import Sample, joint_samples
+from closedform.check.truth import Values, condition_of, values_of
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+
+WELL_CONDITIONED = 3.0
+"""Larger errors, in ulps, are compared with the change of the value if the inputs change."""
+CUT, TURN, HIGH = 3.0, 2 * math.pi, 200
+"""Angles beyond the first value are next to the cut at pi; a whole turn; bits for adding one."""
+
+NESTED = 64.0
+"""The natural scale is at most this many times the largest value, parameter or numerical length.
+
+(For a product of lengths beside a pose, it is a power of the largest length.)  In a long chain of
+steps the natural scale grows with every step, and would soon allow any error.
+"""
+
+NEAR_POLE = 2.0**-4
+"""What vanishes or ends where assembly modes meet is small below this share of its scale."""
+
+
+def check_forward(derivation: Derivation, function: Function, backend: Backend) -> Finding:
+    """Compare values, in ulps of their natural scale."""
+    finding = Finding(derivation.name, function.name, backend.name)
+    values = values_of(derivation, function)
+    for sample in joint_samples(derivation, function):
+        sample = rounded(thinned(sample, len(values.exprs)), backend)
+        if len(sample.values):
+            outputs = called(backend, function, sample)
+            _compare(finding, values, backend, sample, outputs[: len(function.outputs)])
+    allowed = backend.tolerances.ulps + values.operations * backend.tolerances.ulps_per_operation
+    if not finding.worst <= allowed:
+        finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
+    return finding
+
+
+def _compare(
+    finding: Finding,
+    values: Values,
+    backend: Backend,
+    sample: Sample,
+    outputs: Sequence[NDArray[Any]],
+) -> None:
+    """Record the worst error of a sample; only what may exceed the worst so far needs Arb."""
+    rows = sample.rows
+    computed = np.concatenate([o.reshape(len(rows), -1) for o in outputs], axis=1).astype(float)
+    exists = values.existence(rows, 2 * backend.tolerances.feasibility)
+    exists[values.flagged(rows, 2 * backend.tolerances.vanishing)] = 0
+    for row, k in np.argwhere((exists < 0) & ~np.isnan(computed)):
+        finding.fail(f"a value out of bounds, entry {k} at {rows[row].tolist()}")
+    defined = (exists > 0).any(axis=1)
+    rows, computed, exists = rows[defined], computed[defined], exists[defined]
+    errors = _Errors(values, backend, rows, computed, [abs(p) for p in sample.parameters])
+    bounds = errors.bounds()
+    bounds[exists <= 0] = 0.0
+    finding.compared += int((exists > 0).sum())
+    for place in np.argsort(-bounds, axis=None):
+        row, k = map(int, np.unravel_index(place, bounds.shape))
+        if not bounds[row, k] > finding.worst:
+            break
+        if (error := errors.at(row, k)) is not None:
+            finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
+    finding.compared -= int((exists[[*errors.unsettled]] > 0).sum())
+
+
+class _Errors:
+    """The errors of computed values in ulps of their natural scales, evaluated in Arb on demand."""
+
+    def __init__(
+        self,
+        values: Values,
+        backend: Backend,
+        rows: NDArray[np.float64],
+        computed: NDArray[np.float64],
+        parameters: Sequence[float],
+    ):
+        self.values, self.backend, self.rows, self.computed = values, backend, rows, computed
+        self.lengths = [*parameters, *map(abs, values.lengths)]
+        self.scales = values.scales(rows, backend.dtype)
+        self.powers = values.powers(rows)
+        self.middle, self.radius = values.exact.balls(rows)
+        # an angle just above -pi may be rounded to -pi, which is returned as pi
+        self.turned = values.angles & (computed > CUT) & (self.middle < -CUT)
+        self.unsettled: set[int] = set()
+        self._largest: dict[int, float] = {}
+        self._amplified: dict[int, NDArray[Any]] = {}
+
+    def bounds(self) -> NDArray[np.float64]:
+        """Upper bounds of all errors; infinite where nothing is known."""
+        exact = self.middle + TURN * self.turned
+        with np.errstate(all="ignore"):
+            sizes = np.where(np.isfinite(self.radius), np.maximum(abs(exact) - self.radius, 0), 0)
+            most = NESTED * sizes.max(axis=1, initial=max(self.lengths, default=0.0))
+            most = np.maximum(most[:, None], NESTED * self.powers)
+            size = np.maximum(np.minimum(self.scales, most), sizes)
+            errors = abs(self.computed - exact) + self.radius
+            bounds = errors / _last_places(size, self.backend)
+            bounds[~np.isfinite(bounds)] = np.inf
+            return np.where(np.isfinite(self.scales), bounds, 0.0).astype(float)
+
+    def at(self, row: int, k: int) -> float | None:
+        """The error of an entry; None where Arb cannot settle it, or it means nothing."""
+        if row in self.unsettled:
+            return None
+        try:
+            exacts = self.values.exact.exactly(self.rows[row])
+        except Undetermined:  # whether it is at a pole, where irrational numbers cancel
+            self.unsettled.add(row)
+            return None
+        scale = self._scale(row, k, exacts)
+        exact = _turned(exacts[k]) if self.turned[row, k] else exacts[k]
+        error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED:
+            moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
+            scale += moved / self.backend.eps
+            error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED and self.values.in_modes:
+            scale += self._of_lengths(row, k)
+            error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED and (self.values.beside_pose or self._near_pole(row)):
+            grown = float(self._amplified_scales(row)[k])
+            if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
+                return None
+            error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
+        return error
+
+    def _scale(self, row: int, k: int, exacts: Sequence[arb]) -> float:
+        """The natural scale of an entry, at most :data:`NESTED` times the largest value there."""
+        if row not in self._largest:
+            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
+            self._largest[row] = max([*sizes, *self.lengths], default=1.0)
+        most = NESTED * max(self._largest[row], self.powers[row, k])
+        scale = self.scales[row, k]
+        return float(min(scale, most)) if math.isfinite(scale) else math.inf
+
+    def _near_pole(self, row: int) -> bool:
+        """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""
+        if not self.values.in_modes:
+            return False
+        here = self.rows[row : row + 1]
+        flagged = self.values.flagged(here, NEAR_POLE)[0]
+        return bool(flagged or (self.values.existence(here, NEAR_POLE) == 0).any())
+
+    def _of_lengths(self, row: int, k: int) -> float:
+        """The natural scale with the lengths that cancel, at most the largest length."""
+        named = self.values.named(self.rows[row : row + 1], self.backend.dtype)[0, k]
+        return float(min(named, max(self.lengths, default=named)))
+
+    def _amplified_scales(self, row: int) -> NDArray[Any]:
+        if row not in self._amplified:
+            one = self.rows[row : row + 1]
+            self._amplified[row] = self.values.amplified(one, self.backend.dtype)[0]
+        return self._amplified[row]
+
+
+def _turned(angle: arb) -> arb:
+    with ctx.workprec(HIGH):
+        return angle + 2 * arb.pi()
+
+
+def _last_places(sizes: NDArray[Any], backend: Backend) -> NDArray[Any]:
+    """The units in the last place of numbers of these sizes."""
+    normal = np.maximum(sizes, float(np.finfo(backend.dtype).tiny))
+    return np.asarray(np.maximum(np.ldexp(backend.eps, np.frexp(normal)[1] - 1), 5e-324))
+
+
+def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
+    """Compare truth values with the exact bounds, except within a tolerance of zero.
+
+    A condition in the output itself is compared in Arb as well.
+    """
+    finding = Finding(derivation.name, function.name, backend.name, unit="wrong answers")
+    condition = condition_of(derivation, function)
+    for sample in joint_samples(derivation, function):
+        sample = rounded(sample, backend)
+        (computed,) = called(backend, function, sample)
+        expected, certain = condition(sample.rows, 2 * backend.tolerances.feasibility)
+        finding.compared += int(certain.sum())
+        for row in np.flatnonzero(certain & (computed.astype(bool) != expected)):
+            finding.fail(f"{bool(computed[row])} at {sample.name}: {sample.rows[row].tolist()}")
+    return finding
+
+
+def _variation(
+    values: Values, k: int, row: NDArray[np.float64], exact: arb, backend: Backend
+) -> float:
+    """How far the exact value moves if every input moves by an ulp: far, near a singularity."""
+    nearby = row + np.diag(row * (1 + backend.eps) - row)
+    moved = (abs(to_float(values.exact.exactly(at)[k] - exact)) for at in nearby)
+    return sum(m for m in moved if math.isfinite(m))
+
+
+def _ulps(computed: float, exact: arb, scale: float, backend: Backend) -> float:
+    """The error in units in the last place of the larger of the value and its natural scale."""
+    if not exact.is_finite() or not math.isfinite(scale):
+        return 0.0
+    if not math.isfinite(computed):
+        return math.inf
+    size = max(scale, abs(to_float(exact)), float(np.finfo(backend.dtype).tiny))
+    unit = 2.0 ** math.floor(math.log2(size)) * backend.eps
+    return abs(to_float(exact - arb(computed))) / max(unit, 5e-324)
+
+
+__all__ = ["check_boolean", "check_forward"]

@@ -26,9 +26,8 @@ from closedform.emit.text import describe_operations
 from closedform.model.claims import HOLDS
 from closedform.model.derivation import Derivation
 from closedform.model.step import Step
-from closedform.site import maps, published
+from closedform.site import labels, maps, published
 from closedform.site.graph import rests_on
-from closedform.site.labels import label
 from closedform.site.markup import Markdown, Place, anchor, displayed, fenced, plain
 
 LIVE = "five_bar"
@@ -193,20 +192,19 @@ def info(derivation: Derivation) -> dict[str, Any]:
     return {
         "name": derivation.name,
         "title": derivation.title,
+        "unit": labels.length_unit(derivation),
         "parameters": {
-            p.name: {"label": label(p.name), "meaning": p.meaning, "unit": p.unit}
+            p.name: {
+                **labels.written(derivation, p.name),
+                "meaning": p.meaning,
+                "unit": labels.unit(p.unit),
+            }
             for p in derivation.parameters
         },
-        "joints": {j.name: {"label": label(j.name)} for j in derivation.joints},
-        "task": [label(name) for name in derivation.task],
-        "given": _given(derivation),
+        "joints": {j.name: labels.written(derivation, j.name) for j in derivation.joints},
+        "task": [labels.coordinate(derivation, name) for name in derivation.task],
+        "given": labels.given(derivation),
     }
-
-
-def _given(derivation: Derivation) -> str:
-    """What the inverse takes beside the target, as people write it."""
-    beside = (a for f in derivation.functions if f.name == "ik" for a in f.inputs[1:])
-    return " ".join(label(a.name).replace("_", " ") for a in beside)
 
 
 def unexplored(derivation: Derivation) -> str:

@@ -103,6 +103,7 @@ class Explorer(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         info = json.loads("\n".join(self.content))
         info |= shown(info["name"])
+        info = typeset(info, renderer(self.env.app))
         up = "../" * self.env.docname.count("/")
         data = json.dumps(info, ensure_ascii=False).replace("<", "\\u003c")
         name = html.escape(info["name"])
@@ -130,11 +131,24 @@ def shown(name: str) -> dict[str, Any]:
         "home": [float(v) for v in home],
         "general": [float(v) for v in general],
         "faint": list(found.faint),
+        "about": found.about,
         "mode": found.mode,
     }
     if found.plane:
         answer["plane"] = list(found.plane)
     return answer
+
+
+def typeset(info: Any, render: Renderer) -> Any:
+    """The same with its formulas as MathML."""
+    if isinstance(info, list):
+        return [typeset(part, render) for part in info]
+    if not isinstance(info, dict):
+        return info
+    return {
+        key: render.formula(part) if key == "formula" else typeset(part, render)
+        for key, part in info.items()
+    }
 
 
 class Graph(SphinxDirective):

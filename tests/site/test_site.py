@@ -99,7 +99,7 @@ def test_markup_in_a_text_stays_text():
 
 def test_names_have_their_signs():
     assert [label(n) for n in ("theta2R", "l1", "d3", "L0", "rho1")] == [
-        "θ₂R",
+        "θ₂ᴿ",
         "l₁",
         "d₃",
         "L₀",

@@ -20,15 +20,26 @@ export function group(title, open, ...children) {
 }
 
 /**
- * A slider with a number beside it.
+ * A slider with a number beside it; a formula is shown instead of its label.
  *
- * @returns {{row: HTMLElement, show(value: number): void}}
+ * @returns {{row: HTMLElement, show(value: number): void, call(written: object): void}}
  */
-export function slider({ label, title, min, max, unit, changed }) {
+export function slider({ label, formula, title, min, max, unit, changed }) {
     const id = `explorer-${++count}`;
     const step = "any";
     const range = element("input", { type: "range", id, min, max, step });
-    const number = element("input", { type: "number", step, "aria-label": `${label}, number` });
+    const number = element("input", { type: "number", step });
+    const name = element("label", { for: id });
+    const call = (written) => {
+        name.replaceChildren();
+        if (written.formula) name.innerHTML = written.formula;
+        else name.append(written.label);
+        name.append(written.note ?? "", unit ? element("small", {}, ` ${unit}`) : "");
+        const plain = written.label + (written.note ?? "");
+        range.setAttribute("aria-label", plain);
+        number.setAttribute("aria-label", `${plain}, number`);
+    };
+    call({ label, formula });
     const read = (source) => {
         const value = source.valueAsNumber;
         if (Number.isFinite(value)) changed(value);
@@ -38,12 +49,13 @@ export function slider({ label, title, min, max, unit, changed }) {
     const row = element(
         "div",
         { class: "row", title },
-        element("label", { for: id }, label, unit ? element("small", {}, ` ${unit}`) : ""),
+        name,
         range,
         number,
     );
     return {
         row,
+        call,
         show(value) {
             range.value = String(value);
             if (document.activeElement !== number) number.value = String(Number(value.toPrecision(6)));

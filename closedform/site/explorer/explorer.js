@@ -134,7 +134,7 @@ export class Explorer {
     }
 
     follow() {
-        const points = this.mechanism.points(this.q)[this.mode];
+        const points = this.mechanism.drawn(this.q)[this.mode];
         if (!points) return;
         this.trail.push(points[this.mechanism.hand]);
         if (this.trail.length > TRAIL) this.trail.shift();
@@ -245,7 +245,7 @@ export class Explorer {
     /** Show all of the two postures of the page. */
     fit() {
         const { general, home } = this.mechanism.info;
-        const found = [general, home].flatMap((q) => this.mechanism.points(q)).filter(Boolean);
+        const found = [general, home].flatMap((q) => this.mechanism.drawn(q)).filter(Boolean);
         this.view.fit(found.flat());
     }
 

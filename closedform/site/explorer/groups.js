@@ -10,7 +10,7 @@ import { button, checkbox, choice, element, group, slider } from "./controls.js"
 import { JointPlot } from "./joint-space.js";
 import { UNREACHABLE } from "./mechanism.js";
 import { TransferPlot } from "./transfer.js";
-import { lines, numbers, spoken, status } from "./words.js";
+import { lines, numbers, status } from "./words.js";
 
 const MEASURES = { conditioning: "conditioning (1/κ)", determinant: "determinant of the Jacobian" };
 
@@ -22,7 +22,7 @@ export function branches(explorer) {
         const swatch = element("span", { class: "swatch" });
         swatch.style.background = branchColour(k);
         const choose = button("", () => explorer.choose(k), { class: "branch" });
-        choose.append(swatch, spoken(name), " ", note);
+        choose.append(swatch, m.spoken(name), " ", note);
         return { choose, note };
     });
     const free = slider({
@@ -32,7 +32,7 @@ export function branches(explorer) {
         changed: (value) => explorer.moveFree(value),
     });
     const made = group("Branches", true, ...legend.map((e) => e.choose), free.row);
-    const names = m.modes > 1 && m.robot.ASSEMBLY_MODES.map(spoken);
+    const names = m.modes > 1 && m.robot.ASSEMBLY_MODES.map((name) => m.spoken(name));
     const mode = names && choice("assembly mode", names, explorer.mode, (k) => explorer.chooseMode(k));
     if (mode) made.append(mode.row);
     const show = () => {
@@ -40,7 +40,7 @@ export function branches(explorer) {
         free.row.hidden = explorer.free < 0;
         const name = explorer.free < 0 ? "" : m.label(explorer.free);
         if (name) {
-            free.row.querySelector("label").textContent = `${name}, free`;
+            free.call({ ...m.written(explorer.free), note: ", free" });
             free.show(explorer.q[explorer.free]);
         }
         legend.forEach(({ choose, note }, k) => {
@@ -58,7 +58,7 @@ export function joints(explorer) {
     const m = explorer.mechanism;
     const sliders = m.joints.map((name, k) => {
         return slider({
-            label: m.label(k),
+            ...m.written(k),
             title: name,
             ...rangeOf(m, k),
             changed: (value) => explorer.takeJoints(explorer.q.with(k, value)),
@@ -84,16 +84,18 @@ export function target(explorer) {
         else explorer.takeTarget(x);
     };
     const position = m.places.map((place, k) => ({
-        name: "xyz"[m.axes[k]],
+        label: "xyz"[m.axes[k]],
+        formula: `<math><mi>${"xyz"[m.axes[k]]}</mi></math>`,
+        unit: m.unit,
         min: view.middle[m.axes[k]] - view.radius,
         max: view.middle[m.axes[k]] + view.radius,
         get: (x) => x[place],
         set: (x, v) => x.with(place, v),
     }));
     const rest = m.others.map((o) => ({ ...o, min: -Math.PI, max: Math.PI, unit: "rad" }));
-    const sliders = [...position, ...rest].map(({ name, unit, min, max, get, set }) => {
+    const sliders = [...position, ...rest].map(({ get, set, ...written }) => {
         const changed = (value) => take(set(explorer.x, value));
-        return { get, ...slider({ label: name, unit, min, max, changed }) };
+        return { get, ...slider({ ...written, changed }) };
     });
     if (m.robot.GIVEN !== undefined) sliders.unshift({ get: () => m.given, ...given(explorer) });
     const show = () => {
@@ -108,7 +110,7 @@ function given(explorer) {
     const { joints, robot, info } = explorer.mechanism;
     const joint = joints.indexOf(robot.GIVEN);
     return slider({
-        label: info.given,
+        ...info.given,
         title: `${robot.GIVEN}: the hand stands still`,
         ...rangeOf(explorer.mechanism, joint),
         changed: (value) => explorer.give(value),
@@ -119,7 +121,7 @@ function given(explorer) {
 function rangeOf(m, joint) {
     if (!m.slides[joint]) return { unit: "rad", min: -Math.PI, max: Math.PI };
     const most = 2.5 * Math.max(Math.abs(m.info.general[joint]), Math.abs(m.info.home[joint]), 0.2);
-    return { unit: "", min: 0, max: most };
+    return { unit: m.unit, min: 0, max: most };
 }
 
 /** @param {Explorer} explorer @returns {Group} */
@@ -131,6 +133,7 @@ export function dimensions(explorer) {
         const most = value ? 2 * Math.abs(value) : m.size / 4;
         return slider({
             label: told.label ?? name,
+            formula: told.formula,
             title: told.meaning,
             unit: told.unit,
             min: value < 0 ? -most : 0,

@@ -105,7 +105,7 @@ class Pointers {
 
 /** What is below the pointer: the hand, another point with the joint that moves it, or nothing. */
 function grab({ mechanism: m, view, q, mode }, [px, py]) {
-    const points = m.points(q)[mode];
+    const points = m.drawn(q)[mode];
     if (!points) return NOTHING;
     const far = points.map((p) => {
         const [x, y] = view.project(p);

@@ -1,5 +1,7 @@
 /** What the explorer asks of a generated module, for one set of dimensions. */
 
+import { onSphere } from "./sphere.js";
+
 export const OK = 0;
 export const UNREACHABLE = 1;
 export const SINGULAR = 2;
@@ -19,6 +21,9 @@ function random(seed) {
         return state / 2 ** 32;
     };
 }
+
+/** The distance of two points. */
+export const distance = (a, b) => Math.hypot(...a.map((v, k) => v - b[k]));
 
 export const wrapped = (angle) => Math.atan2(Math.sin(angle), Math.cos(angle));
 
@@ -45,7 +50,7 @@ export class Mechanism {
         const position = positionIn(robot.TASK);
         this.places = position.map(([place]) => place);
         this.axes = position.map(([, axis]) => axis);
-        this.others = others(robot.TASK.map((_, k) => this.coordinate(k)), this.places);
+        this.others = others(robot.TASK.map((_, k) => this.writtenCoordinate(k)), this.places);
         this.flat = this.isFlat();
         this.scales = this.typicalFactors();
     }
@@ -55,15 +60,38 @@ export class Mechanism {
         return lengths.reduce((a, b) => a + b, 0) || 1;
     }
 
-    /** A joint as people write it. */
-    label(k) {
+    /** The unit of lengths, or nothing if the dimensions may have any. */
+    get unit() {
+        return this.info.unit ?? "";
+    }
+
+    /** A joint as people write it: a plain label, and perhaps a formula. */
+    written(k) {
         const name = this.joints[k];
-        return this.info.joints?.[name]?.label ?? name;
+        return this.info.joints?.[name] ?? { label: name };
+    }
+
+    /** A joint in plain text. */
+    label(k) {
+        return this.written(k).label;
     }
 
     /** A coordinate of the task as people write it. */
+    writtenCoordinate(k) {
+        return this.info.task?.[k] ?? { label: this.robot.TASK[k] };
+    }
+
+    /** A coordinate of the task in plain text. */
     coordinate(k) {
-        return this.info.task?.[k] ?? this.robot.TASK[k];
+        return this.writtenCoordinate(k).label;
+    }
+
+    /** A branch or an assembly mode in words: those that are joints are written as joints. */
+    spoken(name) {
+        return name
+            .split("_")
+            .map((word) => this.info.joints?.[word]?.label ?? word)
+            .join(" ");
     }
 
     /** The position of a target in space; 0 along an axis that the task does not have. */
@@ -133,6 +161,18 @@ export class Mechanism {
         });
     }
 
+    /** The points as they are drawn: those of a spherical mechanism are on one sphere. */
+    drawn(q) {
+        const centre = this.names.indexOf(this.info.about);
+        return this.points(q).map((points) => (points && centre >= 0 ? onSphere(points, points[centre]) : points));
+    }
+
+    /** The directions of the axes of the hand, the columns of its rotation, or null if it has none. */
+    handAxes(x) {
+        const width = { 16: 4, 9: 3 }[x.length];
+        return width ? [0, 1, 2].map((j) => [0, 1, 2].map((i) => x[i * width + j])) : null;
+    }
+
     /** The factors that vanish where the mechanism is singular. */
     factors(q, mode) {
         const found = this.robot.singularities(q, this.parameters);
@@ -163,13 +203,13 @@ export class Mechanism {
         return found.q.every(Number.isFinite) ? found.q : null;
     }
 
-    /** The rates of a point of the skeleton with each joint. */
+    /** The rates of a point of the drawing with each joint. */
     rates(q, mode, point) {
-        const here = this.points(q)[mode];
+        const here = this.drawn(q)[mode];
         return q.map((_, k) => {
             const there = [...q];
             there[k] += STEP;
-            const points = this.points(there)[mode];
+            const points = this.drawn(there)[mode];
             if (!here || !points) return [0, 0, 0];
             return points[point].map((v, i) => (v - here[point][i]) / STEP);
         });
@@ -180,11 +220,6 @@ export class Mechanism {
         const far = this.rates(q, mode, point).map((r) => Math.hypot(...r));
         const most = Math.max(...far);
         return far.findLastIndex((v) => v > 0.05 * most && v > 1e-6 * this.size);
-    }
-
-    /** The distance of the hands of two postures, given by their points. */
-    between(a, b) {
-        return Math.hypot(...a[this.hand].map((v, k) => v - b[this.hand][k]));
     }
 
     /** The distance of two postures in the joints, angles across the turn. */
@@ -206,7 +241,7 @@ export class Mechanism {
     extent() {
         const points = [];
         for (const q of [this.info.general, this.info.home, ...this.sample(TRIALS)]) {
-            for (const found of this.points(q)) if (found) points.push(...found);
+            for (const found of this.drawn(q)) if (found) points.push(...found);
         }
         const middle = [0, 1, 2].map((k) => {
             const values = points.map((p) => p[k]).sort((a, b) => a - b);
@@ -238,14 +273,14 @@ function positionIn(task) {
 function others(task, places) {
     if (task.length === 16 || task.length === 9) {
         const width = task.length === 16 ? 4 : 3;
-        return ["roll", "pitch", "yaw"].map((name, k) => ({
-            name,
+        return ["roll", "pitch", "yaw"].map((label, k) => ({
+            label,
             get: (x) => angles(x, width)[k],
             set: (x, value) => turned(x, width, angles(x, width).with(k, value)),
         }));
     }
     const rest = task.map((_, k) => k).filter((k) => !places.includes(k));
-    return rest.map((k) => ({ name: task[k], get: (x) => x[k], set: (x, v) => x.with(k, v) }));
+    return rest.map((k) => ({ ...task[k], get: (x) => x[k], set: (x, v) => x.with(k, v) }));
 }
 
 /** Roll, pitch and yaw of the rotation in a flat array whose rows have so many numbers. */

@@ -1,7 +1,6 @@
 /** Where branches meet, and where a singularity is crossed, while the hand moves. */
 
 import { OK, reaches } from "./mechanism.js";
-import { spoken } from "./words.js";
 
 const BISECTIONS = 30;
 const MEETS = 0.03; // rad, or of the size
@@ -35,9 +34,9 @@ export class Meetings {
         const near = g.map((v, k) => Math.abs(v) / m.scales[k]);
         const factor = crossed >= 0 ? crossed : near.indexOf(Math.min(...near));
         const where = `singular: ${m.robot.SINGULARITIES[factor]}`;
-        const said = other ? `${spoken(own.name)} meets ${spoken(other.name)}, ${where}` : `Crossed, ${where}`;
+        const said = other ? `${m.spoken(own.name)} meets ${m.spoken(other.name)}, ${where}` : `Crossed, ${where}`;
         if (said === this.last) return;
-        this.found.push({ at: m.points(own.q)[own.mode][m.hand], said });
+        this.found.push({ at: m.drawn(own.q)[own.mode][m.hand], said });
         if (this.found.length > KEPT) this.found.shift();
     }
 

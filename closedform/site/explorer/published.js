@@ -1,7 +1,7 @@
 /** What the paper says: postures by its formulas or of its model, beside the right ones. */
 
 import { choice, element, group } from "./controls.js";
-import { OK } from "./mechanism.js";
+import { OK, distance } from "./mechanism.js";
 import { drawPosture } from "./view.js";
 import { short } from "./words.js";
 
@@ -40,9 +40,11 @@ export class Published {
         const found = chosen ? this.ofFormulas(chosen) : explorer.case >= cases.length && model ? this.ofModel() : null;
         this.note.textContent = found?.said ?? "";
         this.link.hidden = !chosen;
-        const { skeleton, info } = explorer.mechanism;
-        if (chosen) this.link.href = `#erratum-${info.name}-${chosen.erratum}`;
-        if (found?.points) drawPosture(view, skeleton, found.points, { ...style, dash: [7, 5], width: 3 });
+        if (chosen) this.link.href = `#erratum-${explorer.mechanism.info.name}-${chosen.erratum}`;
+        if (found?.q) {
+            const { of, q, mode } = found;
+            drawPosture(view, of, of.drawn(q)[mode], { ...style, dash: [7, 5], width: 3 });
+        }
     }
 
     /** The posture by wrong formulas whose hand is nearest to the target. */
@@ -50,23 +52,27 @@ export class Published {
         const { mechanism: m, q, x, mode } = this.explorer;
         const here = m.points(q)[mode];
         const misses = chosen.postures(q, x, m.parameters).map((found) => {
-            const points = m.points(found)[mode];
-            return { points, miss: points && here ? m.between(points, here) : Infinity };
+            const hand = m.points(found)[mode]?.[m.hand];
+            return { q: hand && found, miss: hand && here ? distance(hand, here[m.hand]) : Infinity };
         });
         const best = misses.reduce((a, b) => (b.miss < a.miss ? b : a));
-        const unit = Object.values(m.info.parameters ?? {})[0]?.unit ?? "";
-        const said = Number.isFinite(best.miss)
-            ? `The hand is ${short(best.miss)} ${unit} from the target.`
-            : "The formula has no real value here.";
-        return { points: best.points, said: `${said} Verdict: ${chosen.verdict}.` };
+        const said = Number.isFinite(best.miss) ? this.from(best.miss) : "The formula has no real value here.";
+        return { of: m, q: best.q, mode, said: `${said} Verdict: ${chosen.verdict}.` };
     }
 
     /** The posture of the mechanism as it is published. */
     ofModel() {
+        const { model } = this;
         const { mechanism: m, q, x } = this.explorer;
-        const other = this.model.postures(x).find((p) => p.status === OK);
-        const [points, here] = [other && m.points(other.q)[0], m.points(q)[0]];
-        if (!points) return { points: null, said: "It does not reach the target." };
-        return { points, said: `The hand is ${short(here ? m.between(points, here) : NaN)} from the target.` };
+        const other = model.postures(x).find((p) => p.status === OK);
+        const [points, here] = [other && model.points(other.q)[0], m.points(q)[0]];
+        if (!points) return { said: "It does not reach the target." };
+        const miss = here ? distance(points[model.hand], here[m.hand]) : NaN;
+        return { of: model, q: other.q, mode: 0, said: this.from(miss) };
+    }
+
+    /** How far the hand is from the target, in words. */
+    from(miss) {
+        return `The hand is ${short(miss)} ${this.explorer.mechanism.unit} from the target.`;
     }
 }

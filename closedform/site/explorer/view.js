@@ -1,5 +1,7 @@
 /** Draws postures on a canvas, in the plane or from a direction in space. */
 
+import { arcs } from "./sphere.js";
+
 const [LEAST, MOST] = [0.2, 20]; // of the zoom
 
 export class View {
@@ -139,6 +141,32 @@ export class View {
         c.stroke();
     }
 
+    /** The outline of a sphere. */
+    sphere(centre, radius, colour) {
+        const c = this.context;
+        const [x, y] = this.project(centre);
+        c.strokeStyle = colour;
+        c.lineWidth = 0.7;
+        c.globalAlpha = 0.6;
+        c.beginPath();
+        c.arc(x, y, radius * this.scale, 0, 2 * Math.PI);
+        c.stroke();
+        c.globalAlpha = 1;
+    }
+
+    /** The name of a point: a letter with an index, such as A1, or words, such as joint3. */
+    name(text, [x, y], colour) {
+        const c = this.context;
+        const { letter, index } = /^(?<letter>[A-Z])(?<index>\w+)$/.exec(text)?.groups ?? {};
+        c.fillStyle = colour;
+        c.font = "13px system-ui, sans-serif";
+        c.fillText(letter ?? words(text), x, y);
+        if (!letter) return;
+        const width = c.measureText(letter).width;
+        c.font = "10px system-ui, sans-serif";
+        c.fillText(index, x + width, y + 3);
+    }
+
     dot(p, { colour, fill, radius = 4, alpha = 1, width = 1.8 }) {
         const c = this.context;
         const [x, y] = this.project(p);
@@ -199,18 +227,22 @@ export class View {
     }
 }
 
+/** The name of a point in words: joint 3 for joint3. */
+const words = (name) => name.replaceAll("_", " ").replace(/(?<=[a-z]{2})(?=\d)/, " ");
+
 /**
  * A posture: ground, links, slides, joints and the hand.
  *
  * @param {View} view
- * @param {any} skeleton the constant of the module
- * @param {number[][]} points
+ * @param {import("./mechanism.js").Mechanism} mechanism
+ * @param {number[][]} points as the mechanism is drawn
  */
-export function drawPosture(view, skeleton, points, style) {
-    const { colour, ground, paper, width = 4, alpha = 1, faint = [], dash = [], bare = false } = style;
+export function drawPosture(view, { skeleton, info }, points, style) {
+    const { colour, ground, paper, width = 4, alpha = 1, dash = [], bare = false } = style;
+    const faint = info.faint ?? [];
     const place = (name) => points[skeleton.points.indexOf(name)];
     const links = Object.entries(skeleton.links).map(([name, path]) => {
-        const own = path.map(place);
+        const own = info.about ? arcs(path.map(place), place(info.about)) : path.map(place);
         const depth = own.reduce((sum, p) => sum + view.project(p)[2], 0) / own.length;
         return { name, path, own, depth };
     });

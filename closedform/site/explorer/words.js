@@ -2,8 +2,6 @@
 
 import { INVALID, OK, SINGULAR, UNREACHABLE } from "./mechanism.js";
 
-export const spoken = (name) => name.replaceAll("_", " ");
-
 /** A number as people read it. */
 export function short(value) {
     return Number.isFinite(value) ? String(Number(value.toPrecision(6))) : "none";
@@ -25,7 +23,7 @@ export function sentence({ mechanism: m, x, found, branch, free, reached, meetin
     const hand = m.places.map((k) => short(x[k])).join(", ");
     const where = m.places.length ? `Hand at (${hand}). ` : "";
     const own = found[branch];
-    return `${where}${spoken(own.name)}: ${status(own, free < 0 ? "" : m.label(free))}.${met}`;
+    return `${where}${m.spoken(own.name)}: ${status(own, free < 0 ? "" : m.label(free))}.${met}`;
 }
 
 /** All numbers of what is seen, as JSON. */

@@ -1,4 +1,4 @@
-"""closedform: published mechanisms as proved, fast, closed-form kinematics.
+"""closedform: proved closed-form kinematics of published mechanisms.
 
 The NumPy module of a mechanism is an attribute, ``closedform.puma560``; the same module is
 ``closedform.generated.numpy.puma560``, and ``closedform.generated.c.puma560`` is the compiled one.

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def names(module: ModuleType) -> list[str]:
-    """The inputs of the inverse beside the target."""
+    """The inputs of the inverse besides the target."""
     inputs = list(inspect.signature(module.ik).parameters)
     return inputs[1 : inputs.index("params")]
 

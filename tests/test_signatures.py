@@ -1,12 +1,15 @@
 """Calls that can be read: few arguments by position, and where they are many, each is described."""
 
 import ast
+import inspect
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from places import ROOT
+
+from closedform import Chain
 
 MOST = 5
 PACKAGE = ("closedform", "derivations")
@@ -199,3 +202,7 @@ def documented(rows: str, names: str = "a, b, c, d, *, e, f") -> str:
 )  # fmt: skip
 def test_descriptions_are_found(text: str, missing: list[str]) -> None:
     assert [line.rpartition(" ")[2] for line in undocumented(text)] == missing
+
+
+def test_help_on_a_chain_shows_only_what_an_author_gives() -> None:
+    assert list(inspect.signature(Chain).parameters) == ["d", "forward", "angles", "name"]

@@ -169,7 +169,10 @@ class _System:
         }
         missing = self._unknowns - set(plain) - set(self._circles)
         if missing:
-            raise InfinitelyManyError(f"{sorted(missing, key=str)} not in the equations: free")
+            raise InfinitelyManyError(
+                f"{', '.join(sorted(map(str, missing)))}: no equation contains this unknown, "
+                f"so it is free"
+            )
         self.polynomials = [numerator for numerator, _ in fractions[: len(equations)]]
         self.polynomials += [s**2 + c**2 - 1 for s, c in self._circles.values()]
         nonzero = [numerator for numerator, _ in fractions[len(equations) :]]
@@ -233,7 +236,10 @@ class _System:
     def _algebraic(self, f: Expr) -> Expr:
         angle = f.args[0]
         if not angle.is_Symbol:
-            raise ValueError(f"{f}: use an angle so that all angles are integer multiples of it")
+            raise ValueError(
+                f"{f}: each angle must be an integer multiple of one symbol; "
+                f"make that angle a symbol"
+            )
         if angle in self._unknowns:
             if angle not in self._circles:
                 self._circles[angle] = (sp.Dummy(f"s_{angle}"), sp.Dummy(f"c_{angle}"))
@@ -301,7 +307,9 @@ def _standard_monomials(basis: Sequence[PolyElement], ring: PolyRing) -> list[Mo
     ]
     if None in bounds:
         free = ring.symbols[bounds.index(None)]
-        raise InfinitelyManyError(f"the basis has no pure power of {free}")
+        raise InfinitelyManyError(
+            f"the equations leave {free} free, so there are infinitely many solutions"
+        )
     candidates = product(*(range(bound) for bound in bounds if bound is not None))
     return [m for m in candidates if not any(_divides(lead, m) for lead in leading)]
 

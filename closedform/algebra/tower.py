@@ -269,7 +269,10 @@ class Tower:
         direction, unit = self._direction(atom)
         n, halvings = int(q.p), int(q.q).bit_length() - 1
         if q.q != 1 << halvings:
-            raise Undecided(f"{q} times {atom}: only halves, quarters, ... are algebraic squares")
+            raise Undecided(
+                f"{q} times {atom}: an inverse function can be halved, "
+                f"but not divided by another number"
+            )
         norm = self._add(
             self._mul(direction.cos, direction.cos), self._mul(direction.sin, direction.sin)
         )

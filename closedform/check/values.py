@@ -25,7 +25,7 @@ CUT, TURN, HIGH = 3.0, 2 * math.pi, 200
 NESTED = 64.0
 """The natural scale is at most this many times the largest value, parameter or numerical length.
 
-(For a product of lengths beside a pose, it is a power of the largest length.)  In a long chain of
+(For a product of lengths besides a pose, it is a power of the largest length.)  In a long chain of
 steps the natural scale grows with every step, and would soon allow any error.
 """
 

@@ -92,7 +92,7 @@ def parser() -> argparse.ArgumentParser:
     """The commands and their options."""
     top = argparse.ArgumentParser(
         prog="closedform",
-        description="Published mechanisms as proved, fast, closed-form kinematics.",
+        description="Proved closed-form kinematics of published mechanisms.",
         epilog="Begin with: closedform show planar_2r.  Your own arm: closedform new my_arm --from "
         "dh table.csv, then closedform derive my_arm.py -o out.",
     )
@@ -281,7 +281,9 @@ def new_command(options: argparse.Namespace) -> None:
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
         raise CommandError(problem, 2)
     if options.modified and kind != "dh":
-        raise CommandError("--modified needs --from dh; axes have no convention", 2)
+        raise CommandError(
+            "--modified is for --from dh; the other files have one convention only", 2
+        )
     if (options.base or options.tool or options.ignore) and kind not in ("urdf", "mjcf"):
         raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
     _require_extra()

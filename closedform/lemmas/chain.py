@@ -54,34 +54,49 @@ AMPLIFIED = (
 
 @dataclass
 class Chain:
-    """Collects the links of an inverse.
+    """An inverse as a chain of lemmas; each solves for a joint or for several.
 
-    ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those named
-    in ``angles`` are compared up to full turns.  Tolerances are relative to the ``size`` of the
-    arm, the sum of its lengths unless another is set before the first lemma.
+    Apply lemmas by :meth:`solve`, in the order in which you would solve by hand, and export the
+    inverse by :meth:`finish`.  Tolerances are relative to the ``size`` of the arm, the sum of its
+    lengths unless you set another one before the first lemma.
+
+    Parameters
+    ----------
+    d
+        the derivation
+    forward
+        the 4x4 pose of the tool, or the task coordinates, as functions of the joints
+    angles
+        the task coordinates that are angles; they are compared up to full turns
+    name
+        the name of the exported function
     """
 
     d: Derivation
     forward: Any
     angles: Sequence[str] = ()
     name: str = "ik"
-    program: Program = field(default_factory=Program)
-    links: list[Link] = field(default_factory=list)
-    choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
-    values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    meaning: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    defined: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
-    degenerate: list[Degenerate] = field(default_factory=list)
-    units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
-    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
-    directions: dict[sp.Expr, Pair] = field(default_factory=dict)
-    extra_coordinates: list[sp.Symbol] = field(default_factory=list)
-    condition: sp.Expr = sp.S.Zero
-    corrected: Corrected | None = None
-    weights: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    coefficients: set[sp.Symbol] = field(default_factory=set)
+    program: Program = field(init=False, repr=False, default_factory=Program)
+    links: list[Link] = field(init=False, repr=False, default_factory=list)
+    choices: list[tuple[sp.Symbol, Choice]] = field(init=False, repr=False, default_factory=list)
+    values: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
+    meaning: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
+    defined: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
+    lengths: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
+    notes: list[str] = field(init=False, repr=False, default_factory=list)
+    degenerate: list[Degenerate] = field(init=False, repr=False, default_factory=list)
+    units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(
+        init=False, repr=False, default_factory=list
+    )
+    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(
+        init=False, repr=False, default_factory=dict
+    )
+    directions: dict[sp.Expr, Pair] = field(init=False, repr=False, default_factory=dict)
+    extra_coordinates: list[sp.Symbol] = field(init=False, repr=False, default_factory=list)
+    condition: sp.Expr = field(init=False, repr=False, default=sp.S.Zero)
+    corrected: Corrected | None = field(init=False, repr=False, default=None)
+    weights: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
+    coefficients: set[sp.Symbol] = field(init=False, repr=False, default_factory=set)
     """Names of the coefficients of lemmas, which are proved for all values of them."""
 
     def __post_init__(self) -> None:
@@ -192,7 +207,10 @@ class Chain:
         fixed = {a: Pair(sp.sin(a), sp.cos(a)) for a in total.atoms(sp.atan2)}
         pair = self.pair_of(total, fixed)
         if pair is None:
-            raise ShapeError(f"{self.d.name}: no lemma has solved for a joint in {total}")
+            raise ShapeError(
+                f"{self.d.name}: no lemma has solved for the joints in {total} yet; "
+                f"solve for them first"
+            )
         return pair
 
     def target(self, name: str) -> sp.Symbol:

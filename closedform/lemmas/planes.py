@@ -71,11 +71,11 @@ class Plane(Slider):
 
     def __post_init__(self) -> None:
         if not (len(self.start) == len(self.direction) == len(self.axis) == 3):
-            raise ShapeError(f"{self.joint}: a plane is in space, so its vectors have 3 entries")
+            raise ShapeError(f"{self.joint}: the vectors of a plane need 3 entries")
         if not self.advance.is_number or self.advance == 0:
             raise ShapeError(
-                f"{self.joint}: a slider moves its plane along, so its direction is not at right "
-                f"angles to the axes of the bars; both are numbers"
+                f"{self.joint}: the direction of a slider must not be at right angles to the "
+                f"axes of its bars, and both must be numbers"
             )
 
     @property
@@ -168,7 +168,10 @@ def three_planes(
     p = program
     volume = sp.simplify(sp.Matrix.hstack(*(plane.normal for plane in planes)).det())
     if volume == 0:
-        raise ShapeError("the axes of the bars of three legs are parallel to one plane")
+        raise ShapeError(
+            "the axes of the bars of the three legs are parallel to one plane, so "
+            "the legs do not determine the place of the hand"
+        )
     n = [
         sp.Matrix([named_number(p, f"n{k}_{i}", e) for i, e in zip("xyz", x.normal, strict=True)])
         for k, x in enumerate(planes, 1)

@@ -49,12 +49,14 @@ class Rail(Slider):
 
     def __post_init__(self) -> None:
         if not (len(self.start) == len(self.direction) == len(self.along) == 2):
-            raise ShapeError(f"{self.joint}: a rail is in a plane, so its vectors have 2 entries")
+            raise ShapeError(
+                f"{self.joint}: the vectors of a rail need 2 entries, because it is in a plane"
+            )
         cross = sp.simplify(cross_in_plane(self.rate, self.way))
         if not cross.is_number or cross == 0:
             raise ShapeError(
-                f"{self.joint}: the directions of a slider and of the rail on it are two different "
-                f"directions, in numbers"
+                f"{self.joint}: the directions of a slider and of the rail on it must differ, and "
+                f"both must be numbers"
             )
 
     @property

@@ -42,7 +42,10 @@ def parallelogram_drive(
     joints = d.actuated
     names = [*(motors or (f"m{_tag(q)}" for q in joints))]
     if len(set(names)) != len(joints) or not set(through) <= set(joints):
-        raise ShapeError(f"{d.name}: each joint has one motor, and a parallelogram drives a joint")
+        raise ShapeError(
+            f"{d.name}: give each joint one motor with a name of its own, and list in through "
+            f"only joints of the arm"
+        )
     turned = dict(zip(joints, map(real, names), strict=True))
     for q, name in zip(joints, names, strict=True):
         d.write(name, meaning=f"angle of the motor of {q if motors else NUMBERED}")

@@ -83,18 +83,18 @@ class Guided:
             raise ShapeError(f"{name}: a hand on a passive leg has three driven legs in space")
         if not all(isinstance(leg, Crank | Slide | Stretch) for leg in self.legs):
             raise ShapeError(
-                f"{name}: a driven leg beside a passive one is a crank, a slide or a leg that "
+                f"{name}: a driven leg beside a passive one must be a crank, a slide or a leg that "
                 f"stretches"
             )
         a, b, _ = self.guide.axes
         if any(sp.simplify(e) != 0 for e in (square(a) - 1, square(b) - 1, a.dot(b))):
             raise ShapeError(
-                f"{name}: the axes of the passive leg are two unit vectors at right angles"
+                f"{name}: the axes of the passive leg must be two unit vectors at right angles"
             )
         check_order(self.d, self.legs)
         check_plain(self.d, self.legs)
         if list(self.d.task) not in ([], list(TASK)):
-            raise ShapeError(f"{name}: the task of this hand is {', '.join(TASK)}")
+            raise ShapeError(f"{name}: the task of this hand must be {', '.join(TASK)}")
         self.d.task = list(TASK)
 
     @cached_property

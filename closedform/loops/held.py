@@ -86,12 +86,12 @@ def check_directions(name: str, n: int, legs: Sequence[Leg]) -> None:
     for bars in (bars for leg in legs for bars in bars_of(1, leg, "P")):
         if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
             raise ShapeError(
-                f"{name}: the bar of a parallelogram is a unit vector with {n} entries"
+                f"{name}: the bar of a parallelogram must be a unit vector with {n} entries"
             )
     for axis in (leg.rod.direction for leg in legs if isinstance(leg.rod, Universal)):
         if not len(axis) == n == 3 or sp.simplify(square(axis) - 1) != 0:
             raise ShapeError(
-                f"{name}: the axis of a rod with universal joints is a unit vector in space"
+                f"{name}: the axis of a rod with universal joints must be a unit vector in space"
             )
     for leg in legs:
         if isinstance(leg.rod, Parallelogram | Universal):

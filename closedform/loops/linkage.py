@@ -80,15 +80,19 @@ class Linkage:
             if any(len(at) != 2 for at in parts.points.values()):
                 raise ShapeError(f"{name}: {body} needs points with two coordinates")
         if {b.joint for b in self.driven.values()} != set(self.d.actuated):
-            raise ShapeError(f"{name}: each driven joint must be that of a body")
+            raise ShapeError(f"{name}: each driven joint must belong to a body")
         free = freedoms(self.points)
         if free != len(self.driven):
             raise ShapeError(
                 f"{name}: {len(self.driven)} joints are driven, but by the count of its bodies "
-                f"and pins the linkage has {free} freedoms"
+                f"and pins the linkage has {free} degrees of freedom"
             )
         if held := self.order.held:
-            raise ShapeError(f"{name}: {held[0].body} is held by what is known before it")
+            raise ShapeError(
+                f"{name}: {held[0].body} cannot move, because the driven joints and "
+                f"the bodies before "
+                f"it place two of its points"
+            )
         if self.order.left:
             raise ShapeError(f"{name}: {self.order.undone}")
         used = {dyad.pin for dyad in self.dyads}

@@ -41,7 +41,7 @@ class OnRails:
         name = self.d.name
         check_order(self.d, [leg for _, leg in self.driven])
         if list(self.d.task) not in ([], list(TASK)):
-            raise ShapeError(f"{name}: the task of this hand is {', '.join(TASK)}")
+            raise ShapeError(f"{name}: the task of this hand must be {', '.join(TASK)}")
         self.d.task = list(TASK)
         if not any(self.weights):
             raise ShapeError(f"{name}: the three rails are parallel, so the hand slides along them")

@@ -93,10 +93,13 @@ class OnRod:
     def __post_init__(self) -> None:
         name = self.d.name
         if not (len(self.hand) == len(self.first.base) == len(self.second.base) == 2):
-            raise ShapeError(f"{name}: a hand on a rod is known in a plane; vectors have 2 entries")
+            raise ShapeError(
+                f"{name}: a hand on a rod is solved in a plane only, so its vectors need 2 entries"
+            )
         if len(self.at) != 2 or not any(self.at):
             raise ShapeError(
-                f"{name}: the second rod ends on the first, at two coordinates that are not both 0"
+                f"{name}: at must be the two coordinates on the first rod "
+                f"where the second ends, not both 0"
             )
         if isinstance(self.first, Stretch):
             raise ShapeError(f"{name}: the first leg needs a rod of constant length")

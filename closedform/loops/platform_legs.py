@@ -71,7 +71,7 @@ class Platform:
             check_plain(self.d, self.legs)
         task = list(TASKS.get(n, map(str, self.pose)))
         if list(self.d.task) not in ([], task):
-            raise ShapeError(f"{name}: the task of this hand is {', '.join(task)}")
+            raise ShapeError(f"{name}: the task of this hand must be {', '.join(task)}")
         self.d.task = task
         if self.spread == 0:
             same = "above each other on" if n == UPRIGHT else "in the same point of"

@@ -84,17 +84,17 @@ class Tripod:
                 len(v) == 2 for v in (upright.heading, upright.corner, leg.base, leg.rate)
             ):
                 raise ShapeError(
-                    f"{name}: a leg of a tripod is a crank, a slide or a stretching leg in a "
-                    f"plane, so its vectors have 2 entries"
+                    f"{name}: a leg of a tripod must be a crank, a slide or a stretching leg in "
+                    f"a plane, so its vectors need 2 entries"
                 )
             if not square(upright.along).is_number or sp.simplify(square(upright.along) - 1) != 0:
-                raise ShapeError(f"{name}: a heading is a unit vector, in numbers")
+                raise ShapeError(f"{name}: a heading must be a unit vector, in numbers")
         check_order(self.d, [upright.leg for upright in self.legs])
         check_plain(self.d, [upright.leg for upright in self.legs])
         if any(weight == 0 for weight in self.weights):
             raise ShapeError(f"{name}: two legs are in the same plane")
         if list(self.d.task) not in ([], list(TASK)):
-            raise ShapeError(f"{name}: the task of a tripod is {', '.join(TASK)}")
+            raise ShapeError(f"{name}: the task of a tripod must be {', '.join(TASK)}")
         if not self.side:
             raise ShapeError(
                 f"{name}: the corners do not determine how the hand is turned at rest; write "

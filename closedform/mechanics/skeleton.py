@@ -56,7 +56,7 @@ def skeleton(
     ground
         points that are fixed to the base
     lengths
-        the distance of two points: of a link where it is not plain, or of a slide
+        the distance between two points, for a slide or where the script says it more simply
     inputs
         the joints that it is a function of, by default all that are driven
     pose

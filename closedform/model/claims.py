@@ -140,7 +140,7 @@ class Claim(Shown):
         for text in (self.printed, self.corrected):
             if re.search(r"[${}]", PIECE.sub("", text)):
                 raise ValueError(
-                    f"claim {self.label}: a dollar sign or a brace has no counterpart: {text}"
+                    f"claim {self.label}: a dollar sign or a brace is not closed: {text}"
                 )
 
     @property

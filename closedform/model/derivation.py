@@ -128,7 +128,27 @@ RESULTS = {"Solutions": "q", "Positions": "p"}
 
 @dataclass
 class Derivation(Shown):
-    """The derivation of one mechanism."""
+    """The derivation of one mechanism.
+
+    Its methods declare parameters and joints, state steps, and export functions and inverses.
+
+    Parameters
+    ----------
+    name
+        the name of the printed modules, and of the script
+    title
+        one line that says what the mechanism is
+    paper
+        the paper that it is from
+    mechanism
+        the mechanism in a few sentences
+    task
+        the names of the coordinates of the hand that the inverse reaches
+    branches, assembly_modes, singularities
+        names, in the order in which the functions return them
+
+    A script leaves out the other arguments; the methods fill them.
+    """
 
     name: str
     title: str

@@ -555,10 +555,10 @@ class Program:
 def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
     """``when_true`` if a flag, or a condition on flags, holds; else ``otherwise``.
 
-    SymPy would drop a part of a condition that itself compares what was chosen: ``ValueError``.
+    Raises ``ValueError`` if the flag itself contains a choice, of which SymPy would drop a part.
     """
     if flag.has(sp.Piecewise):
-        raise ValueError(f"name what is compared before you choose by it: {flag}")
+        raise ValueError(f"this condition contains a choice; give it a name with let first: {flag}")
     return sp.Piecewise((when_true, flag), (otherwise, True))
 
 

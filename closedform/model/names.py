@@ -218,7 +218,7 @@ def check_formulas(where: str, *texts: str) -> None:
     """Raise ``ValueError`` unless each dollar sign that begins a formula has one that ends it."""
     for text in texts:
         if text.count("$") % 2:
-            raise ValueError(f"{where}: a dollar sign has no counterpart: {text}")
+            raise ValueError(f"{where}: a dollar sign is not closed: {text}")
 
 
 def check_robot(name: str) -> None:

@@ -70,7 +70,7 @@ class View:
     at: Sequence[float] | None = None
     """A target, for the other coordinates of the section."""
     given: float | None = None
-    """What the inverse takes beside a target, if it is not that of a regular posture."""
+    """What the inverse takes besides a target, if it is not that of a regular posture."""
     limits: Limits | None = None
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""

@@ -373,7 +373,7 @@ def _check_plane(r: Robot, plane: Sequence[str], *kinds: Sequence[str]) -> None:
     """Refuse what is not two different coordinates of the first kind; the others may be named."""
     if len(plane) != AREA or len({*plane} & {*kinds[0]}) != AREA:
         listed = " or ".join(f"two of {', '.join(k)}" for k in kinds if len(k) >= AREA)
-        raise ValueError(f"the plane of {r.name} needs {listed}; not {', '.join(plane)}")
+        raise ValueError(f"the plane of {r.name} must be {listed}, not {', '.join(plane)}")
 
 
 def _task_plane(

@@ -90,7 +90,10 @@ def line(robot: ModuleType, n: int, *, params: Any = None) -> Array:
         status = r.branches(targets[[0, -1]])[1]
         if (status == OK).all(0).any():
             return targets
-    raise ValueError(f"the hand of {r.name} does not move on a straight line; give other targets")
+    raise ValueError(
+        f"no straight path of the hand of {r.name} was found; "
+        f"in Python, plot.path takes other targets"
+    )
 
 
 def _chosen(

@@ -169,7 +169,7 @@ def branches(
     params, faint, about
         as in :func:`mechanism`
     given
-        the joint or the arm angle that an arm of seven joints takes beside the target; by default
+        the joint or the arm angle that an arm of seven joints takes besides the target; by default
         that of a regular posture
     general, mode
         joints and an assembly mode whose image is the target, unless another one shows the

@@ -42,7 +42,7 @@ class Robot:
     target: Any = None
     """The pose of the hand, if no forward map gives it."""
     given: float | None = None
-    """What an arm of seven joints takes beside a target; None: its value at `posture`."""
+    """What an arm of seven joints takes besides a target; None: its value at `posture`."""
 
     @classmethod
     def of(
@@ -77,7 +77,9 @@ class Robot:
     def points(self, q: ArrayLike) -> Array:
         """The points of the skeleton, an axis for the assembly mode first, even for one mode."""
         if not self.has_forward_map and self.target is None:
-            raise ValueError(f"{self.name} has no fk; its mechanism and its branches can be drawn")
+            raise ValueError(
+                f"{self.name} has no fk, so only its mechanism and its branches can be drawn"
+            )
         given = [] if self.has_forward_map else [self.target]
         found = np.asarray(self.call("skeleton", *given, q))
         return found if self.modes else found[..., None, :, :]
@@ -183,7 +185,7 @@ class Robot:
 
     @cached_property
     def beside(self) -> dict[str, float]:
-        """What the inverse takes beside a target, by name."""
+        """What the inverse takes besides a target, by name."""
         name = given_of(self.module)
         if name is None:
             return {}

@@ -191,13 +191,13 @@ class Mechanism:
     def ik(self, x: ArrayLike, given: ArrayLike | None = None) -> Any:
         """All branches: ``Solutions(q, status)`` as in the module; the joints are the maker's.
 
-        ``given`` is the input that an arm of seven joints needs beside the target, see ``given``.
+        ``given`` is the input that an arm of seven joints needs besides the target, see ``given``.
         """
         found = self.call("ik", self.inside(x), *self.to_give(given))
         return found if self._zero is None else found._replace(q=self.from_model(found.q))
 
     def given_at(self, q: ArrayLike) -> Array:
-        """What ``ik`` needs beside the target, at joints: the arm angle, or the joint itself."""
+        """What ``ik`` needs besides the target, at joints: the arm angle, or the joint itself."""
         values = self.as_joints(q)
         if self.given is None:
             raise ValueError(f"{self.name}: the inverse takes the target only")
@@ -206,7 +206,7 @@ class Mechanism:
         return np.asarray(self.call(self.given, self.to_model(values)))
 
     def to_give(self, given: ArrayLike | None) -> tuple[ArrayLike, ...]:
-        """The inputs of the module's inverse beside the target."""
+        """The inputs of the module's inverse besides the target."""
         if self.given is None:
             if given is not None:
                 raise ValueError(f"{self.name}: the inverse takes the target only; leave out given")
@@ -278,7 +278,7 @@ class Mechanism:
 
 
 def given_of(module: ModuleType) -> str | None:
-    """The input of the inverse beside the target, such as ``"arm_angle"``."""
+    """The input of the inverse besides the target, such as ``"arm_angle"``."""
     if "ik" not in module.__all__:
         return None
     inputs = list(inspect.signature(module.ik).parameters)

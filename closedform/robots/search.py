@@ -21,7 +21,7 @@ class Search:
     weights: Array
     """Those of the squares in the distance from a seed, one for each joint."""
     given: ArrayLike | None = None
-    """What the inverse needs beside the target; None: its value at the seed, if it needs any."""
+    """What the inverse needs besides the target; None: its value at the seed, if it needs any."""
 
     @classmethod
     def of(
@@ -39,7 +39,7 @@ class Search:
         return cls(mechanism, limits, weighed, given)
 
     def at_seed(self, seed: Array) -> Search:
-        """The same, where what is given beside the target is, by default, its value at the seed."""
+        """The same, where what is given besides the target is, by default, its value at the seed."""
         if self.given is None and self.mechanism.given is not None:
             return replace(self, given=self.mechanism.given_at(seed))
         return self

@@ -48,7 +48,7 @@ def at_seed(search: Search, q: Array, status: Array, x: Array, seed: Array) -> A
     has set to zero; if there is none among those that take part, the one that moves most, and of
     several the first.  If it cannot have its value in the seed within the limits, it goes as far as
     the self-motion leads.  Where no joint is free, nothing moves; nor does a mechanism without a
-    forward map, whose answers are those of the inverse.  What was given beside the target is kept,
+    forward map, whose answers are those of the inverse.  What was given besides the target is kept,
     where it is defined.
 
     Rounding of a target may hide that it is singular: the branch is OK then, with any value of the
@@ -267,7 +267,7 @@ class Task:
     mechanism: Mechanism
     x: Array
     given: Array | None = None
-    """What the inverse was given beside the targets; NaN where it does not count."""
+    """What the inverse was given besides the targets; NaN where it does not count."""
 
     def part(self, rows: NDArray[np.intp], lead: tuple[int, ...] | None = None) -> Task:
         """Some of the targets; dimensions have the axes ``lead``, or one for the targets."""

@@ -36,7 +36,7 @@ def coordinate(derivation: Derivation, name: str) -> dict[str, str]:
 
 
 def given(derivation: Derivation) -> dict[str, str]:
-    """What the inverse takes beside the target: a joint, or an angle that is called in words."""
+    """What the inverse takes besides the target: a joint, or an angle that is called in words."""
     beside = [a.name for f in derivation.functions if f.name == "ik" for a in f.inputs[1:]]
     joints = {j.name for j in derivation.joints}
     if len(beside) == 1 and beside[0] in joints:

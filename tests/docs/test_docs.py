@@ -80,7 +80,9 @@ def test_the_guide_and_the_stub_have_every_lemma() -> None:
     rows = re.findall(r"^\| `(\w+)\([^`]*\)` \| (.*?) \| (.*?) \|$", text, flags=re.MULTILINE)
     guide = {name: (equation.replace("`", ""), result) for name, equation, result in rows}
     for name, lemma in chain_lemmas().items():
+        assert name in guide, f"docs/adding-a-mechanism.md has no row for the lemma {name}"
+        assert hasattr(closedform, name), f"closedform/__init__.pyi does not import {name}"
         equation, result = guide.pop(name)
         assert equation.startswith(lemma.equation) and result == lemma.result
         assert getattr(closedform, name) is lemma.apply
-    assert not guide
+    assert not guide, "rows without a lemma"

@@ -92,7 +92,7 @@ def image(numpy: ModuleType, q: np.ndarray, *params: Any) -> np.ndarray:
 
 
 def beside_rates(numpy: ModuleType, q: np.ndarray) -> np.ndarray:
-    """The derivatives of what is given beside a target, by joints, by differences: one a row."""
+    """The derivatives of what is given besides a target, by joints, by differences: one a row."""
     steps = 1e-3 * np.eye(q.shape[-1])
 
     def central(times: int) -> np.ndarray:

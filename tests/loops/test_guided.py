@@ -152,7 +152,7 @@ def test_legs_that_do_not_fit_say_why() -> None:
     with pytest.raises(ShapeError, match="a Universal keeps the hand from turning"):
         guided(d, post, [Stretch(j, o, on_hand=x, axis=y) for j in q])
     d.task = ["x", "y", "z"]
-    with pytest.raises(ShapeError, match="the task of this hand is turn_1, turn_2, length"):
+    with pytest.raises(ShapeError, match="the task of this hand must be turn_1, turn_2, length"):
         guided(d, post, legs)
 
 

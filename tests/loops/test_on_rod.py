@@ -128,7 +128,7 @@ def test_legs_that_do_not_fit_say_why() -> None:
     a, b = d.joint("a"), d.joint("b")
     hand, flat = (real("x"), real("y")), ((1, 0), (0, 1))
     legs = Crank(a, 1, 2, (0, 0), *flat), Crank(b, 1, 1, (1, 0), *flat)
-    with pytest.raises(ShapeError, match="two coordinates that are not both 0"):
+    with pytest.raises(ShapeError, match="where the second ends, not both 0"):
         on_rod(d, hand, *legs, (0, 0))
     with pytest.raises(ShapeError, match="which only parallel supports"):
         on_rod(d, hand, legs[0], Crank(b, 1, Parallelogram(1, (1, 0), 1), (1, 0), *flat), (1, 0))

@@ -149,7 +149,7 @@ def test_legs_that_do_not_fit_say_why() -> None:
     x, y, z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
     with pytest.raises(ShapeError, match="not at right angles to the axes"):
         Plane(q[0], (1, 1), o, x, y)
-    with pytest.raises(ShapeError, match="vectors have 3 entries"):
+    with pytest.raises(ShapeError, match="vectors of a plane need 3 entries"):
         Plane(q[0], (1, 1), (0, 0), (1, 0), (1, 0))
     with pytest.raises(ShapeError, match="one of three in space"):
         parallel(d, hand, [Plane(q[0], (1, 1), o, x, x), *(Slide(j, 2, o, z) for j in q[1:])])

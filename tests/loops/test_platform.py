@@ -314,7 +314,7 @@ def test_legs_that_do_not_fit_say_why() -> None:
     with pytest.raises(ShapeError, match="it turns freely"):
         platform(d, [Slide(q, 2, (k, 0), (0, 1)) for k, q in enumerate(joints)])
     d.task = ["x", "y"]
-    with pytest.raises(ShapeError, match="the task of this hand is x, y, yaw"):
+    with pytest.raises(ShapeError, match="the task of this hand must be x, y, yaw"):
         platform(d, legs)
 
 
@@ -398,5 +398,5 @@ def test_it_can_be_drawn(stage: ModuleType, hexapod: ModuleType) -> None:
         assert np.min(np.linalg.norm(drawn - point, axis=1)) < 1e-9
     with pytest.raises(ValueError, match="in no branch"):
         plot.mechanism(stage, x=[9, 9, 0])
-    with pytest.raises(ValueError, match="stage has no fk; its mechanism and its branches"):
+    with pytest.raises(ValueError, match="stage has no fk, so only its mechanism and its branches"):
         plot.workspace(stage)

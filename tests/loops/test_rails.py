@@ -238,9 +238,9 @@ def test_a_rail_may_have_a_direction_with_roots() -> None:
 
 def test_rails_that_cannot_be_say_why() -> None:
     q, s = real("q"), real("s")
-    with pytest.raises(ShapeError, match="two different directions"):
+    with pytest.raises(ShapeError, match="must differ"):
         Rail(q, s, (0, 0), (1, 0), (1, 0))
-    with pytest.raises(ShapeError, match="two different directions, in numbers"):
+    with pytest.raises(ShapeError, match="must differ, and both must be numbers"):
         Rail(q, s, (0, 0), (1, 0), (real("a"), real("b")))
     with pytest.raises(ShapeError, match="in a plane"):
         Rail(q, s, (0, 0, 0), (1, 0, 0), (0, 1, 0))

@@ -252,10 +252,14 @@ def test_nearest_and_pictures(sprint: ModuleType) -> None:
         ("(0, 1), (0, a)", "(0, 1), (0, -b)", "uneven: the corners do not determine how"),
         ("away = Rational(-3, 5), Rational(-4, 5)", "away = (-1, 0)", "two legs are in the same"),
         ("away = Rational(-3, 5), Rational(-4, 5)", "away = (-1, -1)", "a unit vector"),
-        ("Stretch(q3, (b, 0))", "Stretch(q3, (b, 0, 0))", "vectors have 2"),
-        ("(1, 0), (0, 1))", "(1, 0, 0), (0, 0, 1))", "vectors have 2"),
+        ("Stretch(q3, (b, 0))", "Stretch(q3, (b, 0, 0))", "vectors need 2"),
+        ("(1, 0), (0, 1))", "(1, 0, 0), (0, 0, 1))", "vectors need 2"),
         ("Upright(crank, (1, 0), (a, 0)),", "", "a tripod has three legs, not 2"),
-        ('"Three legs.")', '"Three legs.", task=["x", "y", "z"])', "the task of a tripod is z"),
+        (
+            '"Three legs.")',
+            '"Three legs.", task=["x", "y", "z"])',
+            "the task of a tripod must be z",
+        ),
     ],
 )
 def test_refusals(old: str, new: str, said: str) -> None:

@@ -215,5 +215,5 @@ class TestFaults:
 
 def test_an_unfinished_text_is_refused() -> None:
     for text in ("$x = y", "{two", "two}", "$x$ and $"):
-        with pytest.raises(ValueError, match="has no counterpart"):
+        with pytest.raises(ValueError, match="is not closed"):
             claim(text)

@@ -17,7 +17,7 @@ from closedform.robots import Robot
 C = ROOT / "generated" / "c"
 NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
 SEVEN = ("franka_arm", "srs_arm")
-"""Those whose inverse takes a number beside the target."""
+"""Those whose inverse takes a number besides the target."""
 WARNINGS = (
     *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion"),
     *("-Wshadow", "-Werror"),

@@ -15,7 +15,7 @@ from closedform.robots import Robot
 
 INDEX = ROOT / "generated" / "js" / "index.js"
 SEVEN = ("franka_arm", "srs_arm")
-"""Those whose inverse takes a number beside the target."""
+"""Those whose inverse takes a number besides the target."""
 NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
 SCRIPT = """
 import * as closedform from "INDEX";

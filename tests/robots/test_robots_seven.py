@@ -1,4 +1,4 @@
-"""Robots of seven joints: the arm angle, or a joint, beside the target of the inverse."""
+"""Robots of seven joints: the arm angle, or a joint, besides the target of the inverse."""
 
 from __future__ import annotations
 

@@ -307,7 +307,9 @@ class Procedure(Check):
                 for t, e in self.reached.items()
             ]
             if not decide(sp.Matrix(gaps)).holds:
-                raise Undecided(f"none of {SAMPLES} postures is missed, which proves nothing")
+                raise Undecided(
+                    f"none of {SAMPLES} sampled postures is missed, but samples prove nothing"
+                )
         return Verdict(PROVED, ("the posture that it gives reaches its target",))
 
     def _simple(self) -> tuple[Any, ...]:

@@ -7,7 +7,7 @@
 
 enum { CF_NEAREST_IN = 5, CF_NEAREST_OUT = 5, CF_MOST_TARGET = 16 };
 
-/* in: target, seed, limits, weights, and what is given beside the target, if anything; out: q, status,
+/* in: target, seed, limits, weights, and what is given besides the target, if anything; out: q, status,
  * branch, distance, outside. */
 static inline void
 cf_nearest_told(size_t joints, size_t branches, int branch, const uint32_t *outside,

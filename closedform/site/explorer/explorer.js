@@ -75,7 +75,10 @@ export class Explorer {
         if (cases.length || this.model) this.published = new Published(this, cases, this.model);
         this.panel = new Panel(this);
         const notes = [...this.place.childNodes].filter((n) => n.nodeName === "SCRIPT");
-        const picture = element("div", { class: "picture" }, this.canvas, this.panel.say);
+        const turning = m.flat ? "" : ", or the background to turn the view";
+        const hint = `Drag the hand or a joint${turning}. Keys: arrows move the hand, [ and ] change the branch.`;
+        const help = element("p", { class: "hint" }, hint);
+        const picture = element("div", { class: "picture" }, this.canvas, help, this.panel.say);
         this.place.replaceChildren(...notes, picture, this.panel.element);
         listen(this);
     }
@@ -174,7 +177,7 @@ export class Explorer {
         this.takeJoints(this.q);
     }
 
-    /** Give another value beside the target; the hand keeps its place. */
+    /** Give another value besides the target; the hand keeps its place. */
     give(value) {
         this.mechanism.given = value;
         this.meetings.clear();

@@ -105,7 +105,7 @@ export function target(explorer) {
     return { element: group("Target", open, ...sliders.map((s) => s.row)), show };
 }
 
-/** What the inverse takes beside the target: it moves the mechanism while the hand stands still. */
+/** What the inverse takes besides the target: it moves the mechanism while the hand stands still. */
 function given(explorer) {
     const { joints, robot, info } = explorer.mechanism;
     const joint = joints.indexOf(robot.GIVEN);

@@ -38,7 +38,7 @@ export class Mechanism {
         this.nearest = nearest;
         this.info = info;
         this.parameters = { ...robot.DEFAULTS };
-        /** What the inverse takes beside the target, if it takes anything. */
+        /** What the inverse takes besides the target, if it takes anything. */
         this.given = undefined;
         this.joints = robot.JOINTS;
         this.branches = robot.BRANCHES;
@@ -113,7 +113,7 @@ export class Mechanism {
         return this.places.length > this.joints.length;
     }
 
-    /** Take what is given beside the target from a posture, if the inverse needs it. */
+    /** Take what is given besides the target from a posture, if the inverse needs it. */
     takeGiven(q) {
         const { GIVEN } = this.robot;
         if (GIVEN === undefined) return;
@@ -121,7 +121,7 @@ export class Mechanism {
         this.given = joint < 0 ? this.robot[GIVEN](q, this.parameters) : q[joint];
     }
 
-    /** The inputs of the inverse beside the target and the dimensions. */
+    /** The inputs of the inverse besides the target and the dimensions. */
     get beside() {
         return this.given === undefined ? [] : [this.given];
     }

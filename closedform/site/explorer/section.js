@@ -131,7 +131,7 @@ export class Section {
         return { reached, q: reached.length === n ? q : taken(q, n, reached), n };
     }
 
-    /** What n targets take beside them: the value that is seen. */
+    /** What n targets take besides: the value that is seen. */
     beside(n) {
         return this.mechanism.beside.map((value) => new Float64Array(n).fill(value));
     }

@@ -23,7 +23,7 @@ export function sentence({ mechanism: m, x, found, branch, free, reached, meetin
     const hand = m.places.map((k) => short(x[k])).join(", ");
     const where = m.places.length ? `Hand at (${hand}). ` : "";
     const own = found[branch];
-    return `${where}${m.spoken(own.name)}: ${status(own, free < 0 ? "" : m.label(free))}.${met}`;
+    return `${where}Branch ${m.spoken(own.name)}: ${status(own, free < 0 ? "" : m.label(free))}.${met}`;
 }
 
 /** All numbers of what is seen, as JSON. */

@@ -92,7 +92,7 @@ def new_options(parser: argparse.ArgumentParser) -> None:
         metavar="LENGTH",
         type=_amount,
         default=0.0,
-        help="in such a file, the greatest length that is taken for 0",
+        help="in such a file, lengths up to this one count as 0",
     )
     parser.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
@@ -139,7 +139,7 @@ def figures_options(parser: argparse.ArgumentParser) -> None:
 
 def errata_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
+        "paper", metavar="PAPER", nargs="?", help="the key of a paper, such as reddy-babu; default: all papers"
     )
 
 

@@ -39,7 +39,7 @@ class Search:
         return cls(mechanism, limits, weighed, given)
 
     def at_seed(self, seed: Array) -> Search:
-        """The same, where what is given besides the target is, by default, its value at the seed."""
+        """The same; what is given besides the target is by default its value at the seed."""
         if self.given is None and self.mechanism.given is not None:
             return replace(self, given=self.mechanism.given_at(seed))
         return self

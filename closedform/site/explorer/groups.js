@@ -187,9 +187,10 @@ function withoutSection(m) {
     return `${because} one number (${m.coordinate(0)}) and not a place. It is drawn over ${m.label(0)} instead.`;
 }
 
-function ofSection({ section, plane }) {
+function ofSection({ section, plane, layers: { map } }) {
     const { size, milliseconds, done } = section;
-    const text = `Section through the hand: ${plane.join(" and ")}. Curves in red: singular; grey: the border.`;
+    const colours = map ? " Map: dark is near a singularity, bright is far from it." : "";
+    const text = `Section through the hand: ${plane.join(" and ")}. Curves in red: singular; grey: the border.${colours}`;
     return done ? `${text} ${size}×${size} postures in ${Math.round(milliseconds)} ms.` : text;
 }
 

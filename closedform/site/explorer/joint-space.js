@@ -4,6 +4,7 @@ import { WARNING } from "./colours.js";
 import { choice } from "./controls.js";
 import { contours, picture } from "./grid.js";
 import { Plot } from "./plot.js";
+import { between } from "./words.js";
 
 const CELLS = 120; // along a side
 
@@ -85,7 +86,8 @@ export class JointPlot extends Plot {
 
     label() {
         const [across, up] = this.explorer.pair.map((k) => this.explorer.mechanism.label(k));
-        return `Joint space: ${across} across, ${up} up; singular curves in red.`;
+        const [a, b] = this.explorer.pair.map((k) => between(this.plane.range(k)));
+        return `${across} across (${a}), ${up} up (${b}). Red: singular; grey: cannot be assembled.`;
     }
 
     show() {

@@ -10,7 +10,8 @@ export class Plot {
     constructor(explorer) {
         this.explorer = explorer;
         this.canvas = element("canvas", { class: "joint-space", tabindex: 0, role: "img" });
-        this.element = element("div", {}, this.canvas);
+        this.caption = element("p", { class: "note" });
+        this.element = element("div", {}, this.canvas, this.caption);
         const take = (event) => {
             if (!event.buttons) return;
             const box = this.canvas.getBoundingClientRect();
@@ -27,7 +28,9 @@ export class Plot {
         this.element.hidden = !this.explorer.layers.joints;
         if (this.element.hidden) return;
         this.draw();
-        this.canvas.setAttribute("aria-label", this.label());
+        const label = this.label();
+        this.canvas.setAttribute("aria-label", label);
+        if (this.caption.textContent !== label) this.caption.textContent = label;
     }
 
     draw() {

@@ -2,6 +2,7 @@
 
 import { branchColour, colourOf } from "./colours.js";
 import { Plot } from "./plot.js";
+import { between } from "./words.js";
 
 const STEPS = 720;
 const MARGIN = 0.08; // of the range
@@ -14,7 +15,8 @@ export class TransferPlot extends Plot {
     /** The name of the coordinate, and how it is drawn in the plot. */
     label() {
         const { mechanism: m } = this.explorer;
-        return `${m.coordinate(0)} up, over a turn of ${m.label(0)}, for each assembly mode.`;
+        const up = `${m.coordinate(0)} up (${between(this.range)})`;
+        return `${m.label(0)} across (${between([-Math.PI, Math.PI])}), ${up}, for each assembly mode.`;
     }
 
     placeOf([joint], [value]) {

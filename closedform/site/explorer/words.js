@@ -7,6 +7,11 @@ export function short(value) {
     return Number.isFinite(value) ? String(Number(value.toPrecision(6))) : "none";
 }
 
+/** A range in words; whole turns in parts of pi. */
+export function between([low, high]) {
+    return high === Math.PI ? "−π to π" : `${short(low)} to ${short(high)}`;
+}
+
 /** The status of a branch in words. */
 export function status(posture, free) {
     if (posture.status === OK) return "OK";

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from closedform import Chain
+from closedform import Chain, law_of_cosines, turn
+from closedform.robots import Robot
 
 MOST = 5
 PACKAGE = ("closedform", "derivations")
@@ -202,6 +203,11 @@ def documented(rows: str, names: str = "a, b, c, d, *, e, f") -> str:
 )  # fmt: skip
 def test_descriptions_are_found(text: str, missing: list[str]) -> None:
     assert [line.rpartition(" ")[2] for line in undocumented(text)] == missing
+
+
+@pytest.mark.parametrize("call", [Robot, Robot.nearest, turn, law_of_cosines])
+def test_help_shows_defaults_by_name(call) -> None:
+    assert " object at " not in str(inspect.signature(call))
 
 
 def test_help_on_a_chain_shows_only_what_an_author_gives() -> None:

@@ -322,7 +322,7 @@ def new_command(options: argparse.Namespace) -> None:
 
 
 def claims_command(options: argparse.Namespace) -> None:
-    """Judge the claims of one derivation, also with changed texts, or compare them with the paper."""
+    """Judge the claims of a derivation, also with changed texts; or compare them with the paper."""
     (source,) = _find([options.name])
     _require_extra()
     with Progress() as progress:

@@ -139,7 +139,10 @@ def figures_options(parser: argparse.ArgumentParser) -> None:
 
 def errata_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "paper", metavar="PAPER", nargs="?", help="the key of a paper, such as reddy-babu; default: all papers"
+        "paper",
+        metavar="PAPER",
+        nargs="?",
+        help="the key of a paper, such as reddy-babu; default: all papers",
     )
 
 

@@ -201,6 +201,9 @@ class Goal:
         """The pair of a turn that is free."""
         return Pair(sp.S.Zero, sp.S.One)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
+
 
 ANYWHERE = Goal()
 

@@ -246,7 +246,7 @@ class Derivation(Shown):
         twin_of
             a joint that this one stays close to, as in a twin arm
         limits
-            its least and largest value, exported as ``LIMITS``; the inverse answers beyond them too
+            its least and largest value, exported as ``LIMITS``; the inverse ignores them
         """
         self._check_new(name)
         if kind not in ("revolute", "prismatic"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from types import ModuleType
 from typing import Any
 
@@ -16,7 +17,14 @@ from closedform.robots.search import Search
 from closedform.robots.track import Path
 from closedform.robots.velocity import Rates
 
-_STORED: Any = object()
+
+class Default(Enum):
+    """What is taken if an argument is left out, with a name that ``help`` can show."""
+
+    STORED_LIMITS = "stored limits"
+
+    def __repr__(self) -> str:
+        return self.value
 
 
 class Robot(Mechanism):
@@ -43,7 +51,7 @@ class Robot(Mechanism):
         module: ModuleType,
         parameters: Any = None,
         *,
-        limits: Any = _STORED,
+        limits: Any = Default.STORED_LIMITS,
         base: ArrayLike | None = None,
         tool: ArrayLike | None = None,
         signs: ArrayLike | None = None,
@@ -60,7 +68,7 @@ class Robot(Mechanism):
             offsets=offsets,
             coupling=coupling,
         )
-        if limits is _STORED:
+        if limits is Default.STORED_LIMITS:
             limits = getattr(module, "LIMITS", None) if self._zero is None else None
         self.limits = Limits.of(self, limits)
         self.label = label or self.name
@@ -89,7 +97,7 @@ class Robot(Mechanism):
         q_seed: ArrayLike,
         *,
         weights: ArrayLike | None = None,
-        limits: Any = _STORED,
+        limits: Any = Default.STORED_LIMITS,
         given: ArrayLike | None = None,
     ) -> Nearest:
         """Of all branches and turns within the limits, the posture nearest to a seed.
@@ -110,7 +118,7 @@ class Robot(Mechanism):
         q0: ArrayLike,
         *,
         weights: ArrayLike | None = None,
-        limits: Any = _STORED,
+        limits: Any = Default.STORED_LIMITS,
         max_step: ArrayLike | None = None,
         given: ArrayLike | None = None,
     ) -> Path:
@@ -139,13 +147,13 @@ class Robot(Mechanism):
         search = Search.of(self, self._limits(limits), weights, given)
         return track.track(search, xs, q0, max_step)
 
-    def outside(self, q: ArrayLike, limits: Any = _STORED) -> NDArray[np.bool_]:
+    def outside(self, q: ArrayLike, limits: Any = Default.STORED_LIMITS) -> NDArray[np.bool_]:
         """Which joints of ``q``, of any leading axes, have no turn within their limits."""
         values = self.as_joints(q)
         return nearest_turn(self, values, values, self._limits(limits))[1]
 
     def _limits(self, given: Any) -> Limits:
-        return self.limits if given is _STORED else Limits.of(self, given)
+        return self.limits if given is Default.STORED_LIMITS else Limits.of(self, given)
 
     def frames(self, q: ArrayLike) -> Array:
         """The frames of the base, of each link and of the tool, (..., joints + 2, 4, 4).

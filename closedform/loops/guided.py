@@ -1,7 +1,7 @@
 """A hand on a passive leg that rules its motion, and three driven legs: the Tricept.
 
 The passive leg has a universal joint on the ground and a slide, to whose end the hand is fixed.  So
-the joints of this leg are the three freedoms of the hand.
+the joints of this leg are the three degrees of freedom of the hand.
 
 :func:`guided` derives what has a closed form: the pose of the hand, the inverse with all working
 modes, the velocity and the singular sets.  The forward problem is an equation of high degree, and

@@ -1,7 +1,8 @@
 """A tripod: three legs in vertical planes carry a hand that lifts and tilts, as in the 3-PRS.
 
 The planes share a vertical axis.  A leg is hinged, so that it stays in its plane, and a ball joint
-carries the hand at its end.  The hand has three freedoms: it lifts and tilts in two directions.
+carries the hand at its end.  The hand has three degrees of freedom: it lifts, and it tilts in two
+directions.
 It also twists and moves sideways: this parasitic motion follows from them in closed form.
 
 :func:`tripod` derives what has a closed form: the place of the hand, the inverse with all working

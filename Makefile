@@ -98,12 +98,12 @@ verify: all  ## check the certificates of all proofs, without the prover
 # Nothing here may depend on all: it would overwrite the differences that check has to find.
 check: lint types regenerated warnings  ## lint, types, C warnings; whether generated/ is up to date
 
-lint: .venv/dev.stamp
+lint: .venv/dev.stamp  ## check style and layers of the Python
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports --no-logo
 
-types: .venv/dev.stamp
+types: .venv/dev.stamp  ## check the types of the toolkit
 	$(BIN)/mypy
 
 regenerated: .venv/dev.stamp
@@ -207,4 +207,4 @@ distclean: clean  ## clean, and remove .venv
 
 help:  ## show this list
 	@sed -n 's/^\([a-z]*\):.*  ## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name what; do \
-		printf '%-10s %s\n' "$$name" "$$what"; done
+		printf '%-12s %s\n' "$$name" "$$what"; done

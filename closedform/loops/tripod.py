@@ -2,8 +2,8 @@
 
 The planes share a vertical axis.  A leg is hinged, so that it stays in its plane, and a ball joint
 carries the hand at its end.  The hand has three degrees of freedom: it lifts, and it tilts in two
-directions.
-It also twists and moves sideways: this parasitic motion follows from them in closed form.
+directions.  It also twists and moves sideways: this parasitic motion follows from them in closed
+form.
 
 :func:`tripod` derives what has a closed form: the place of the hand, the inverse with all working
 modes, the velocity and the singular sets.  The forward problem leads to an equation of degree 16,

@@ -64,8 +64,6 @@ class View:
     faint: Collection[str] = ()
     hues: Mapping[str, int] = field(default_factory=dict)
     """The numbers of the colours of links that have one of their own."""
-    about: str = ""
-    """The centre of a spherical mechanism, whose links are arcs."""
     plane: tuple[str, str] | None = None
     at: Sequence[float] | None = None
     """A target, for the other coordinates of the section."""
@@ -93,7 +91,7 @@ def standard(view: View) -> list[Figure]:
             "branches",
             "All postures that reach one target, one for each branch of the inverse.",
             lambda robot: branches(
-                robot, faint=view.faint, about=view.about, given=view.given,
+                robot, faint=view.faint, given=view.given,
                 general=view.general, mode=view.mode,
             ),
             INVERSE,
@@ -153,7 +151,7 @@ def _both(robot: ModuleType, view: View) -> Any:
 
 def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:
     """Draw one of the postures of a view; by default a posture that is far from singular."""
-    style |= {"mode": view.mode, "faint": view.faint, "about": view.about, "hues": view.hues}
+    style |= {"mode": view.mode, "faint": view.faint, "hues": view.hues}
     if Robot.of(robot).has_forward_map:
         return mechanism(robot, posture, **style)
     return mechanism(robot, x=posture, **style)

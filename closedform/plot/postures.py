@@ -47,7 +47,6 @@ def mechanism(
     labels: bool = True,
     axes: bool = True,
     faint: Collection[str] = (),
-    about: str = "",
     hues: Mapping[str, int] = NO_HUES,
 ) -> Any:
     """Draw a mechanism in one posture, with the axes of its joints, its lengths and angles.
@@ -73,9 +72,6 @@ def mechanism(
         whether the axes of joints in space are shown
     faint
         links that are drawn thinner, such as those of an equivalent mechanism
-    about
-        the point that is the centre of a spherical mechanism, whose links are drawn as arcs of
-        great circles about it
     hues
         the number of the colour of links that have one of their own, such as those of a leg
     """
@@ -92,7 +88,7 @@ def mechanism(
             f"modes that exist there: {', '.join(modes) or 'none'}"
         )
     ax = new_axes(not r.flat) if ax is None else ax
-    points = on_sphere(r, points, about)
+    points = on_sphere(r, points)
     along = joint_axes(r, joints, mode=mode)
     diagram = Diagram(ax, extent([points]) * (CENTRED if _meet(along) else 1))
     draw(
@@ -102,7 +98,6 @@ def mechanism(
         colour(0),
         along=along if axes else {},
         faint=faint,
-        about=about,
         hues=hues,
     )
     shown = [points]
@@ -156,7 +151,6 @@ def branches(
     mode: int = 0,
     ax: Any = None,
     faint: Collection[str] = (),
-    about: str = "",
 ) -> Any:
     """Draw all postures that reach a target, one colour a branch.
 
@@ -166,7 +160,7 @@ def branches(
         a generated module with an inverse
     x
         the target, as ``ik`` takes it; by default one that most branches reach
-    params, faint, about
+    params, faint
         as in :func:`mechanism`
     given
         the joint or the arm angle that an arm of seven joints takes besides the target; by default
@@ -187,7 +181,7 @@ def branches(
     if status.shape != (len(robot.BRANCHES),):
         raise ValueError(f"x must be one target of {r.name}, not {np.shape(x)}")
     found = {
-        name: on_sphere(r, r.points(q[k])[r.mode_that_reaches(q[k], x)], about)
+        name: on_sphere(r, r.points(q[k])[r.mode_that_reaches(q[k], x)])
         for k, name in enumerate(robot.BRANCHES)
         if status[k] == OK
     }
@@ -203,7 +197,7 @@ def branches(
         diagram = Diagram(ax, extent(frame))
         for name, points in found.items():
             shade = colour(names.index(name))
-            draw(diagram, r, points, shade, label=spoken(name), faint=faint, about=about)
+            draw(diagram, r, points, shade, label=spoken(name), faint=faint)
         diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
         if len(names) > 1:
             ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
@@ -218,11 +212,11 @@ def branches(
         along = joint_axes(r, q[names.index(name)]) if alike else {}
         diagram = Diagram(panel, extent(frame) * (CENTRED if _meet(along) else 1))
         others = [points for other, points in found.items() if other != name]
-        diagram.link(_outlines(r, others, about), "#dddddd", linewidth=1.0)
+        diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
         along = dict(list(along.items())[-WRIST:])
         draw(
             diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint,
-            along=along, about=about,
+            along=along,
         )  # fmt: skip
         ends = _show_axes(diagram, along)
         diagram.clean([*frame, *ends], margin=0.02, zoom=UNDER_A_TITLE)
@@ -230,23 +224,23 @@ def branches(
     return panels[0]
 
 
-def on_sphere(r: Robot, points: Array, about: str) -> Array:
-    """The points moved along their radii to one sphere about one of them; without it, as is."""
-    if not about:
+def on_sphere(r: Robot, points: Array) -> Array:
+    """The points of a spherical mechanism, moved along their radii to one sphere; others as is."""
+    if not r.centre:
         return points
-    centre = points[r.module.SKELETON.points.index(about)]
+    centre = points[r.module.SKELETON.points.index(r.centre)]
     ways = points - centre
     far = np.linalg.norm(ways, axis=1, keepdims=True)
     moved = centre + far.max() * ways / np.where(far > 0, far, 1)
     return np.asarray(moved)
 
 
-def way_through(place: Mapping[str, Array], link: Sequence[str], about: str) -> Array:
-    """The line of a link: straight, or arcs of great circles about the centre."""
+def way_through(r: Robot, place: Mapping[str, Array], link: Sequence[str]) -> Array:
+    """The line of a link: straight, or arcs of great circles of a spherical mechanism."""
     points = [place[p] for p in link]
-    if not about:
+    if not r.centre:
         return np.array(points)
-    centre, parts = place[about], [points[:1]]
+    centre, parts = place[r.centre], [points[:1]]
     for a, b in pairwise(points):
         u, v = a - centre, b - centre
         size = float(np.linalg.norm(u) * np.linalg.norm(v))
@@ -260,7 +254,7 @@ def way_through(place: Mapping[str, Array], link: Sequence[str], about: str) -> 
     return np.vstack(parts)
 
 
-def _outlines(r: Robot, postures: list[Array], about: str) -> Array:
+def _outlines(r: Robot, postures: list[Array]) -> Array:
     """The links of several postures as one line, with gaps between them."""
     names = r.module.SKELETON.points
     gap = np.full((1, 3), np.nan)
@@ -270,7 +264,7 @@ def _outlines(r: Robot, postures: list[Array], about: str) -> Array:
         part
         for points in postures
         for way in ways
-        for part in (way_through(dict(zip(names, points, strict=True)), way, about), gap)
+        for part in (way_through(r, dict(zip(names, points, strict=True)), way), gap)
     ]
     return np.vstack(parts)
 
@@ -330,7 +324,6 @@ def draw(
     label: str = "",
     width: float = 2.6,
     faint: Collection[str] = (),
-    about: str = "",
     hues: Mapping[str, int] = NO_HUES,
 ) -> None:
     """The links, the joints and the hand of one posture.
@@ -351,7 +344,7 @@ def draw(
         what the legend calls it
     width
         that of the links, in points
-    faint, about, hues
+    faint, hues
         as in :func:`mechanism`
     """
     skeleton = r.module.SKELETON
@@ -367,7 +360,7 @@ def draw(
         elif named:
             style |= named
             named = {}
-        diagram.link(way_through(place, link, about), **style)
+        diagram.link(way_through(r, place, link), **style)
     for joint in skeleton.joints.values():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":

@@ -26,6 +26,8 @@ SEEN = np.array(
 )
 """The directions to the right and upwards in such a drawing."""
 FLAT = 1e-12
+STILL = 1e-9
+"""What moves less than this part of the size does not move."""
 POSITION = "xyz"
 """The coordinates of a task that are lengths, if no forward map gives it."""
 
@@ -177,6 +179,27 @@ class Robot:
             return set(self.module.TASK) & set(POSITION) == {"x", "y"}
         z = self.points(self.draw(20))[..., 2]
         return bool(np.nanmax(np.abs(z)) <= FLAT * self.size)
+
+    @cached_property
+    def centre(self) -> str:
+        """The fixed point of a spherical mechanism, or an empty string.
+
+        All points of the skeleton keep their distance from it, and some moving link leads past it.
+        """
+        if not self.has_forward_map or self.flat:
+            return ""
+        skeleton = self.module.SKELETON
+        drawn = self.points(self.draw(20)).reshape(-1, len(skeleton.points), 3)
+        drawn = drawn[np.isfinite(drawn).all((-1, -2))]
+        if not len(drawn):
+            return ""
+        moving = [link for link in skeleton.links.values() if not {*link} <= {*skeleton.ground}]
+        for k, name in enumerate(skeleton.points):
+            still = np.ptp(drawn[:, k], axis=0).max() <= STILL * self.size
+            far = np.linalg.norm(drawn - drawn[:, k : k + 1], axis=-1)
+            if still and np.ptp(far, axis=0).max() <= STILL * self.size:
+                return name if any(name not in link for link in moving) else ""
+        return ""
 
     def branches(self, x: ArrayLike) -> tuple[Array, NDArray[np.uint8]]:
         """All postures for a target, and their status."""

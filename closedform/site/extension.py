@@ -131,7 +131,7 @@ def shown(name: str) -> dict[str, Any]:
         "home": [float(v) for v in home],
         "general": [float(v) for v in general],
         "faint": list(found.faint),
-        "about": found.about,
+        "about": Robot.of(module).centre,
         "mode": found.mode,
     }
     if found.plane:

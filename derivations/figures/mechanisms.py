@@ -66,7 +66,6 @@ VIEWS = {
         home=degrees(110, 70),
         general=degrees(130, 60),
         measured=("theta1", "theta2"),
-        about="A0",
         faint=("rod0",),
     ),
     "agile_wrist": View(
@@ -74,7 +73,6 @@ VIEWS = {
         home=degrees(0, 0, 0),
         general=degrees(-30, 40, -35),
         measured=("theta1", "theta2"),
-        about="O",
         faint=("ground", "hand1", "hand2", "hand3"),
         hues={f"{link}{k}": k + 1 for k in (1, 2, 3) for link in ("crank", "rod")},
     ),

@@ -23,6 +23,7 @@ from closedform.cli.commands import main
 from closedform.cli.plot import catalogue, write
 from closedform.plot.catalogue import fits
 from closedform.plot.postures import OK, spoken
+from closedform.plot.robot import Robot
 from closedform.plot.style import colour
 from closedform.plot.symbols import symbol
 
@@ -45,7 +46,11 @@ def lines(ax: Any) -> list[np.ndarray]:
     return [np.array(d).T for d in data]
 
 
-@pytest.mark.parametrize("name", FORWARD)
+SPHERICAL = {"agile_wrist", "spherical_five_bar"}
+"""Their links are arcs."""
+
+
+@pytest.mark.parametrize("name", [n for n in FORWARD if n not in SPHERICAL])
 def test_every_link_is_drawn_through_its_points(name: str) -> None:
     robot = module(name)
     q = plot.posture(robot)
@@ -223,14 +228,14 @@ def test_wrong_postures_are_explained() -> None:
 
 def test_links_may_have_colours_of_their_own() -> None:
     robot = module("agile_wrist")
-    axes = plot.mechanism(robot, hues={"rod1": 3}, about="O", labels=False, axes=False)
+    axes = plot.mechanism(robot, hues={"rod1": 3}, labels=False, axes=False)
     shades = [line.get_color() for line in axes.lines]
     assert shades.count(colour(3)) == 1 and colour(0) in shades
 
 
 def test_links_of_a_spherical_mechanism_are_arcs_about_its_centre() -> None:
     robot = import_module("closedform.generated.numpy.spherical_five_bar")
-    axes = plot.mechanism(robot, [1.9, 1.2], about="A0", labels=False, axes=False)
+    axes = plot.mechanism(robot, [1.9, 1.2], labels=False, axes=False)
     rods = [np.array(line.get_data_3d()) for line in axes.lines if line.get_linewidth() == 2.6]
     assert len(rods) == 5  # two cranks, two rods and the strut, which is straight
     curved = [rod for rod in rods if rod.shape[1] > 2]
@@ -295,3 +300,18 @@ def test_a_low_section_has_a_low_figure() -> None:
     low = plot.singularities(module("scara"), ("x", "z"), resolution=SMALL)
     square = plot.singularities(module("scara"), ("x", "y"), resolution=SMALL)
     assert low.figure.get_figheight() < 0.6 * square.figure.get_figheight()
+
+
+@pytest.mark.parametrize(
+    ("name", "centre"),
+    [
+        ("agile_wrist", "O"),
+        ("spherical_five_bar", "A0"),
+        ("spherical_wrist", ""),  # its one link is a radius
+        ("four_bar", ""),
+        ("delta", ""),
+        ("puma560", ""),
+    ],
+)
+def test_a_spherical_mechanism_is_recognised_by_its_points(name: str, centre: str) -> None:
+    assert Robot.of(module(name)).centre == centre

@@ -7,27 +7,15 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from browsing import POINT, STATE, STEPS, address, agrees, explorer
 from libraries import FORWARD
 from places import ROOT
 
-from closedform.plot.postures import on_sphere, way_through
-from closedform.plot.robot import Robot
-
-if find_spec("playwright") is None:  # each worker would import it to collect this file
-    pytest.skip("Playwright is not installed", allow_module_level=True)
-
-CHROMIUM = (
-    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-)
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-PATIENCE = 240_000
-"""Milliseconds: a page may load slowly beside other tests, and that is not a fault."""
 NAMES = FORWARD
 """The mechanisms that have an explorer."""
 HEAVIEST = 1_000_000
@@ -40,137 +28,11 @@ WITHOUT_SECTION = (
     "spherical_wrist",
 )
 """Their hand does not follow the pointer through a plane or space."""
-STEPS = 6
-"""Of the pointer along each part of a path."""
-
-STATE = """() => {
-    const explorer = document.querySelector(".explorer").explorer;
-    const { mechanism: m } = explorer;
-    return {
-        x: explorer.x,
-        q: explorer.q,
-        mode: explorer.mode,
-        branch: explorer.branch,
-        reached: explorer.reached,
-        parameters: m.parameters,
-        beside: m.beside,
-        postures: explorer.postures(),
-    };
-}"""
 LAYERS = "document.querySelector('.explorer').explorer.layers"
 CAMERA = """() => {
     const { view } = document.querySelector(".explorer").explorer;
     return [view.azimuth, view.elevation, view.zoom, ...view.pan];
 }"""
-POINT = """(name) => {
-    const explorer = document.querySelector(".explorer").explorer;
-    const { mechanism: m, view, canvas } = explorer;
-    const points = m.drawn(explorer.q)[explorer.mode];
-    const [x, y] = view.project(points[m.names.indexOf(name ?? m.skeleton.hand)]);
-    const box = canvas.getBoundingClientRect();
-    return [box.left + x, box.top + y];
-}"""
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if CHROMIUM is None:
-        pytest.skip("there is no Chromium")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        opened.on("context", lambda context: context.set_default_timeout(PATIENCE))
-        yield opened
-        opened.close()
-
-
-@pytest.fixture
-def tab(browser):
-    """An empty page that collects faults and what it asks for."""
-    context = browser.new_context(viewport={"width": 1280, "height": 1000})
-    page = context.new_page()
-    page.faults, page.asked = [], []
-    page.on("console", lambda m: page.faults.append(m.text) if m.type == "error" else None)
-    page.on("pageerror", lambda e: page.faults.append(str(e)))
-    page.on("request", lambda r: page.asked.append(r.url))
-    yield page
-    context.close()
-
-
-class Phone:
-    """A page on a touch screen, and fingers on it."""
-
-    def __init__(self, context):
-        self.page = context.new_page()
-        self.session = context.new_cdp_session(self.page)
-
-    def fingers(self, *paths):
-        """Put fingers down one after another, move them together, and lift them."""
-        down = [path[0] for path in paths]
-        for k in range(1, len(down) + 1):
-            self._send("touchStart", down[:k])
-        for k in range(1, STEPS + 1):
-            self._send(
-                "touchMove",
-                [[a + k / STEPS * (b - a) for a, b in zip(*path, strict=True)] for path in paths],
-            )
-        self._send("touchEnd", [])
-
-    def _send(self, kind, places):
-        points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(places)]
-        self.session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-
-
-@pytest.fixture
-def phone(browser):
-    context = browser.new_context(
-        viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
-    )
-    yield Phone(context)
-    context.close()
-
-
-def address(site, path):
-    return (site / path).as_uri()
-
-
-def explorer(tab, site, name, mark=""):
-    tab.goto(address(site, f"mechanisms/{name}.html") + mark)
-    tab.wait_for_function("document.querySelector('.explorer')?.explorer?.found")
-    tab.locator(".explorer canvas").first.scroll_into_view_if_needed()
-    return tab
-
-
-def agrees(name, state):
-    """What the explorer has computed is what the NumPy module computes."""
-    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
-    params = robot.Parameters(**state["parameters"])
-    size = sum(map(abs, params))
-    x = np.array(state["x"], dtype=float)
-    x = x.reshape({16: (4, 4), 9: (3, 3)}.get(len(x), (len(x),)))
-    q, status = robot.ik(x, *state["beside"], params)
-    assert [p["status"] for p in state["postures"]] == status.tolist()
-    for k, posture in enumerate(state["postures"]):
-        if status[k] not in (0, 2):
-            continue
-        np.testing.assert_allclose(
-            np.exp(1j * np.array(posture["q"])), np.exp(1j * q[k]), atol=1e-12, rtol=0
-        )
-        points = robot.skeleton(np.array(posture["q"]), params)
-        points = points[posture["mode"]] if robot.ASSEMBLY_MODES else points
-        np.testing.assert_allclose(posture["points"], points, atol=1e-12 * size, rtol=0)
-        if status[k] == 0:
-            hand = points[robot.SKELETON.points.index(robot.SKELETON.hand)]
-            drawn = np.array(posture["points"])[robot.SKELETON.points.index(robot.SKELETON.hand)]
-            assert np.linalg.norm(hand - drawn) <= 1e-12 * size
-    if state["reached"]:
-        hand = robot.fk(np.array(state["q"]), params)
-        hand = hand.p[state["mode"]] if robot.ASSEMBLY_MODES else hand
-        gap = (hand - x).ravel()
-        angles = [len(gap) < 9 and name not in ("x", "y", "z") for name in robot.TASK]
-        gap[angles] = np.angle(np.exp(1j * gap[angles]))
-        assert np.max(np.abs(gap)) <= 1e-9 * max(size, 1)
 
 
 def test_every_page_loads_without_a_fault(tab, site):
@@ -327,61 +189,6 @@ def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):
     tab.get_by_role("button", name="rear elbow up").click()
     tab.wait_for_timeout(100)
     assert float(re.search(r"The hand is (\S+)", note.inner_text())[1]) < 1e-9
-
-
-def test_a_posture_of_the_published_model_has_its_own_points(tab, site):
-    """The models have different skeletons, so the hand is not the same point of both."""
-    explorer(tab, site, "h6ar_loop_closed")
-    tab.get_by_label("show").select_option(label="published: the mechanism as published")
-    note = tab.locator(".explorer .note", has_text="from the target")
-    note.wait_for()
-    state = tab.evaluate(STATE)
-    published = importlib.import_module("closedform.generated.numpy.h6ar")
-    q, status = published.ik(np.array(state["x"]))
-    hand = published.skeleton(q[status == 0][0])[published.SKELETON.points.index("hand")]
-    miss = np.linalg.norm(hand - state["x"][:3])
-    assert float(re.search(r"The hand is (\S+) m from", note.inner_text())[1]) == pytest.approx(
-        miss, rel=1e-4, abs=1e-9
-    )
-
-
-LINES = """() => {
-    const { view, draw } = document.querySelector(".explorer").explorer;
-    const found = [];
-    view.line = (points, { width }) => found.push([width, points]);
-    document.querySelector(".explorer").explorer.draw();
-    delete view.line;
-    return found.filter(([width]) => width === 4).map(([, points]) => points);
-}"""
-
-
-@pytest.mark.parametrize("name", ["agile_wrist", "spherical_five_bar"])
-def test_links_of_a_spherical_mechanism_are_arcs_as_in_the_figures(tab, site, name):
-    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
-    explorer(tab, site, name)
-    state = tab.evaluate(STATE)
-    drawn = tab.evaluate(LINES)
-    r = Robot.of(robot)
-    points = on_sphere(r, robot.skeleton(np.array(state["q"]))[state["mode"]])
-    place = dict(zip(robot.SKELETON.points, points, strict=True))
-    links = [robot.SKELETON.links[n] for n in ("crank1", "rod1", "crank2", "rod2")]
-    for link in links:
-        way = way_through(r, place, link)
-        ends = [w for w in drawn if np.allclose([w[0], w[-1]], way[[0, -1]], atol=1e-9)]
-        assert len(ends) == 1
-        np.testing.assert_allclose(np.linalg.norm(ends[0], axis=1), 1, atol=1e-12)
-        assert len(ends[0]) > 4
-        middle = np.array(ends[0])[len(ends[0]) // 2]
-        assert abs(np.cross(way[0], way[-1]) @ middle) < 1e-9
-
-
-def test_controls_show_symbols_and_units(tab, site):
-    explorer(tab, site, "srs_arm")
-    tab.locator("summary", has_text="Dimensions").click()
-    row = tab.locator(".explorer .row", has=tab.get_by_label("d_bs", exact=True))
-    assert row.locator("msub").text_content() == "dbs"
-    explorer(tab, site, "five_bar")
-    assert "any unit" not in tab.locator(".explorer").inner_text()
 
 
 LOOK = """() => {

@@ -70,8 +70,10 @@ from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.loops.coupled import coupled as coupled
 from closedform.loops.drives import parallelogram_drive as parallelogram_drive
 from closedform.loops.dyads import linkage as linkage
-from closedform.loops.guided import Guide as Guide
 from closedform.loops.guided import guided as guided
+from closedform.loops.guides import Ball as Ball
+from closedform.loops.guides import Gimbal as Gimbal
+from closedform.loops.guides import Guide as Guide
 from closedform.loops.linkage import Body as Body
 from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel

@@ -81,9 +81,11 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         rows["tiny"][:, sized] = np.copysign(np.maximum(abs(small), TINY[2]), small)
     column = 0
     for argument in function.inputs:
-        if argument.shape == (4, 4):
+        made = {(3, 3): _rotations, (4, 4): _poses}.get(argument.shape)
+        if made:
             for values in rows.values():
-                values[:, column : column + 16] = _poses(values[:, column : column + 6])
+                own = values[:, column : column + argument.size]
+                own[:] = made(own[:, :6]).reshape(len(own), -1)
         column += argument.size
     return [
         Sample(
@@ -96,8 +98,8 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
     ]
 
 
-def _poses(values: Array) -> Array:
-    """A pose for each row of three angles about x, y and z, and a position."""
+def _rotations(values: Array) -> Array:
+    """A rotation for each row, which begins with three angles about x, y and z."""
     turned = np.eye(3)
     for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
         about = np.tile(np.eye(3), (len(values), 1, 1))
@@ -105,9 +107,14 @@ def _poses(values: Array) -> Array:
         about[:, j, i] = np.sin(values[:, k])
         about[:, i, j] = -about[:, j, i]
         turned = turned @ about
+    return np.asarray(turned)
+
+
+def _poses(values: Array) -> Array:
+    """A pose for each row of three angles about x, y and z, and a position."""
     poses = np.tile(np.eye(4), (len(values), 1, 1))
-    poses[:, :3, :3], poses[:, :3, 3] = turned, values[:, 3:6]
-    return poses.reshape(len(values), 16)
+    poses[:, :3, :3], poses[:, :3, 3] = _rotations(values), values[:, 3:6]
+    return poses
 
 
 def inverse_postures(

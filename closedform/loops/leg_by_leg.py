@@ -128,12 +128,25 @@ class LegByLeg:
         for s in self.found:
             record_lemma(d, "ik", s.link)
 
-    def certify(self, equations: Sequence[sp.Expr], images: str = "") -> None:
-        """Record the equations that the joints satisfy; see :class:`Inverse` for ``images``."""
-        zeros, links = (sp.S.Zero,) * len(equations), tuple(s.link for s in self.found)
-        joints = self.d.actuated
+    def certify(
+        self, equations: Sequence[sp.Expr], images: str = "", *, before: Sequence[Link] = ()
+    ) -> None:
+        """Record the equations that the joints satisfy; see :class:`Inverse` for ``images``.
+
+        The links ``before`` those of the legs solve for joints that ``ik`` does not return.
+        """
+        for link in before:
+            record_lemma(self.d, "ik", link)
         self.d.inverses.append(
-            Inverse("ik", joints, zeros, tuple(equations), images=images, links=links)
+            Inverse(
+                "ik",
+                self.d.actuated,
+                (sp.S.Zero,) * len(equations),
+                tuple(equations),
+                images=images,
+                links=(*before, *(s.link for s in self.found)),
+                passive=tuple(e for link in before for e in link.unknowns),
+            )
         )
 
 

@@ -55,7 +55,7 @@ def test_a_length_without_a_value_is_named(tmp_path: Path) -> None:
     ("name", "kind"),
     [
         ("gough", "a hand that turns, of 18 joints"),
-        ("tricept", "a hand on a passive leg, of 11 joints"),
+        ("tricept", "a hand that something without a motor holds, of 11 joints"),
         ("watt", "a linkage of many bars, of 7 joints"),
         ("puu", "a hand that does not turn, of 9 joints"),
         ("rssr", "a single loop, of 4 joints"),

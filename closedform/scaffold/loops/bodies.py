@@ -22,6 +22,8 @@ class Joint:
     at: str
     axis: sp.Matrix | None
     driven: bool
+    second: sp.Matrix | None = None
+    """The axis that is fixed to the hand, of a universal joint between it and the ground."""
 
     def other(self, body: str) -> str:
         return self.between[1] if self.between[0] == body else self.between[0]
@@ -51,7 +53,8 @@ class Loop:
         entries = [e for body in self.bodies.values() for at in body.values() for e in at]
         entries += self.rods.values()
         entries += [e for bar in self.parallelograms.values() for e in bar]
-        entries += [e for j in self.joints.values() if j.axis is not None for e in j.axis]
+        axes = [a for j in self.joints.values() for a in (j.axis, j.second) if a is not None]
+        entries += [e for axis in axes for e in axis]
         return {s.name for e in entries for s in e.free_symbols}
 
     def error(self, text: str) -> TableError:

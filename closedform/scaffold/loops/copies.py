@@ -80,6 +80,7 @@ def _add_joint(loop: Loop, name: str, copy: _Copy) -> None:
             between=(copy.name(one), copy.name(two)),
             at=copy.name(joint.at),
             axis=None if joint.axis is None else copy.vector(joint.axis),
+            second=None if joint.second is None else copy.vector(joint.second),
         )
 
 

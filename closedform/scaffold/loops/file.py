@@ -55,8 +55,10 @@ USED |= {"slotted", "guided"}
 USED |= {
     "Derivation",
     "Paper",
+    "Ball",
     "Body",
     "Crank",
+    "Gimbal",
     "Guide",
     "Half",
     "Lever",
@@ -183,7 +185,7 @@ def _read_joints(loop: Loop, joints: Any) -> None:
     for name, given in joints.items():
         where = f"{loop.file}, [joints.{name}]"
         check_variable(name, where, taken=name in USED)
-        check_keys(given, ("between", "kind", "at", "axis", "driven"), where)
+        check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
         if kind not in KINDS:
             raise TableError(f"{where}: kind must be one of {', '.join(KINDS)}")
@@ -195,16 +197,22 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         missing = [b for b in between if b not in loop.bodies]
         if missing:
             raise TableError(f"{where}: there is no body {missing[0]}")
-        axis = given.get("axis")
-        if axis is not None:
-            if not isinstance(axis, list) or len(axis) != loop.dimensions:
-                raise TableError(f"{where}: axis needs {loop.dimensions} coordinates")
-            axis = _unit(sp.Matrix([expression(e, where) for e in axis]), where)
+        axis, second = (_axis(loop, given.get(key), where, key) for key in ("axis", "second"))
+        if second is not None and kind != "universal":
+            raise TableError(f"{where}: only a universal joint has a second axis")
         driven = given.get("driven", False)
         if not isinstance(driven, bool):
             raise TableError(f"{where}: driven must be true or false")
         at = _named(given["at"], f"{where}: at") if "at" in given else _shared(loop, between, where)
-        loop.joints[name] = Joint(name, kind, (between[0], between[1]), at, axis, driven)
+        loop.joints[name] = Joint(name, kind, (between[0], between[1]), at, axis, driven, second)
+
+
+def _axis(loop: Loop, axis: Any, where: str, key: str) -> sp.Matrix | None:
+    if axis is None:
+        return None
+    if not isinstance(axis, list) or len(axis) != loop.dimensions:
+        raise TableError(f"{where}: {key} needs {loop.dimensions} coordinates")
+    return _unit(sp.Matrix([expression(e, where) for e in axis]), where)
 
 
 def _named(name: Any, what: str) -> str:

@@ -1,4 +1,7 @@
-"""Recognises a passive leg that rules the motion of a hand: a universal joint and a slide."""
+"""Recognises what rules the motion of a hand without a motor.
+
+It is a passive leg of a universal joint and a slide, or a universal or a ball joint on the ground.
+"""
 
 from __future__ import annotations
 
@@ -9,28 +12,69 @@ import sympy as sp
 from closedform.scaffold.loops.bodies import GROUND, Joint
 from closedform.scaffold.loops.legs import Legs, listed
 
-LEGS = 3
+SPACE = 3
+DRIVEN = {"universal": 2, "spherical": 3}
+"""The freedoms that a joint on the ground leaves the hand, for each of which there is a leg."""
 
 
 @dataclass(frozen=True)
 class GuideLine:
-    """The passive leg as it is written, its slide, and what it is in words."""
+    """What holds the hand as it is written, its passive slide, and what it is in words."""
 
     call: str
-    slide: str
     words: str
+    slide: str = ""
 
 
 def guide(found: Legs) -> GuideLine | None:
-    """The passive leg between the ground and the hand, if there is one."""
+    """What holds the hand on the ground, if there is anything."""
     loop = found.loop
-    if loop.dimensions != LEGS:
+    if loop.dimensions != SPACE:
         return None
-    for slide in loop.joints.values():
-        hand = [body for body in slide.between if loop.hand in loop.bodies[body]]
-        if slide.kind == "prismatic" and not slide.driven and hand:
-            return _guide(found, slide, slide.other(hand[0]))
+    for joint in loop.joints.values():
+        hand = [b for b in joint.between if loop.hand in loop.bodies[b] and b != GROUND]
+        if joint.driven or not hand:
+            continue
+        if joint.kind == "prismatic":
+            return _guide(found, joint, joint.other(hand[0]))
+        if GROUND in joint.between and joint.kind in DRIVEN:
+            return _pivot(found, joint)
     return None
+
+
+def _check_driven(found: Legs, held: Joint, needed: int, by: str) -> None:
+    driven = found.driven()
+    if len(driven) != needed:
+        count = {2: "two", 3: "three"}[needed]
+        raise found.loop.error(
+            f"{by} leave{'s' * (held.name == by)} the hand {count} freedoms, so {count} joints are "
+            f"driven, not {listed([j.name for j in driven])}"
+        )
+
+
+def _pivot(found: Legs, joint: Joint) -> GuideLine:
+    """A joint that holds the hand on the ground: universal or a ball."""
+    loop = found.loop
+    if joint.at != loop.hand:
+        raise loop.error(
+            f"{joint.name} holds the hand on the ground; it has to be at {loop.hand}, because the "
+            f"hand turns about it"
+        )
+    base = found.at(found.point(GROUND, joint))
+    found.used.add(joint.name)
+    _check_driven(found, joint, DRIVEN[joint.kind], joint.name)
+    if joint.kind == "spherical":
+        return GuideLine(f"Ball({base})", "A ball joint holds the hand on the ground.")
+    if joint.axis is None or joint.second is None:
+        raise loop.error(
+            f"{joint.name} holds the hand on the ground; give it two axes at right angles, where "
+            f"the hand is not turned: axis, which is fixed to the ground, and second, which is "
+            f"fixed to the hand"
+        )
+    if sp.simplify(joint.axis.dot(joint.second)) != 0:
+        raise loop.error(f"axis and second of {joint.name} have to be at right angles")
+    axes = f"{found.at(joint.axis)}, {found.at(joint.second)}"
+    return GuideLine(f"Gimbal({base}, {axes})", "A universal joint holds the hand on the ground.")
 
 
 def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
@@ -51,19 +95,14 @@ def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
         raise loop.error(f"{slide.name} has to be at {loop.hand}, which is on the line of {post}")
     if sp.simplify(turning.axis.dot(slide.axis)) != 0:
         raise loop.error(f"the axes of {turning.name} and {slide.name} have to be at right angles")
-    driven = found.driven()
-    if len(driven) != LEGS:
-        raise loop.error(
-            f"{slide.name} and {turning.name} leave the hand three freedoms, so three joints are "
-            f"driven, not {listed([j.name for j in driven])}"
-        )
+    _check_driven(found, slide, SPACE, f"{slide.name} and {turning.name}")
     second = slide.axis.cross(turning.axis)
     found.used |= {slide.name, turning.name}
     base = found.point(GROUND, turning)
     return GuideLine(
         f"Guide({slide.name}, {found.at(base)}, {found.at(turning.axis)}, {found.at(second)})",
-        slide.name,
         "A passive leg of a universal joint and a slide carries the hand.",
+        slide.name,
     )
 
 

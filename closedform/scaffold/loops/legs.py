@@ -147,8 +147,8 @@ class Legs:
                 and {*joint.between} == {GROUND, self.turning}
             ):
                 raise self.loop.error(
-                    f"{name} joins {self.turning} to the ground itself; legs are known that carry "
-                    f"a hand, but no joint that holds it on the ground"
+                    f"{name} joins {self.turning} to the ground itself; of the joints that hold a "
+                    f"hand on the ground, a universal and a spherical one in space are known"
                 )
         if left := [name for name in self.loop.joints if name not in self.used]:
             raise self.loop.error(

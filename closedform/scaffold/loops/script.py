@@ -41,7 +41,7 @@ KINDS = {
     "parallel": "a hand that does not turn",
     "platform": "a hand that turns",
     "tripod": "a hand that lifts and tilts",
-    "guided": "a hand on a passive leg",
+    "guided": "a hand that something without a motor holds",
     "on_rod": "a hand on a rod",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
@@ -343,7 +343,7 @@ def _body(table: Table, way: _Way) -> list[str]:
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
     passive = [leg.passive for leg in way.legs if leg.passive]
-    passive += [way.guide.slide] if way.guide else []
+    passive += [way.guide.slide] if way.guide and way.guide.slide else []
     lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
     if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
         (x,) = way.task

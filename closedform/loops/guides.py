@@ -1,0 +1,356 @@
+"""What rules the motion of a hand, without a motor: a passive leg, a universal joint or a ball.
+
+Each of them holds the hand on the ground and leaves it as many degrees of
+freedom as there are driven legs.
+:func:`closedform.loops.guided.guided` derives the mechanism.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import sympy as sp
+
+from closedform.lemmas.legs import vector
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import named_in
+from closedform.mechanics.frames import require_rotation, rotation
+from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Degenerate, Link
+from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
+
+TURNS = sp.Matrix([real("turn_1"), real("turn_2")])
+LENGTH = real("length")
+RHO = real("rho")
+"""The distance of a hand on a passive leg from the first axis."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """A passive slide, whose hand has its position as the target."""
+
+    ahead: sp.Matrix
+    """The direction in which it moves the hand."""
+    length: sp.Expr
+    rates: sp.Matrix
+    """The velocity of the point of the hand per rate of the passive joints."""
+    volume: sp.Expr
+    """The determinant of these rates."""
+    inverse: sp.Matrix
+
+    def explicit(self, p: Program) -> Sliding:
+        """The same without the names of a program."""
+        return Sliding(*(p.explicit(getattr(self, f.name)) for f in fields(self)))
+
+    @classmethod
+    def of(cls, length: sp.Expr, rho: sp.Expr, axes: Sequence[sp.Matrix]) -> Sliding:
+        """From the length of the leg, the distance of the hand from the first axis, v, n and u."""
+        v, n, u = axes
+        return cls(
+            ahead=u,
+            length=length,
+            rates=sp.Matrix.hstack(-rho * v, length * n, u),
+            volume=rho * length,
+            inverse=sp.Matrix.vstack(-v.T / rho, n.T / length, u.T),
+        )
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The hand at a target, in the names of a program."""
+
+    rotation: sp.Matrix
+    turns: tuple[sp.Matrix, ...]
+    """The axes about which the joints that hold the hand turn it."""
+    shift: sp.Matrix
+    """From the pivot to the point of the hand."""
+    arms: tuple[sp.Matrix, ...]
+    """The ends of the legs, from the pivot."""
+    slide: Sliding | None = None
+    """What a passive slide adds."""
+    links: tuple[Link, ...] = ()
+    """How the joints that hold the hand were found."""
+
+    def explicit(self, p: Program) -> Placed:
+        """The same without the names of a program."""
+        return Placed(
+            p.explicit(self.rotation),
+            tuple(map(p.explicit, self.turns)),
+            self.shift,
+            tuple(map(p.explicit, self.arms)),
+            self.slide and self.slide.explicit(p),
+            self.links,
+        )
+
+    def row(self, arm: sp.Matrix, rod: sp.Matrix) -> sp.Matrix:
+        """How the joints that hold the hand stretch a rod at the end of an arm."""
+        moment = arm.cross(rod)
+        along = [rod.dot(self.slide.ahead)] if self.slide else []
+        return sp.Matrix([[*(axis.dot(moment) for axis in self.turns), *along]])
+
+
+@dataclass(frozen=True)
+class _Turning:
+    """Two axes at right angles: the first is fixed to the ground, the second to the hand."""
+
+    pivot: Sequence[Any]
+    first: Sequence[Any]
+    second: Sequence[Any]
+
+    @property
+    def axes(self) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+        """Both axes and the direction at right angles to them, where the hand is not turned."""
+        a, b = vector(self.first), vector(self.second)
+        return a, b, a.cross(b)
+
+    @property
+    def faulty(self) -> bool:
+        a, b, _ = self.axes
+        return any(sp.simplify(e) != 0 for e in (square(a) - 1, square(b) - 1, a.dot(b)))
+
+    def turned(self, p: Program, pairs: Mapping[sp.Expr, sp.Expr]) -> tuple[sp.Matrix, ...]:
+        """R, the second axis and R times both other directions, for sines and cosines."""
+        home, (turn_1, turn_2) = sp.Matrix.hstack(*self.axes), TURNS
+        tilted = (home * rotation("x", turn_1)).xreplace(dict(pairs))
+        R = p.matrix("R", tilted * rotation("y", turn_2).xreplace(dict(pairs)) * home.T)
+        return R, *(
+            named(p, letter, at)
+            for letter, at in (
+                ("v", tilted.col(1)),
+                ("n", R * self.axes[0]),
+                ("u", R * self.axes[2]),
+            )
+        )
+
+
+def named(p: Program, letter: str, v: sp.Matrix) -> sp.Matrix:
+    """A vector in space, its components under names."""
+    return sp.Matrix([named_in(p, f"{letter}_{i}", e) for i, e in zip("xyz", v, strict=True)])
+
+
+def _arms(
+    p: Program, R: sp.Matrix, shift: sp.Matrix, places: Sequence[sp.Matrix]
+) -> tuple[sp.Matrix, ...]:
+    """The ends of the legs, from the pivot."""
+    found = []
+    for k, place in enumerate(places, 1):
+        far = enumerate(shift + R * place, 1)
+        found.append(sp.Matrix([named_in(p, f"f_{k}{i}", e) for i, e in far]))
+    return tuple(found)
+
+
+def _polar(
+    p: Program,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    target: tuple[sp.Expr, sp.Expr],
+    meaning: str,
+    size: sp.Expr | None,
+) -> Link:
+    """The angle and the positive length of a plane vector, under names in a program.
+
+    With a ``size`` the angle is zero where it is free.
+    """
+    (angle, length), (x, y), start = unknowns, target, len(p.body)
+    r = p.let(f"{length}_of", sp.sqrt(x**2 + y**2), nonnegative=True)
+    pair, cases = Pair(y / r, x / r), []
+    if size is not None:
+        flag = p.vanishes(f"free_{angle}", r, size, meaning, (angle,))
+        pair = Pair(choose(flag, 0, pair.s), choose(flag, 1, pair.c))
+        locus = {e if e.is_Symbol else -e: sp.S.Zero for e in target}
+        cases.append(Degenerate((flag,), locus, angle, meaning))
+    pair = pair.known_as(p, f"_{angle}")
+    lemma = Lemma(
+        "polar coordinates",
+        r"\rho\cos\theta = x,\ \rho\sin\theta = y \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
+        r"\theta = \operatorname{atan2}(y, x)",
+        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
+        {angle: pair.angle, length: r},
+        1,
+        excluded=1,
+        roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
+    )
+    return Link(
+        (angle, length),
+        lemma.equations,
+        {},
+        lemma,
+        tuple(p.body[start:]),
+        {pair.s: sp.sin(angle), pair.c: sp.cos(angle), r: length},
+        tuple(cases),
+    )
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A passive leg: a universal joint at ``pivot``, and a slide that carries the hand.
+
+    The universal joint turns the leg about ``first``, which is fixed to the ground, and about
+    ``second``; both are unit vectors in numbers, at right angles.  Where both angles are zero, the
+    leg has the direction ``first x second``, and the hand is not turned.  The point of the hand is
+    on the line of the leg.  ``slide`` is the passive joint, for the drawing.
+    """
+
+    slide: sp.Symbol
+    pivot: Sequence[Any]
+    first: Sequence[Any]
+    second: Sequence[Any]
+
+    legs: ClassVar[int] = 3
+    task: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    degree: ClassVar[int] = 28
+    """Of the forward problem in general, counted with a Groebner basis at random numbers."""
+    turning: ClassVar[int] = 2
+    own: ClassVar[tuple[str, ...]] = ("passive leg",)
+    what: ClassVar[str] = "a passive leg"
+    holds: ClassVar[str] = ""
+    follow: ClassVar[str] = "the turns and the length of the passive leg follow"
+    motion: ClassVar[str] = (
+        "The turns of the passive leg move the far end of rod i, which is at f_i from the pivot, "
+        "about the first axis and about v, and its length moves it along u.  So they stretch rod i "
+        "by D_i: the moment of the vector r_i along it about both axes, and its part along u.  "
+        "The same joints move the hand by G, so row i of A is D_i*G^-1"
+    )
+
+    @property
+    def joint(self) -> _Turning:
+        return _Turning(self.pivot, self.first, self.second)
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        return {"x": tuple(map(real, self.task))}
+
+    @property
+    def moved(self) -> tuple[sp.Symbol, ...]:
+        return tuple(map(real, self.task))
+
+    def check(self, p: Program) -> None:
+        """Nothing is required of a position."""
+
+    def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
+        """Name the hand at a target in a program; with a ``size`` also where a turn is free.
+
+        There the angle of this turn is taken as zero, instead of being undefined.
+        """
+        shift = sp.Matrix(self.inputs["x"]) - vector(self.pivot)
+        seen = sp.Matrix.hstack(*self.joint.axes).T * shift
+        X, Y, Z = (named_in(p, f"w_{k}", e) for k, e in enumerate(seen, 1))
+        first = _polar(p, (TURNS[0], RHO), (Z, -Y), "the hand is on the first axis", size)
+        names = {e: name for name, e in first.means.items()}
+        rho = names[RHO]
+        second = _polar(p, (TURNS[1], LENGTH), (rho, X), "the hand is at the pivot", size)
+        names |= {e: name for name, e in second.means.items()}
+        R, *axes = self.joint.turned(p, names)
+        slide = Sliding.of(names[LENGTH], rho, axes)
+        arms = _arms(p, R, shift, places)
+        return Placed(R, (vector(self.first), axes[0]), shift, arms, slide, (first, second))
+
+    def posture(self, places: Sequence[sp.Matrix]) -> Placed:
+        """The hand in the passive joints, without a program."""
+        p = Program()
+        R, *axes = map(p.explicit, self.joint.turned(p, {}))
+        slide = Sliding.of(LENGTH, LENGTH * sp.cos(TURNS[1]), axes)
+        shift = LENGTH * slide.ahead
+        arms = tuple(shift + R * place for place in places)
+        return Placed(R, (vector(self.first), axes[0]), shift, arms, slide)
+
+
+@dataclass(frozen=True)
+class Gimbal(_Turning):
+    """A universal joint at ``pivot``, which holds the hand on the ground.
+
+    It turns the hand about ``first``, which is fixed to the ground, and about ``second``, which is
+    fixed to the hand; both are unit vectors in numbers, at right angles where the hand is not
+    turned.  The pivot is the point of the hand.
+    """
+
+    legs: ClassVar[int] = 2
+    task: ClassVar[tuple[str, ...]] = ("turn_1", "turn_2")
+    degree: ClassVar[int] = 8
+    turning: ClassVar[int] = 2
+    own: ClassVar[tuple[str, ...]] = ()
+    moved: ClassVar[tuple[sp.Symbol, ...]] = ()
+    what: ClassVar[str] = "a universal joint"
+    holds: ClassVar[str] = "The universal joint holds the point p of the hand.  "
+    follow: ClassVar[str] = "both turns follow"
+    motion: ClassVar[str] = (
+        "The universal joint turns the far end of rod i, which is at f_i from the pivot, about the "
+        "first axis and about v.  So row i of A is the moment of the vector r_i along rod i about "
+        "both axes"
+    )
+
+    @property
+    def joint(self) -> _Turning:
+        return self
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        return {"x": tuple(TURNS)}
+
+    def check(self, p: Program) -> None:
+        """Nothing is required of angles."""
+
+    def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
+        """Name the hand at a target in a program."""
+        R, v, *_ = self.turned(p, {})
+        none = sp.zeros(3, 1)
+        return Placed(R, (vector(self.first), v), none, _arms(p, R, none, places))
+
+    def posture(self, places: Sequence[sp.Matrix]) -> Placed:
+        """The hand in its angles, without a program."""
+        p = Program()
+        R, v, *_ = map(p.explicit, self.turned(p, {}))
+        return Placed(R, (vector(self.first), v), sp.zeros(3, 1), tuple(R * e for e in places))
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A ball joint at ``pivot``, which holds the hand on the ground and lets it turn freely.
+
+    The pivot is the point of the hand.
+    """
+
+    pivot: Sequence[Any]
+
+    legs: ClassVar[int] = 3
+    task: ClassVar[tuple[str, ...]] = tuple(f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+    degree: ClassVar[int] = 8
+    turning: ClassVar[int] = 3
+    own: ClassVar[tuple[str, ...]] = ()
+    moved: ClassVar[tuple[sp.Symbol, ...]] = ()
+    what: ClassVar[str] = "a ball joint"
+    holds: ClassVar[str] = "The ball joint holds the point p of the hand, whose rotation is R.  "
+    follow: ClassVar[str] = "the rotation follows"
+    motion: ClassVar[str] = (
+        "The hand turns the far end of rod i, which is at f_i from the pivot, with its angular "
+        "velocity.  So row i of A is the moment of the vector r_i along rod i"
+    )
+
+    @property
+    def rotation(self) -> sp.Matrix:
+        return sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        return {"R": self.rotation}
+
+    def check(self, p: Program) -> None:
+        """Require that the input is a rotation."""
+        require_rotation(p, self.rotation)
+
+    def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
+        """Name the hand at a target in a program."""
+        none, axes = sp.zeros(3, 1), tuple(sp.eye(3).col(k) for k in range(3))
+        return Placed(self.rotation, axes, none, _arms(p, self.rotation, none, places))
+
+    def posture(self, places: Sequence[sp.Matrix]) -> Placed:
+        """The hand by its rotation, without a program."""
+        return self.place(Program(), places)
+
+
+Holder = Guide | Gimbal | Ball
+"""What rules the motion of a hand."""
+
+__all__ = ["LENGTH", "TURNS", "Ball", "Gimbal", "Guide", "Holder", "Placed"]

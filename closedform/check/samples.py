@@ -81,8 +81,8 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         rows["tiny"][:, sized] = np.copysign(np.maximum(abs(small), TINY[2]), small)
     column = 0
     for argument in function.inputs:
-        made = {(3, 3): _rotations, (4, 4): _poses}.get(argument.shape)
-        if made:
+        if argument.shape in ((3, 3), (4, 4)):
+            made = _poses if argument.shape == (4, 4) else _rotations
             for values in rows.values():
                 own = values[:, column : column + argument.size]
                 own[:] = made(own[:, :6]).reshape(len(own), -1)

@@ -8,7 +8,7 @@ freedom as there are driven legs.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
 import sympy as sp
@@ -76,13 +76,12 @@ class Placed:
 
     def explicit(self, p: Program) -> Placed:
         """The same without the names of a program."""
-        return Placed(
-            p.explicit(self.rotation),
-            tuple(map(p.explicit, self.turns)),
-            self.shift,
-            tuple(map(p.explicit, self.arms)),
-            self.slide and self.slide.explicit(p),
-            self.links,
+        return replace(
+            self,
+            rotation=p.explicit(self.rotation),
+            turns=tuple(map(p.explicit, self.turns)),
+            arms=tuple(map(p.explicit, self.arms)),
+            slide=self.slide and self.slide.explicit(p),
         )
 
     def row(self, arm: sp.Matrix, rod: sp.Matrix) -> sp.Matrix:
@@ -173,13 +172,12 @@ def _polar(
         roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
     )
     return Link(
-        (angle, length),
-        lemma.equations,
-        {},
-        lemma,
-        tuple(p.body[start:]),
-        {pair.s: sp.sin(angle), pair.c: sp.cos(angle), r: length},
-        tuple(cases),
+        unknowns=(angle, length),
+        equations=lemma.equations,
+        lemma=lemma,
+        body=tuple(p.body[start:]),
+        means={pair.s: sp.sin(angle), pair.c: sp.cos(angle), r: length},
+        degenerate=tuple(cases),
     )
 
 
@@ -245,7 +243,14 @@ class Guide:
         R, *axes = self.joint.turned(p, names)
         slide = Sliding.of(names[LENGTH], rho, axes)
         arms = _arms(p, R, shift, places)
-        return Placed(R, (vector(self.first), axes[0]), shift, arms, slide, (first, second))
+        return Placed(
+            rotation=R,
+            turns=(vector(self.first), axes[0]),
+            shift=shift,
+            arms=arms,
+            slide=slide,
+            links=(first, second),
+        )
 
     def posture(self, places: Sequence[sp.Matrix]) -> Placed:
         """The hand in the passive joints, without a program."""

@@ -7,6 +7,7 @@ import pytest
 from loop_files import read_script, script_of
 from places import TESTS
 
+from closedform.scaffold.inputs.tables import TableError
 from closedform.scaffold.new import new
 
 BALL = """hand = "P"
@@ -24,15 +25,47 @@ c1 = {between = ["piston1", "platform"], at = "C1", kind = "spherical"}
 """
 
 
-def test_a_hand_on_a_ball_is_refused_by_name(tmp_path: Path) -> None:
+def test_a_hand_on_a_hinge_is_refused_by_name(tmp_path: Path) -> None:
+    hinge = BALL.replace('at = "P", kind = "spherical"', 'at = "P"')
     with pytest.raises(ValueError, match="o joins platform to the ground itself"):
+        script_of("wrist", hinge, tmp_path)
+    with pytest.raises(ValueError, match="ground has no point P, where o is"):
         script_of("wrist", BALL, tmp_path)
+    held = script_of("wrist", BALL.replace("{A1", "{P = [0, 0, 0], A1"), tmp_path)
+    assert "Ball((0, 0, 0))" in held
 
 
 def test_a_revolute_joint_does_not_hold_a_hand_that_turns(tmp_path: Path) -> None:
     text = (TESTS / "held_out_loops/gough.toml").read_text("utf-8")
     with pytest.raises(ValueError, match="would hold platform by an axis"):
         script_of("gough", text.replace('kind = "spherical"', 'kind = "revolute"'), tmp_path)
+
+
+BENNETT = """hand = "psi"
+
+[bodies]
+ground = {O = [0, 0, 0], G = [0.3, 0, 0]}
+crank = {A = [0, 0.2, 0]}
+lever = {B = [0.3, 0.2, 0]}
+rod = {length = "0.3"}
+
+[joints]
+theta = {between = ["ground", "crank"], at = "O", axis = [0, 0, 1], driven = true}
+psi = {between = ["ground", "lever"], at = "G", axis = [0, 3, 4]}
+a = {between = ["crank", "rod"], at = "A", axis = [0, 3, 4]}
+b = {between = ["rod", "lever"], at = "B", axis = [0, 0, 1]}
+"""
+
+
+def test_a_rod_in_space_is_not_held_by_axes_that_are_not_parallel(tmp_path: Path) -> None:
+    """The loop would stand still, or be a Bennett linkage; it was read as one with ball joints."""
+    with pytest.raises(TableError, match=r"a and b would hold the rod by an axis.*Bennett"):
+        script_of("bennett", BENNETT, tmp_path)
+    level = BENNETT.replace("[0, 3, 4]", "[0, 0, 1]")
+    assert "coupled(" in script_of("level", level, tmp_path)
+    balls = BENNETT.replace('"A", axis = [0, 3, 4]', '"A", kind = "spherical"')
+    balls = balls.replace('"B", axis = [0, 0, 1]', '"B", kind = "spherical"')
+    assert "coupled(" in script_of("balls", balls, tmp_path)
 
 
 def test_a_script_tells_of_legs_that_are_alike_once(tmp_path: Path) -> None:
@@ -55,7 +88,9 @@ def test_a_length_without_a_value_is_named(tmp_path: Path) -> None:
     ("name", "kind"),
     [
         ("gough", "a hand that turns, of 18 joints"),
-        ("tricept", "a hand that something without a motor holds, of 11 joints"),
+        ("tricept", "a hand on a passive leg, of 11 joints"),
+        ("ankle", "a hand on a universal joint, of 7 joints"),
+        ("coaxial_wrist", "a hand on a ball joint, of 10 joints"),
         ("watt", "a linkage of many bars, of 7 joints"),
         ("puu", "a hand that does not turn, of 9 joints"),
         ("rssr", "a single loop, of 4 joints"),

@@ -22,6 +22,8 @@ class GuideLine:
     """What holds the hand as it is written, its passive slide, and what it is in words."""
 
     call: str
+    kind: str
+    """The kind of the mechanism."""
     words: str
     slide: str = ""
 
@@ -64,7 +66,8 @@ def _pivot(found: Legs, joint: Joint) -> GuideLine:
     found.used.add(joint.name)
     _check_driven(found, joint, DRIVEN[joint.kind], joint.name)
     if joint.kind == "spherical":
-        return GuideLine(f"Ball({base})", "A ball joint holds the hand on the ground.")
+        kind, words = "a hand on a ball joint", "A ball joint holds the hand on the ground."
+        return GuideLine(f"Ball({base})", kind, words)
     if joint.axis is None or joint.second is None:
         raise loop.error(
             f"{joint.name} holds the hand on the ground; give it two axes at right angles, where "
@@ -74,7 +77,8 @@ def _pivot(found: Legs, joint: Joint) -> GuideLine:
     if sp.simplify(joint.axis.dot(joint.second)) != 0:
         raise loop.error(f"axis and second of {joint.name} have to be at right angles")
     axes = f"{found.at(joint.axis)}, {found.at(joint.second)}"
-    return GuideLine(f"Gimbal({base}, {axes})", "A universal joint holds the hand on the ground.")
+    words = "A universal joint holds the hand on the ground."
+    return GuideLine(f"Gimbal({base}, {axes})", "a hand on a universal joint", words)
 
 
 def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
@@ -101,6 +105,7 @@ def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
     base = found.point(GROUND, turning)
     return GuideLine(
         f"Guide({slide.name}, {found.at(base)}, {found.at(turning.axis)}, {found.at(second)})",
+        "a hand on a passive leg",
         "A passive leg of a universal joint and a slide carries the hand.",
         slide.name,
     )

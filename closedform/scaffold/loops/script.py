@@ -41,7 +41,6 @@ KINDS = {
     "parallel": "a hand that does not turn",
     "platform": "a hand that turns",
     "tripod": "a hand that lifts and tilts",
-    "guided": "a hand that something without a motor holds",
     "on_rod": "a hand on a rod",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
@@ -193,9 +192,28 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     legs = [first, found.leg(follower)]
     loop.hand = hand
     found.check_all_used()
+    _check_axes(loop, driver, follower)
     if any(leg.passive for leg in legs):
         raise loop.error("a single loop with a rail is not known; a rod has to close it")
     return legs
+
+
+def _check_axes(loop: Loop, driver: Joint, follower: Joint) -> None:
+    """Refuse a rod in space that revolute joints hold, unless all axes are parallel."""
+    ends = [j for rod in loop.rods for j in loop.of(rod) if j.kind == "revolute"]
+    own = [j.axis for j in (driver, follower) if j.kind == "revolute" and j.axis is not None]
+    held = [
+        j.name
+        for j in ends
+        if j.axis is not None and any(j.axis.cross(axis) != sp.zeros(3, 1) for axis in own)
+    ]
+    if loop.dimensions == len(AXES) and held:
+        raise loop.error(
+            f"{listed(held)} would hold the rod by an axis.  In space four axes leave a loop a "
+            f"motion only if they are parallel, meet in one point, or as in a Bennett linkage, "
+            f"which is not known.  If they meet in one point, leave the axis of {listed(held)} "
+            f'out; if the rod has ball joints, write kind = "spherical"'
+        )
 
 
 def _beyond(loop: Loop, joint: Joint) -> Joint:
@@ -240,6 +258,8 @@ class _Way:
     @property
     def kind(self) -> str:
         """The same in words."""
+        if self.guide:
+            return self.guide.kind
         upright = self.name == "platform" and len(self.legs) == UPRIGHT
         return "a hand that stays upright" if upright else KINDS[self.name]
 

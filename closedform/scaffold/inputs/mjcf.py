@@ -27,8 +27,6 @@ from closedform.scaffold.inputs.tree import (
     table_of,
 )
 
-ROUNDED = 1e-6
-"""Angles from quaternions are never exact: less than this is not worth a note."""
 KINDS = ("floating", "ball", "prismatic", "revolute")
 """What MuJoCo's numbers of joint types mean."""
 UNUSED = (
@@ -206,10 +204,6 @@ def _pose(
             np.arcsin(sine),
             np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
         )
-    turns, given = [], _exact(np.array(angles))
-    for angle in given:
-        said: list[str] = []
-        turns.append(meant_angle(angle, where, said))
-        if abs(float(turns[-1] - angle)) > ROUNDED:
-            notes += said
+    given = _exact(np.array(angles))
+    turns = [meant_angle(angle, where, notes) for angle in given]
     return placed(_place(pos, where, notes), turns), placed(_exact(pos), given).evalf(30)

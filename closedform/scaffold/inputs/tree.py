@@ -36,6 +36,8 @@ MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational
 """A length this close to a number with this many decimals stands for it; finally, nanometres."""
 NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it; so does a direction to an axis."""
+ROUNDED = sp.Rational(1, 10**6)
+"""An angle is never exact: a difference from what it stands for below this is not worth a note."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
 
@@ -361,7 +363,8 @@ def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
     short = steps % 6 == 0 and value == sp.Rational(f"{float(exact):.2f}")
     if value == 0 or (abs(sp.N(exact - value, 30)) > NEAR and not short):
         return value
-    notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
+    if abs(sp.N(exact - value, 30)) > ROUNDED:
+        notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
     return exact
 
 

@@ -128,9 +128,9 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg]) -> None:
     The task is the position ``x, y, z`` of the hand on a passive leg, the angles ``turn_1, turn_2``
     of a universal joint, or the rotation ``R`` of a hand on a ball joint.  It exports ``ik``,
     ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B), ``jacobian_inverse``
-    (B^-1*A), ``singularities``, ``skeleton`` and, where the reach of the legs is limited,
-    ``workspace_contains``.  Unless the target is a rotation, it also exports ``hand_pose``,
-    ``jacobian`` and ``determinant``, else ``jacobian_space``.
+    (B^-1*A), ``jacobian``, ``determinant``, ``singularities``, ``skeleton`` and, where the reach of
+    the legs is limited, ``workspace_contains``.  Unless the target is a rotation, ``hand_pose`` is
+    exported too; if it is one, ``jacobian`` gives the angular velocity of the hand.
 
     Parameters
     ----------
@@ -309,21 +309,16 @@ def _velocity(m: Guided, loop: Step) -> None:
             ("Not finite at a serial singularity.", *on_axis),
         ),
         (
-            "jacobian_space",
-            "Angular velocity of the hand in the base frame per joint rate: A^-1*B.",
-            {"J": J},
-            (finite,),
-        )
-        if ball
-        else (
             "jacobian",
-            "Derivative of the target with respect to q: A^-1*B.",
+            "Angular velocity of the hand in the base frame per joint rate: A^-1*B."
+            if ball
+            else "Derivative of the target with respect to q: A^-1*B.",
             {"J": J},
             (finite,),
         ),
         (
             "determinant",
-            f"Determinant of {'jacobian_space' if ball else 'the Jacobian'}.",
+            "Determinant of the Jacobian.",
             {"det": det},
             (finite,),
         ),

@@ -3,13 +3,18 @@
 from pathlib import Path
 from types import ModuleType
 
+import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from loop_files import apart, derived, newton, script_of
 from places import TESTS
 
+from closedform import plot
+from closedform.robots import Robot
 from closedform.scaffold.inputs.tables import TableError
 
+mpl.use("Agg")
 FOLDER = TESTS / "held_out_loops"
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 MODES = {"ankle": 4, "coaxial_wrist": 8, "turning_platform": 1}
@@ -118,7 +123,7 @@ def test_the_jacobian_is_that_of_small_motions(robot: ModuleType) -> None:
                 rates.append((ends[0] - ends[1]) / (2 * h))
             K = robot.jacobian_inverse(x, q[k])
             assert np.allclose(np.array(rates).T, K, rtol=1e-5, atol=1e-4)
-            J = getattr(robot, "jacobian_space" if x.shape == (3, 3) else "jacobian")(x, q[k])
+            J = robot.jacobian(x, q[k])
             assert np.allclose(K @ J, np.eye(len(K)), atol=1e-9)
             assert np.isclose(robot.determinant(x, q[k]), np.linalg.det(J))
             assert np.allclose(robot.singularities(x, q[k]), [*B, np.linalg.det(A)], atol=1e-15)
@@ -137,6 +142,15 @@ def test_the_skeleton_turns_about_its_pivot(robot: ModuleType) -> None:
     for name in points:
         if name.startswith("C"):
             assert np.allclose(points[name], turned(robot, x) @ home[name])
+
+
+def test_it_is_drawn_and_tracked_as_any_mechanism(robot: ModuleType) -> None:
+    (x,) = targets(robot, 1, 6)
+    q, status = robot.ik(x)
+    k = int(np.flatnonzero(status != UNREACHABLE)[0])
+    assert plot.mechanism(robot, q[k], x=x) is not None
+    plt.close("all")
+    assert np.allclose(Robot(robot).nearest(x, q[k] + 1e-3).q, q[k])
 
 
 def test_a_matrix_that_is_no_rotation_is_invalid(robot: ModuleType) -> None:

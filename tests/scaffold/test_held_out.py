@@ -22,6 +22,7 @@ FOUND = {
     "m16ib": ("turret and two parallel joints, with a spherical wrist", 8),
     "nao_arm": ("a turret and a joint, and 2 joints that turn the tool", 2),
     "nao_leg": ("spherical shoulder, axes 5 and 4 parallel", 8),
+    "pr2": ("spherical wrist, axes 3 and 4 meet, with t1 given", 8),
     "phantomx": ("axes 2 and 3 parallel, and 1 joint that turns the tool", 2),
     "s4_abb_2p8": ("turret and two parallel joints, with a spherical wrist", 8),
     "youbot": ("axes 2 and 3 parallel, and 2 joints that turn the tool", 4),
@@ -35,10 +36,10 @@ DERIVED = ("nao_arm", "nao_leg", "youbot")
 """Those that the tests print and run."""
 
 
-def script(name: str) -> Script:
+def script(name: str, given: str = "") -> Script:
     path = FOLDER / f"{name}.csv"
     modified = "# convention: modified" in path.read_text("utf-8")
-    return new(name, "dh", path, modified=modified, search=InverseSearch(fault=fault))
+    return new(name, "dh", path, modified=modified, search=InverseSearch(fault=fault, given=given))
 
 
 def test_every_file_has_a_source_and_an_outcome() -> None:
@@ -54,6 +55,13 @@ def test_an_inverse_is_proposed_and_proved(name: str) -> None:
     found = script(name)
     assert found.structure == structure
     assert f"{branches} branches" in found.inverse
+
+
+def test_the_upper_arm_of_a_pr2_may_be_given() -> None:
+    """Whether its elbow can come to the second axis was asked of sines that had no number."""
+    found = script("pr2", "t3")
+    assert found.structure.endswith("axes 1, 2 and 4 neither meet nor are parallel, with t3 given")
+    assert "8 branches" in found.inverse
 
 
 @pytest.mark.parametrize("name", REFUSED)

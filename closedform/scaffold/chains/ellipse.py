@@ -73,8 +73,8 @@ def folds(two: Single, three: Single) -> bool:
     There the second joint is nearly free, three solutions meet, and squares of lengths tell little.
     Parameters count as different numbers.
     """
-    lengths = [*two.shift, *(two.end * three.shift)]
-    symbols = sorted({s for e in lengths for s in e.free_symbols}, key=str)
+    entries = [*two.shift, *two.end, *three.shift]
+    symbols = sorted({s for e in entries for s in e.free_symbols}, key=str)
     numbers = {s: 1 + sp.Rational(k * 37 % 101, 101) for k, s in enumerate(symbols, 1)}
 
     def across(v: sp.Matrix) -> complex:

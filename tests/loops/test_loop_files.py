@@ -99,3 +99,60 @@ def test_a_length_without_a_value_is_named(tmp_path: Path) -> None:
 def test_new_says_what_kind_of_loop_it_read(name: str, kind: str) -> None:
     path = TESTS / "held_out_loops" / f"{name}.toml"
     assert new(name, "loop", path).inverse == kind
+
+
+EXECHON = """hand = "P"
+[bodies]
+ground = {A1 = [0.3, 0, 0], A2 = [-0.3, 0, 0], A3 = [0, 0.3, 0]}
+platform = {P = [0, 0, 0], C1 = [0.15, 0, 0], C2 = [-0.15, 0, 0], C3 = [0, 0.15, 0]}
+t1 = {}
+p1 = {}
+t2 = {}
+p2 = {}
+t3 = {}
+p3 = {}
+[joints]
+a1 = {between = ["ground", "t1"], at = "A1", kind = "universal", axis = [1, 0, 0]}
+a2 = {between = ["ground", "t2"], at = "A2", kind = "universal", axis = [1, 0, 0]}
+a3 = {between = ["ground", "t3"], at = "A3", kind = "spherical"}
+q1 = {between = ["t1", "p1"], at = "A1", kind = "prismatic", driven = true}
+q2 = {between = ["t2", "p2"], at = "A2", kind = "prismatic", driven = true}
+q3 = {between = ["t3", "p3"], at = "A3", kind = "prismatic", driven = true}
+c1 = {between = ["p1", "platform"], at = "C1", axis = [0, 1, 0]}
+c2 = {between = ["p2", "platform"], at = "C2", axis = [0, 1, 0]}
+c3 = {between = ["p3", "platform"], at = "C3", axis = [1, 0, 0]}
+"""
+
+
+def test_an_exechon_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match="c1 and a1 hold the hand by the axes of a leg, as in an"):
+        script_of("exechon", EXECHON, tmp_path)
+
+
+EXCAVATOR = """hand = "P"
+[bodies]
+ground = {O = [0, 0], F = [0.3, -0.2]}
+boom = {O = [0, 0], B = [1, 0.2], S = [1.5, 0.2], E = [2.5, 0]}
+stick = {E = [0, 0], T = [-0.4, 0.1], P = [1.5, 0]}
+t1 = {}
+p1 = {}
+t2 = {}
+p2 = {}
+[joints]
+o = {between = ["ground", "boom"], at = "O"}
+f = {between = ["ground", "t1"], at = "F"}
+q1 = {between = ["t1", "p1"], at = "F", kind = "prismatic", axis = [1, 0], driven = true}
+b = {between = ["p1", "boom"], at = "B"}
+e = {between = ["boom", "stick"], at = "E"}
+s = {between = ["boom", "t2"], at = "S"}
+q2 = {between = ["t2", "p2"], at = "S", kind = "prismatic", axis = [1, 0], driven = true}
+t = {between = ["p2", "stick"], at = "T"}
+"""
+
+
+def test_the_file_of_an_excavator_is_told_what_to_write_instead(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=r'write each loop as a file of its own.*hand = "o"'):
+        script_of("excavator", EXCAVATOR, tmp_path)
+    boom = 'hand = "o"' + EXCAVATOR.removeprefix('hand = "P"').split("e = {between")[0]
+    lines = [line for line in boom.splitlines() if not line.startswith(("stick", "t2", "p2"))]
+    assert "coupled(" in script_of("boom", "\n".join(lines), tmp_path)

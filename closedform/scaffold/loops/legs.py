@@ -101,6 +101,14 @@ class Legs:
         ends = [(j, j.axis) for j in (near, far) if j.kind == "universal" and j.axis is not None]
         if not ends:
             return None
+        hinge = next((j for j in (near, far) if j.kind == "revolute" and j.axis is not None), None)
+        if len(ends) == 1 and hinge:
+            raise self.loop.error(
+                f"{hinge.name} and {ends[0][0].name} hold {self.end} by the axes of a leg, as in "
+                f"an Exechon; this is not known.  A leg with universal joints keeps it from "
+                f"turning if both ends have one; if an end is a ball joint, write kind = "
+                f'"spherical"'
+            )
         if len(ends) == 1 or self.loop.dimensions == 2:
             raise self.loop.error(
                 f"{ends[0][0].name} has an axis; universal joints keep {self.end} from turning if "
@@ -410,12 +418,31 @@ class Legs:
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
                 f"{self.end}; a leg has one rod, and the hand is one body"
+                f"{self.lever(far)}"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")
         if not held:
             self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
+
+    def lever(self, far: Joint) -> str:
+        """What to do if a leg ends on a body that turns about the ground, as on an excavator."""
+        loop = self.loop
+        held = [
+            (j.name, body)
+            for body in far.between
+            for j in loop.of(body)
+            if GROUND in j.between and j.kind == "revolute" and not j.driven and body != GROUND
+        ]
+        if not held or loop.dimensions == 3:
+            return ""
+        (joint, body), *_ = held
+        return (
+            f".  {joint} holds {body} on the ground.  Of an arm whose joints are driven through "
+            f'loops, write each loop as a file of its own, this one with hand = "{joint}", and the '
+            f"arm as a table of joints"
+        )
 
     def place_on_half(self, far: Joint, half: str) -> sp.Matrix:
         """The pin of the half that a leg holds, seen from the point of the hand."""

@@ -3,6 +3,7 @@
 import re
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 import sympy as sp
@@ -98,7 +99,7 @@ def test_two_equal_arms_are_told_once() -> None:
     found = page("h6ar_loop_closed")
     algorithm = found.algorithm(found.derivation["ik"])
     pair = algorithm.twins
-    assert pair is not None and pair.indices == ("R", "L")
+    assert pair is not None and pair.differences == (("R", "L"),)
     flags = {s.symbol: sp.false for s in algorithm.function.body if isinstance(s, Vanishes)}
     values = {
         s.symbol: substitute(s.value, flags)
@@ -111,18 +112,23 @@ def test_two_equal_arms_are_told_once() -> None:
         assert values[s].xreplace(dict(pair.symbols)) == values[pair.symbols[s]]
     assert {str(s) for s in pair.apart} == {"r_right", "h_right", "sigma_right"}
     texts = [line.text for line in algorithm.lines()]
-    assert sum(r"\theta_2^i = " in t for t in texts) == 1
+    assert sum(r"\theta_2^j = " in t for t in texts) == 1  # r_i would look like r_I
     assert not any(rf"\theta_2^{side} = " in t for t in texts for side in "RL")
     assert sum("r_R = " in t for t in texts) == sum("r_L = " in t for t in texts) == 1
 
 
-def two_arms(lengths: tuple[str, str], names: tuple[str, str]) -> tuple[object, ...]:
+JOINTS = (("theta2R", "theta3R"), ("theta2L", "theta3L"))
+
+
+def two_arms(
+    lengths: tuple[str, str], names: tuple[str, str], joints: tuple[tuple[str, str], ...] = JOINTS
+) -> tuple[Any, ...]:
     """Two arms of two links; the last length of each, and what the names of each end in."""
     p = Program()
     arms = []
-    for side, last, name in zip("RL", lengths, names, strict=True):
+    for own, last, name in zip(joints, lengths, names, strict=True):
         ends = tuple(p.let(f"{k}_{name}", real(f"{k}0") ** 2) for k in "rh")
-        pair = (real(f"theta2{side}"), real(f"theta3{side}"))
+        pair = tuple(map(real, own))
         sigma = p.let(f"sigma_{name}", real("tau"))
         links = (real("l_1"), real("l_2"), real(last))
         arms.append(two_link_arm(p, links, ends, pair, sigma, suffix=f"_{name}"))
@@ -137,8 +143,42 @@ def two_arms(lengths: tuple[str, str], names: tuple[str, str]) -> tuple[object, 
 
 def test_twins_are_found_by_what_their_names_stand_for() -> None:
     found, one, other = two_arms(("l_3", "l_3"), ("a", "left_behind"))
-    assert found is not None and found.lemmas == (one, other) and found.indices == ("R", "L")
+    assert found is not None and found.lemmas == (one, other) and found.differences == (("R", "L"),)
     assert real("r_left_behind") in found.symbols.values()
+
+
+@pytest.mark.parametrize(
+    ("joints", "each", "told"),
+    [
+        (JOINTS, "$i = R,\\ L$", (r"\theta_{2\mathrm{R}}", r"\theta_{2i}")),
+        (
+            (("alpha_right", "beta_right"), ("alpha_left", "beta_left")),
+            r"$i = \mathrm{right},\ \mathrm{left}$",
+            (r"\alpha_{\mathrm{right}}", r"\alpha_{i}"),
+        ),
+        (
+            (("theta1", "theta2"), ("theta3", "theta4")),
+            r"$(i,\ j) = (1,\ 2),\ (3,\ 4)$",
+            (r"\theta_{2}", r"\theta_{j}"),
+        ),
+    ],
+)
+def test_twins_are_named_by_what_differs_in_their_joints(
+    joints: tuple[tuple[str, str], ...], each: str, told: tuple[str, str]
+) -> None:
+    found = two_arms(("l_3", "l_3"), ("a", "b"), joints)[0]
+    assert found is not None and found.each == each
+    printer = Printer(set())
+    shown = {printer.doprint(s) for s in found.symbols}
+    with found.as_one(printer):
+        once = {printer.doprint(s) for s in found.symbols}
+    assert told[0] in shown - once and told[1] in once - shown
+    assert len(once) == len(found.symbols)
+
+
+def test_an_index_of_twins_differs_from_those_of_other_names() -> None:
+    found = two_arms(("l_3", "l_3"), ("a", "b"))[0]
+    assert found.beside(["r_I", r"k_{j}", "i"]).each == r"$k = R,\ L$"
 
 
 def test_lemmas_with_other_lengths_are_no_twins() -> None:

@@ -127,6 +127,9 @@ class Algorithm:
             if symbol in self.needed and symbol not in self.printed and symbol not in self.known:
                 self._name(symbol)
         self.page.printer.rename(self.names)
+        if self.twins:
+            names = {*self.values, *self.page.symbols} - self.twins.symbols.keys()
+            self.twins = self.twins.beside(map(self.page.math, names))
 
     # What is needed, and its names
 

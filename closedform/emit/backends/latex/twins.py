@@ -7,9 +7,9 @@ other.  What holds of both is told once, of part i; what differs is told of each
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import sympy as sp
@@ -18,11 +18,15 @@ from closedform.emit.backends.latex.formulas import Printer
 from closedform.emit.backends.latex.names import is_word
 from closedform.emit.backends.latex.plain import angles_of_readers
 from closedform.emit.backends.latex.prose import symbol_name
-from closedform.model.alike import INDEX
 from closedform.model.functions import Vanishes
 from closedform.model.lemma import Lemma
 
 Pairs = dict[sp.Symbol, sp.Symbol]
+Difference = tuple[str, str]
+"""The parts in which two names differ: R and L, or 1 and 4."""
+WORD = re.compile(r"\\[A-Za-z]+|[A-Za-z][a-z]+|.", re.ASCII)
+"""What an index gives way to in a name is one of these, as a whole."""
+INDICES = "ijkmn"
 
 
 @dataclass(frozen=True)
@@ -33,9 +37,12 @@ class Twins:
     symbols: Mapping[sp.Symbol, sp.Symbol]
     alike: frozenset[sp.Symbol]
     """The symbols of the first part whose values are those of the second one."""
-    indices: tuple[str, str]
+    differences: tuple[Difference, ...]
+    """In what the unknowns of the parts differ, in their order."""
     letters: Mapping[sp.Symbol, str]
     """How the names of each part are written."""
+    names: Sequence[str] = INDICES
+    """The indices that stand for the differences."""
 
     @property
     def second(self) -> frozenset[sp.Symbol]:
@@ -50,20 +57,49 @@ class Twins:
     @property
     def each(self) -> str:
         """For which parts a line holds."""
-        return rf"${INDEX} = \mathrm{{{self.indices[0]}}},\ \mathrm{{{self.indices[1]}}}$"
+        names = self.names[: len(self.differences)]
+        parts = [_tuple([_upright(d[k]) for d in self.differences]) for k in range(2)]
+        return rf"${_tuple(names)} = {parts[0]},\ {parts[1]}$"
+
+    def beside(self, texts: Iterable[str]) -> Twins:
+        """The same, with indices that no name has, in either case: r_i and r_I look alike."""
+        found = {w.lower() for t in texts for w in WORD.findall(t.partition("_")[2])}
+        free = [i for i in INDICES if i not in found]
+        return replace(self, names=(*free, *(i for i in INDICES if i in found)))
 
     @contextmanager
     def as_one(self, printer: Printer) -> Iterator[None]:
-        """Print the symbols of the first part with the index i meanwhile."""
-        first = re.escape(self.indices[0])
-        names = {}
-        for s in self.symbols:
-            text = printer.doprint(s)
-            names[s] = re.sub(rf"(?<=[\^_{{]){first}(?=\}}*$)", INDEX, text)
-            if names[s] == text:
-                names[s] = f"{text}_{INDEX}"
-        with printer.written_as(names):
+        """Print the symbols of the first part with an index meanwhile."""
+        texts = {s: (printer.doprint(s), printer.doprint(t)) for s, t in self.symbols.items()}
+        with printer.written_as({s: self._indexed(*pair) for s, pair in texts.items()}):
             yield
+
+    def _indexed(self, one: str, other: str) -> str:
+        """One name for two: an index takes the place of what differs, or is added."""
+        for name, difference in zip(self.names, self.differences, strict=False):
+            words = WORD.findall(one)
+            if _difference(words, WORD.findall(other)) == difference:
+                k = next(k for k, w in enumerate(words) if w != WORD.findall(other)[k])
+                text = "".join([*words[:k], name, *words[k + 1 :]])
+                return text.replace(rf"\mathrm{{{name}}}", name)
+        return _with(one, self.names[0])
+
+
+def _with(name: str, index: str) -> str:
+    """A name with one more index."""
+    base, mark, before = name.partition("_")
+    before = before.removeprefix("{").removesuffix("}")
+    return f"{base}_{{{before},{_upright(index)}}}" if mark else f"{base}_{_upright(index)}"
+
+
+def _upright(index: str) -> str:
+    """An index of several letters in upright type."""
+    return index if len(index) == 1 else rf"\mathrm{{{index}}}"
+
+
+def _tuple(texts: Sequence[str]) -> str:
+    listed = r",\ ".join(texts)
+    return listed if len(texts) == 1 else f"({listed})"
 
 
 def twins(
@@ -98,16 +134,21 @@ def _matched(
             pending += _corresponding(values[one], values[other], symbols, values.keys())
     alike = {s for s, t in symbols.items() if s in values and t in values}
     alike = {s for s in alike if values[s].xreplace(symbols) == values[symbols[s]]}
-    indices = _difference(*(str(u.name) for u in unknowns[0]))
-    if not indices or not {u for u, _ in unknowns} <= alike:
+    names = [[WORD.findall(str(u.name)) for u in pair] for pair in unknowns]
+    differences = tuple(dict.fromkeys(d for pair in names if (d := _difference(*pair))))
+    told = {u for u, _ in unknowns} <= alike
+    if not told or not all(_difference(*pair) for pair in names):
         return None
     marks = {s: t for s, t in combinations(flags, 2) if _same_mark(flags[s], flags[t], symbols)}
     letters: dict[sp.Symbol, str] = {}
     for pair in symbols.items():
         shared = _shared_parts(*pair)
         if shared and pair not in unknowns and not is_word(shared):
-            letters |= {s: f"{symbol_name(shared)}_{k}" for s, k in zip(pair, indices, strict=True)}
-    return Twins((a, b), {**symbols, **marks}, frozenset(alike | marks.keys()), indices, letters)
+            ends = zip(pair, differences[0], strict=True)
+            letters |= {s: _with(symbol_name(shared), end) for s, end in ends}
+    return Twins(
+        (a, b), {**symbols, **marks}, frozenset(alike | marks.keys()), differences, letters
+    )
 
 
 def _same_mark(one: Vanishes, other: Vanishes, symbols: Pairs) -> bool:
@@ -175,8 +216,8 @@ def _shared_parts(one: sp.Symbol, other: sp.Symbol) -> str:
     return "_".join(x for x, y in zip(a, b, strict=True) if x == y)
 
 
-def _difference(one: str, other: str) -> tuple[str, str] | None:
-    """The letters in which names of equal length differ: R and L of theta2R and theta2L."""
+def _difference(one: Sequence[str], other: Sequence[str]) -> Difference | None:
+    """The words in which two names differ, if they differ in one."""
     apart = [(x, y) for x, y in zip(one, other, strict=False) if x != y]
     return apart[0] if len(one) == len(other) and len(apart) == 1 else None
 

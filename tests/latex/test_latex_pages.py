@@ -318,3 +318,24 @@ def test_no_entry_of_the_index_starts_with_an_article(title: str, entry: str) ->
 def test_the_number_of_a_model_stays_on_its_line_in_a_title() -> None:
     assert tied("ABB IRB 260 palletiser") == "ABB IRB~260 palletiser"
     assert tied("Planar 2R arm") == "Planar 2R arm"
+
+
+def test_results_that_are_arguments_are_told_in_one_sentence() -> None:
+    """What the summary tells is not told again, and the others stand in one line."""
+    functions = {f["name"].replace("\\", ""): f for f in context("irb2400")["functions"]}
+    found = functions["joints_from_motors"]
+    assert r"$\theta_{3} = m_{3} - m_{2}$" in found["summary"]
+    assert found["blocks"] == []
+    left, right = found["same"].split(" = ")
+    assert left.count(r"\theta_") == right.count("m_") == 5
+
+
+def test_few_results_that_are_arguments_stay_equations() -> None:
+    d = Derivation("toy", "Toy", derivation("scara").paper, "A turn of three joints.")
+    a, b, c = (d.joint(f"theta{k}") for k in (1, 2, 3))
+    motors = [real(f"m{k}") for k in (1, 2, 3)]
+    d.function(
+        "motors", "Angles of the motors.", {"q": (a, b, c)}, {"m": [a, b, b + c]}, entries=motors
+    )
+    (found,) = document(d, Proof(d.name, d.paper.key, (), 0, ()))["functions"]
+    assert found["same"] == "" and found["blocks"]

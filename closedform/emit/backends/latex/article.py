@@ -55,7 +55,10 @@ from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document", "indexed", "tied"]
 
+FEW = 3
+"""Fewer results that are arguments are equations like all others."""
 BARE: Mapping[str, Any] = {
+    "same": "",
     "blocks": [],
     "lines": [],
     "lines_kept": 0,
@@ -269,17 +272,31 @@ class Page(Sheet):
             modes = " in each assembly mode" if function.branches else ""
             return {**BARE, "evaluates": reference(labels) + modes}
         if not function.body:
-            return {**BARE, "blocks": blocks(self.numbers.number(runs(outputs))), "evaluates": ""}
+            return {**BARE, **self.formulas(function, outputs), "evaluates": ""}
         return {**self.listing(function), "evaluates": ""}
+
+    def formulas(self, function: Function, outputs: Sequence[Equation]) -> dict[str, Any]:
+        """The results of a function that its summary does not tell; many arguments in one line."""
+        summary = self.prose(function.summary)
+        given = {self.math(e) for a in function.inputs for e in a.entries}
+        found = [run for run in runs(outputs) if "${} = {}$".format(*run[0]) not in summary]
+        same = [run[0] for run in found if len(run) == 1 and run[0][1] in given]
+        if len(same) < FEW:
+            same = []
+        left, right = (r",\ ".join(side) for side in zip(*same, strict=True)) if same else ("", "")
+        return {
+            "same": f"$({left}) = ({right})$" if same else "",
+            "blocks": blocks(self.numbers.number(run for run in found if run[0] not in same)),
+        }
 
     def listing(self, function: Function) -> dict[str, Any]:
         """The lines of a function."""
         algorithm = self.algorithm(function)
         lines, cases = algorithm.lines(), Cases(algorithm)
         return {
+            **BARE,
             "after": self.after(function, algorithm),
             "roundings": cases.roundings(),
-            "blocks": [],
             "lines": lines,
             "lines_kept": lines_kept(lines),
             "borrowed": self.borrowed(algorithm),

@@ -379,24 +379,26 @@ def _line(text: str) -> None:
 
 def errata_command(options: argparse.Namespace) -> None:
     """Print the errors of all papers or of one, with their numbers and all verdicts."""
-    console.write(_errata_of(options) if options.paper else _errata())
+    default = "text" if console.is_terminal() else "markdown"
+    name = {"text": "errata.txt", "markdown": "errata.md"}[options.format or default]
+    console.write(_errata_of(options, name) if options.paper else _errata(name))
 
 
-def _errata() -> str:
-    path = folders.generated() / "errata.md"
+def _errata(name: str) -> str:
+    path = folders.generated() / name
     if not path.is_file():
         raise CommandError(f"{path} is missing; run make")
     return path.read_text("utf-8")
 
 
-def _errata_of(options: argparse.Namespace) -> str:
+def _errata_of(options: argparse.Namespace, name: str) -> str:
     _require_extra()
     derivations = {source: scripts.load(source) for source in scripts.sources()}
     papers = sorted({d.paper.key for d in derivations.values()})
     chosen = {s: d for s, d in derivations.items() if d.paper.key == options.paper}
     if not chosen:
         raise CommandError(_unknown("paper", options.paper, papers), 2)
-    return _run(options, list(chosen), ("latex",), list(chosen)).shared[Path("errata.md")]
+    return _run(options, list(chosen), ("latex",), list(chosen)).shared[Path(name)]
 
 
 def _require_extra() -> None:

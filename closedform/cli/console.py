@@ -86,6 +86,11 @@ def has(characters: str) -> bool:
     return True
 
 
+def is_terminal() -> bool:
+    """Whether somebody reads the standard output as it is written."""
+    return sys.stdout is not None and sys.stdout.isatty()
+
+
 def _show(text: str) -> None:
     try:
         sys.stderr.write(text)

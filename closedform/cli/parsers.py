@@ -144,6 +144,11 @@ def errata_options(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         help="the key of a paper, such as reddy-babu; default: all papers",
     )
+    parser.add_argument(
+        "--format",
+        choices=("text", "markdown"),
+        help="text for the terminal, or Markdown; default: text on a terminal, else Markdown",
+    )
 
 
 def _positive(text: str) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any, Literal
 
@@ -11,14 +10,20 @@ from sympy.printing.pretty.pretty import PrettyPrinter
 from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.emit.errata import gathered, part
-from closedform.emit.terminal import decimal, expression, from_latex, mixed
+from closedform.emit.terminal import (
+    WIDTH,
+    decimal,
+    expression,
+    from_latex,
+    heading,
+    mixed,
+    paragraph,
+)
 from closedform.emit.text import citation
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
 from closedform.model.step import Step
 from closedform.proof.prove import Proof
-
-WIDTH = 100
 
 
 def show(
@@ -43,16 +48,16 @@ def show(
 
 def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterator[str]:
     yield from _head(derivation)
-    yield from _heading("Steps")
+    yield from heading("Steps")
     for number, step in enumerate(derivation.steps, 1):
         proved = proof is not None and step.title in proof.steps
         yield from _step(number, step, proved=proved, pretty=pretty)
-    yield from _heading("Functions")
+    yield from heading("Functions")
     for function in derivation.functions:
         yield from _function(derivation, function, proof)
     if derivation.singularities:
-        yield from _heading("Singular set")
-        yield from _wrap(", ".join(derivation.singularities), 2)
+        yield from heading("Singular set")
+        yield from paragraph(", ".join(derivation.singularities), 2)
     if proof:
         yield from _findings(derivation, proof, pretty)
 
@@ -60,12 +65,12 @@ def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterato
 def _head(derivation: Derivation) -> Iterator[str]:
     """The mechanism, its parameters and its joints."""
     yield from (derivation.title, "=" * len(derivation.title), "")
-    yield from _wrap(derivation.mechanism)
-    yield from _wrap(f"Source: {citation(derivation)}.")
-    yield from _heading("Parameters")
+    yield from paragraph(derivation.mechanism)
+    yield from paragraph(f"Source: {citation(derivation)}.")
+    yield from heading("Parameters")
     for p in derivation.parameters:
-        yield from _wrap(f"{p.name} = {decimal(p.value)} {p.unit}: {p.meaning} ({p.source})", 2)
-    yield from _heading("Joints")
+        yield from paragraph(f"{p.name} = {decimal(p.value)} {p.unit}: {p.meaning} ({p.source})", 2)
+    yield from heading("Joints")
     for j in derivation.joints:
         role = "passive" if j.passive else "actuated" if j.coupling is None else f"= {j.coupling}"
         yield f"  {j.name}: {j.kind}, {role}"
@@ -74,11 +79,11 @@ def _head(derivation: Derivation) -> Iterator[str]:
 def _step(number: int, step: Step, *, proved: bool, pretty: bool) -> Iterator[str]:
     published = f"  [paper: {', '.join(step.published)}]" if step.published else ""
     yield from ("", f"{number}. {step.title}{published}")
-    yield from textwrap.wrap(step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " ")
+    yield from paragraph(step.reason, 3, 0)
     for lhs, value in step.shown:
         yield from _equation(from_latex(lhs, pretty=pretty), value, pretty)
     for row in step.rows:
-        yield from _wrap("  |  ".join(map(_cell, row)), 3)
+        yield from paragraph("  |  ".join(map(_cell, row)), 3)
     if step.vanishes and proved:
         yield f"   [identities proved: {len(step.vanishes)}]"
 
@@ -86,18 +91,18 @@ def _step(number: int, step: Step, *, proved: bool, pretty: bool) -> Iterator[st
 def _findings(derivation: Derivation, proof: Proof, pretty: bool) -> Iterator[str]:
     """The errata of the paper, and its claims by verdict."""
     if proof.errata:
-        yield from _heading("Errata of the paper")
+        yield from heading("Errata of the paper")
         for paper in gathered([part(derivation, proof)]):
             for entry in paper.entries:
                 labels = ", ".join(c.label for c in entry.claims)
                 title = mixed(entry.erratum.title, pretty=pretty)
                 about = f"{title} ({entry.gravity.value}): {labels}"
-                yield from _wrap(f"{entry.number}. {about}", 2)
+                yield from paragraph(f"{entry.number}. {about}", 2)
     if proof.claims:
-        yield from _heading("Claims of the paper")
+        yield from heading("Claims of the paper")
         for kind, n in proof.verdicts().items():
             labels = ", ".join(c.label for c in proof.claims if c.kind == kind)
-            yield from _wrap(f"{n} {kind}: {labels}", 2)
+            yield from paragraph(f"{n} {kind}: {labels}", 2)
 
 
 def _cell(value: Any) -> str:
@@ -107,16 +112,16 @@ def _cell(value: Any) -> str:
 def _function(derivation: Derivation, function: Function, proof: Proof | None) -> Iterator[str]:
     arguments = ", ".join(f"{a.name}: {_entries(a.entries)}" for a in function.inputs)
     results = ", ".join(f"{a.name}{list(a.shape) or ''}" for a in function.outputs)
-    yield from ("", *_wrap(f"{function.name}({arguments}) -> {results}", 2))
-    yield from _wrap(function.summary, 4)
+    yield from ("", *paragraph(f"{function.name}({arguments}) -> {results}", 2))
+    yield from paragraph(function.summary, 4)
     for statement in function.body:
-        yield from _wrap(_statement(statement), 4)
+        yield from paragraph(_statement(statement), 4)
     if function.has_status:
         inverse = next((i for i in derivation.inverses if i.function == function.name), None)
         for a in function.outputs:
             names = inverse.unknowns if inverse else [f"{a.name}{k + 1}" for k in range(a.size)]
             for name, e in zip(names, a.entries, strict=False):
-                yield from _wrap(f"{name} = {expression(e)}", 4)
+                yield from paragraph(f"{name} = {expression(e)}", 4)
     if function.branches and len(function.branches) > 1:
         for label, signs in function.cases():
             yield f"    branch {label}: " + ", ".join(f"{s} = {v:+d}" for s, v in signs.items())
@@ -125,7 +130,7 @@ def _function(derivation: Derivation, function: Function, proof: Proof | None) -
             found = f"{result.solutions} solution{'s' * (result.solutions != 1)}"
             yield f"    proved sound and complete: the system has {found} ({result.method})"
     for note in function.notes:
-        yield from _wrap(note, 4)
+        yield from paragraph(note, 4)
 
 
 def _entries(entries: Sequence[sp.Expr]) -> str:
@@ -154,9 +159,9 @@ def _statement(statement: Statement) -> str:
 def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
     """An equation in two dimensions if it fits, else on lines of text; a value may be LaTeX."""
     if isinstance(value, str):
-        return _wrap(f"{lhs} = {from_latex(value, pretty=pretty)}", 3)
+        return paragraph(f"{lhs} = {from_latex(value, pretty=pretty)}", 3)
     if isinstance(value, list | tuple):
-        return _wrap(f"{lhs} = ({', '.join(map(expression, value))})", 3)
+        return paragraph(f"{lhs} = ({', '.join(map(expression, value))})", 3)
     before = pretty_use_unicode(pretty)  # roots and brackets depend on this, not on the setting
     try:
         form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(
@@ -177,13 +182,4 @@ def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
             for j in range(value.cols)
             for line in _equation(f"{lhs}[{i + 1},{j + 1}]", value[i, j], pretty)
         ]
-    return _wrap(f"{lhs} = {value}", 3)
-
-
-def _heading(title: str) -> tuple[str, ...]:
-    return ("", title, "-" * len(title))
-
-
-def _wrap(text: str, indent: int = 0) -> list[str]:
-    first, rest = " " * indent, " " * (indent + 4 * bool(indent))
-    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=rest)
+    return paragraph(f"{lhs} = {value}", 3)

@@ -6,11 +6,13 @@ A library such as pylatexenc leaves out the brackets of a numerator: ``a+b/c`` f
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Callable
 
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
+WIDTH = 100
 TOKEN = re.compile(r"\\\\(?:\[[^\]]*\])?|\\[A-Za-z]+|\\.|\s+|.", re.DOTALL)
 SIMPLE = re.compile(r"-?\w+|.|\|\|")
 """An index or an exponent without brackets."""
@@ -102,7 +104,10 @@ class _Reader:
             self._skip("}")
             return found
         if token in ("_", "^"):
-            index = self._argument().strip()
+            raised = self._argument()
+            if raised in SIGNS["circ"]:
+                return raised
+            index = raised.strip()
             return token + (index if SIMPLE.fullmatch(index) else f"({index})")
         if token.isspace() or token in (r"\,", r"\;", r"\:", r"\ "):
             return " "
@@ -195,4 +200,15 @@ def decimal(value: sp.Expr) -> str:
     return f"{sign}{whole}.{part}" if part else f"{sign}{whole}"
 
 
-__all__ = ["decimal", "expression", "from_latex", "mixed"]
+def heading(title: str) -> tuple[str, ...]:
+    """A heading, with an empty line above it."""
+    return ("", title, "-" * len(title))
+
+
+def paragraph(text: str, indent: int = 0, hang: int = 4) -> list[str]:
+    """Lines of at most :data:`WIDTH` columns; all but the first are indented more if any is."""
+    first, rest = " " * indent, " " * (indent + hang * bool(indent))
+    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=rest)
+
+
+__all__ = ["WIDTH", "decimal", "expression", "from_latex", "heading", "mixed", "paragraph"]

@@ -12,6 +12,7 @@ import pytest
 from derivations_for_tests import SLIDER
 from places import ROOT
 
+from closedform.cli import console
 from closedform.cli.commands import main
 from closedform.pipeline import folders, scripts
 from closedform.pipeline import run as pipeline
@@ -420,12 +421,23 @@ def test_derive_mends_the_generated_folder(
 
 
 def test_errata_of_all_papers_and_of_one(
-    only_planar: Path, capsys: pytest.CaptureFixture[str]
+    only_planar: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Markdown goes to files, and text to terminals."""
     assert main(["errata"]) == 0
     everything = capsys.readouterr().out
     assert everything == (only_planar / "errata.md").read_text("utf-8")
     assert main(["errata", "reddy-babu"]) == 0
+    assert capsys.readouterr().out == everything
+    assert main(["errata", "--format", "text"]) == 0
+    text = capsys.readouterr().out
+    assert text == (only_planar / "errata.txt").read_text("utf-8")
+    assert main(["errata", "reddy-babu", "--format", "text"]) == 0
+    assert capsys.readouterr().out == text
+    monkeypatch.setattr(console, "is_terminal", lambda: True)
+    assert main(["errata"]) == 0
+    assert capsys.readouterr().out == text
+    assert main(["errata", "--format", "markdown"]) == 0
     assert capsys.readouterr().out == everything
     assert main(["errata", "reddy"]) == 2
     assert "did you mean reddy-babu?" in capsys.readouterr().err

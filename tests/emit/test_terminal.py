@@ -61,3 +61,8 @@ def test_no_latex_is_left_on_the_page_of_a_mechanism(name: str) -> None:
 
 def test_a_word_with_a_hyphen_stays_on_its_line() -> None:
     assert wrapped("It turns counter-clockwise.", 20) == ["It turns", "counter-clockwise."]
+
+
+def test_degrees_are_not_an_exponent() -> None:
+    assert from_latex(r"-30^\circ") == from_latex(r"-30^{\circ}") == "-30°"
+    assert from_latex(r"-30^\circ", pretty=False) == "-30 deg"

@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 from wrong_paper import PAPER, derivation, proof
 
+from closedform.emit import errata_text
 from closedform.emit.backends.latex.errata import context, formula, markdown, stacked
 from closedform.emit.errata import KINDS, MEANINGS, Part, gathered, part
 from closedform.emit.render import render
+from closedform.emit.terminal import WIDTH
 from closedform.model.claims import REFUTED, VERDICTS, Gravity
 from closedform.proof.claims import ClaimResult, ErratumResult
 
@@ -39,6 +41,18 @@ def test_errors_are_counted_once_however_often_they_stand() -> None:
     assert paper.errors() == {"Errors": 3, "Inconsistencies": 1, "Omissions": 1, "Misprints": 1}
     assert paper.verdicts()[REFUTED] == 5
     assert "| [On one link \\& its errors](#wrong) | 3 | 1 | 1 | 1 | 10 |" in page(own())
+
+
+def test_a_terminal_gets_text() -> None:
+    """The same errors, without marks of Markdown or LaTeX, in lines that fit."""
+    text = errata_text.text([own()])
+    (paper,) = gathered([own()])
+    for entry in paper.entries:
+        assert f"\n{entry.number}. " in text and entry.gravity.value[1:] in " ".join(text.split())
+    assert not re.search(r"\$|\\\\|\*\*|<a |&amp;", text)
+    assert "\n   eq. (2)" in text and "\n     printed: " in text
+    assert max(map(len, text.splitlines())) <= WIDTH
+    assert text.endswith("\n") and not text.startswith("\n") and "\n\n\n" not in text
 
 
 def test_the_gravest_comes_first() -> None:

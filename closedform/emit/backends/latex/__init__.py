@@ -1,10 +1,11 @@
-"""LaTeX: an article a mechanism, the book of all, and the errata of all papers in Markdown."""
+"""LaTeX: an article a mechanism, the book of all, and the errata in Markdown and as text."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
+from closedform.emit import errata_text
 from closedform.emit.backend import Backend, Files, Mechanism, Pages
 from closedform.emit.backends.latex import book, errata
 from closedform.emit.backends.latex.article import document
@@ -22,10 +23,10 @@ class Latex(Backend):
         return Pages({Path("latex", f"{derivation.name}.tex"): text}, share)
 
     def shared(self, shares: Sequence[book.Chapter]) -> Files:
+        parts = [share.errata for share in shares]
         return {
-            Path("errata.md"): render(
-                "errata.md.jinja", errata.context([share.errata for share in shares])
-            ),
+            Path("errata.md"): render("errata.md.jinja", errata.context(parts)),
+            Path("errata.txt"): errata_text.text(parts),
             BOOK: render("latex/book.tex.jinja", book.context(shares)),
         }
 

@@ -10,38 +10,58 @@ from __future__ import annotations
 
 from typing import Any
 
-from closedform.emit.backends.latex.article import Page
+from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.formulas import Printer
-from closedform.emit.backends.latex.prose import escape
 from closedform.emit.escape import markdown_text
+from closedform.emit.markup import Markdown, number, plain
 from closedform.model.claims import Claim, Erratum
 from closedform.model.derivation import Derivation
 from closedform.model.display import prints
-from closedform.model.functions import Bound, Let
 from closedform.model.lemma import Lemma, Theorem
 from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
+MAPS = ("fk", "ik")
+INDENT = "&emsp;"
 
-@prints(Derivation)
+
+class _Cell(Markdown):
+    """Sentences of the articles for a cell of a notebook, where nothing can be referred to."""
+
+    def __init__(self) -> None:
+        super().__init__({})
+
+    def inline(self, formula: str) -> str:
+        return f"${' '.join(formula.split())}$"
+
+    def status(self, name: str) -> str:
+        return f"*{name.lower()}*"
+
+    def equation(self, label: str) -> str:
+        return f"({number(label)})"
+
+
+@prints(Derivation, "markdown")
 def notebook(derivation: Derivation) -> str:
-    """The LaTeX of a derivation for Jupyter: the forward map and the inverse."""
-    page = Page(derivation, Proof(derivation.name, derivation.paper.key, (), 0, ()))
-    rows = [rf"&\textbf{{{escape(derivation.title)}}}"]
-    for function in derivation.functions:
-        if function.name in ("fk", "ik"):
-            rows.append(rf"&\text{{{escape(function.summary)}}}")
-            for s in function.body:
-                if isinstance(s, Let | Bound):
-                    rows += map(_row, page.equations(s.symbol, s.value))
-            rows += map(_row, page.outputs(function))
-    rows += [f"{short} &= {full}" for short, full in page.legend()]
-    return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"
-
-
-def _row(equation: tuple[str, str]) -> str:
-    left, right = equation
-    return f"{left} &= {right}" if left else rf"&\quad {right}"
+    """A derivation for Jupyter: the mechanism, and how a reader computes its maps."""
+    proof = Proof(derivation.name, derivation.paper.key, (), 0, ())
+    context, page, cell = document(derivation, proof), Page(derivation, proof), _Cell()
+    parts = [f"**{cell(context['title'])}.** {cell(context['mechanism'])}"]
+    told = {f["name"]: f for f in (*context["functions"], *context["inverses"])}
+    maps = [(derivation[name], f) for name, f in told.items() if name in MAPS]
+    for function, f in maps:
+        written = not function.has_status and len(function.outputs[0].shape) < 2
+        if not f["lines"] and not written:  # a pose is a product of matrices, which steps show
+            continue
+        parts.append(f"**`{plain(f['name'])}({plain(f['arguments'])})`** {cell(f['summary'])}")
+        if not f["lines"]:
+            parts.append(_aligned(page.outputs(function)))
+        for line in f["lines"]:
+            remark = f" ({cell(line.remark)})" if line.remark else ""
+            parts.append(f"{INDENT * (line.depth + 1)}{cell(line.text)}{remark}")
+    if context["legend"]:
+        parts.append(f"Here {', '.join(f'${entry}$' for entry in context['legend'])}.")
+    return "\n\n".join(parts)
 
 
 @prints(Claim, "markdown")

@@ -21,6 +21,7 @@ from closedform.emit.backends.latex.article import document
 from closedform.emit.backends.latex.prose import escape, mixed
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.errata import gathered, part
+from closedform.emit.markup import Markdown, Place, anchor, displayed, fenced, plain
 from closedform.emit.render import render
 from closedform.emit.text import describe_operations
 from closedform.model.claims import HOLDS
@@ -28,7 +29,6 @@ from closedform.model.derivation import Derivation
 from closedform.model.step import Step
 from closedform.site import labels, maps, published
 from closedform.site.graph import rests_on
-from closedform.site.markup import Markdown, Place, anchor, displayed, fenced, plain
 
 LIVE = "five_bar"
 """The mechanism on the first page."""

@@ -14,7 +14,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.writers.html5 import HTML5Translator
 
-from closedform.site.markup import escaped, inline
+from closedform.emit.markup import escaped, inline
 from closedform.site.node import Renderer
 
 BAR = re.compile(r"(?<![`\\])\|(?!`)")

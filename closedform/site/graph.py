@@ -9,10 +9,10 @@ from closedform.emit.backends.latex.article import key
 from closedform.emit.backends.latex.claims import derives
 from closedform.emit.backends.latex.lemmas import label as lemma_label
 from closedform.emit.backends.latex.lemmas import lemmas_of
+from closedform.emit.markup import anchor
 from closedform.model.claims import HOLDS
 from closedform.model.derivation import Derivation
 from closedform.proof.prove import Proof
-from closedform.site.markup import anchor
 
 WIDTH = 22
 """Characters in a line of a node."""

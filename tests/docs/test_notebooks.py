@@ -28,3 +28,18 @@ def test_every_cell_runs(guide: str) -> None:
         assert r"\det J_{xy} &= l_{1} l_{2} \sin \theta_{2}" in text
         assert "**Lemma (two-link triangle).**" in text and "atan_{2}" not in text
         assert "base has a cosine instead of a sine.**" in text
+
+
+def test_a_derivation_shows_what_a_reader_computes() -> None:
+    """The algorithms of the article, and not the statements of the program."""
+    from closedform.derivations.planar_2r import d
+
+    import closedform.emit.notebook  # noqa: F401
+
+    text = d._repr_markdown_() or ""
+    assert d._repr_latex_() is None and text.startswith("**Planar 2R arm.** Two links")
+    assert r"x &= l_{1} \mathrm{c}_{1} + l_{2} \mathrm{c}_{12}" in text
+    assert text.count("**`ik(x)`**") == 1 and "*unreachable*" in text
+    assert r"\theta_{1} = \operatorname{atan2}(p_{y},\ p_{x}) - \alpha$" in text
+    assert not any(word in text for word in ("beyond", "no link", r"\text", "eqref"))
+    assert r"$\mathrm{c}_{12} = \cos (\theta_{1} + \theta_{2})$" in text

@@ -13,9 +13,9 @@ from libraries import FORWARD
 from places import ROOT
 
 from closedform import five_bar
+from closedform.emit.markup import Markdown, MarkupError, Place
 from closedform.pipeline import scripts
 from closedform.site.labels import label
-from closedform.site.markup import Markdown, MarkupError, Place
 
 SEPARATE = re.compile(r"\\[A-Za-z]+")
 LATEX = ROOT / "generated" / "latex"

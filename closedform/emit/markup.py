@@ -1,8 +1,8 @@
 """The text of the articles as Markdown: the commands that they use, and no others.
 
-The articles are prepared as LaTeX by :mod:`closedform.emit.backends.latex`.  The site shows the
-same sentences, so their few commands are translated here.  One that is not known is an error: no
-backslash reaches a page.
+The articles are prepared as LaTeX by :mod:`closedform.emit.backends.latex`.  The site and notebooks
+show the same sentences, so their few commands are translated here.  One that is not known is an
+error: no backslash reaches a page.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SECTION = re.compile(r"Sections?~(?=\\ref)")
 
 
 class MarkupError(ValueError):
-    """A command that the site does not know."""
+    """A command that is not known."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Markdown:
             r"\emph": lambda t: f"*{self(t)}*",
             r"\textit": lambda t: f"*{self(t)}*",
             r"\textbf": lambda t: f"**{self(t)}**",
-            r"\textsc": lambda t: f'<span class="status">{html.escape(plain(t)).upper()}</span>',
+            r"\textsc": lambda t: self.status(plain(t).upper()),
             r"\mbox": self,
             r"\fit": self,
             r"\eqref": self.equation,
@@ -84,7 +84,7 @@ class Markdown:
         part, at = token[0], token.end()
         if part == "$":
             end = closing_dollar(text, at)
-            return inline(text[at:end]), end + 1
+            return self.inline(text[at:end]), end + 1
         if part == r"\[":
             end = text.index(r"\]", at)
             return displayed(text[at:end]), end + 2
@@ -102,6 +102,14 @@ class Markdown:
             _, at = argument(text, at)
             return self(inner), at
         return _plain_token(part, text), at
+
+    def inline(self, formula: str) -> str:
+        """A formula in a sentence."""
+        return inline(formula)
+
+    def status(self, name: str) -> str:
+        """The name of a status."""
+        return f'<span class="status">{html.escape(name)}</span>'
 
     def place(self, label: str) -> Place:
         if label not in self.places:
@@ -172,7 +180,7 @@ def _plain_token(token: str, text: str) -> str:
     if token.startswith("\\") and len(token) == 2 and not token[1].isalpha():
         return escaped(token[1])
     if token.startswith("\\"):
-        raise MarkupError(f"the site does not know the command {token} in {text!r}")
+        raise MarkupError(f"there is no Markdown for the command {token} in {text!r}")
     return "" if token in "{}" else escaped(token)
 
 

@@ -8,6 +8,7 @@ Importing this module registers its printers with :mod:`closedform.model.display
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from closedform.emit.backends.latex.article import Page, document
@@ -81,7 +82,7 @@ def erratum(erratum: Erratum) -> str:
 def step(step: Step) -> str:
     """A step: its reason, its equations, and what is proved of them."""
     rows = [(left, _math(value)) for left, value in step.shown]
-    parts = [f"**{step.title}.** {step.reason}", _aligned(rows)]
+    parts = [f"**{step.title}.** {step.reason}", _aligned(rows), _table(step.rows)]
     if step.proves:
         parts.append(f"*Proved:* {step.proves}")
     return "\n\n".join(filter(None, parts))
@@ -107,6 +108,21 @@ def theorem(theorem: Theorem) -> str:
     parts = [f"**Lemma ({theorem.title or theorem.name}).** {theorem.statement}"]
     parts += [f"*Exception.* {theorem.exception}"] if theorem.exception else []
     return "\n\n".join([*parts, f"*Proof.* {theorem.proof}"])
+
+
+def _table(rows: Sequence[Sequence[Any]]) -> str:
+    """The rows of a step below the first one, which is the head."""
+    lines = [f"| {' | '.join(map(_entry, row))} |" for row in rows]
+    return "\n".join([*lines[:1], "|---" * len(rows[0]) + "|", *lines[1:]]) if rows else ""
+
+
+def _entry(value: Any) -> str:
+    """An entry of a table: words, an expression or an increasing chain of them."""
+    if isinstance(value, str):
+        return _text(value)
+    chain = value if isinstance(value, tuple) else (value,)
+    text = r" \le ".join(map(_math, chain)).replace("|", r"\vert ")
+    return f"${text}$"
 
 
 def _aligned(rows: list[tuple[str, str]]) -> str:

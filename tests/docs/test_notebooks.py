@@ -43,3 +43,11 @@ def test_a_derivation_shows_what_a_reader_computes() -> None:
     assert r"\theta_{1} = \operatorname{atan2}(p_{y},\ p_{x}) - \alpha$" in text
     assert not any(word in text for word in ("beyond", "no link", r"\text", "eqref"))
     assert r"$\mathrm{c}_{12} = \cos (\theta_{1} + \theta_{2})$" in text
+
+
+def test_the_table_of_a_step_is_shown() -> None:
+    from closedform.derivations.planar_2r import d
+
+    step = next(s for s in d.steps if s.title == "Skeleton")
+    rows = [line for line in (step._repr_markdown_() or "").splitlines() if line.startswith("|")]
+    assert rows[1] == "|---|---|" and rows[2] == "| base to elbow | $l_{1}$ |"

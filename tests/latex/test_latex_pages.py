@@ -339,3 +339,12 @@ def test_few_results_that_are_arguments_stay_equations() -> None:
     )
     (found,) = document(d, Proof(d.name, d.paper.key, (), 0, ()))["functions"]
     assert found["same"] == "" and found["blocks"]
+
+
+def test_tables_of_a_mechanism_are_as_wide_as_the_text_and_no_box_stands_alone() -> None:
+    text = render("latex/robot.tex.jinja", context("scara"))
+    mechanism = text[text.index(r"\section{Mechanism}") : text.index(r"\section{Notation}")]
+    assert mechanism.count(r"\begin{fulltable}") == mechanism.count(r"\endhead") == 2
+    box = re.search(r"\\newcommand\{\\proofend\}.*", text)
+    assert box and r"\nobreak\hskip1em" in box[0] and "penalty" not in box[0]
+    assert text.count(r"\square") == 1

@@ -225,10 +225,14 @@ def at_multiples(bar: FiveBar, value: sp.Expr, angle: sp.Expr, name: str) -> Che
     The value is a multiple of k, so four values of k stand for all of them.
     """
     theta4 = bar.angles[3]
-    several = [value.subs(theta4, angle.subs(K, k)) for k in (1, 2, 3, 4)]
-    names = (f"the list of {name} for k = 1, 2, 3, 4", "that of singular matrices")
-    postures = bar.postures({theta4: angle.subs(K, 1)})
-    return Identity(several, [sp.S.Zero] * 4, names=names, postures=postures)
+    several = {f"for k = {k}": value.subs(theta4, angle.subs(K, k)) for k in (1, 2, 3, 4)}
+    return Identity(
+        list(several.values()),
+        [sp.S.Zero] * 4,
+        names=(name, "that of singular matrices"),
+        postures=bar.postures({theta4: angle.subs(K, 1)}),
+        parts=list(several),
+    )
 
 
 AXIS_TOO = "on-the-axis"

@@ -18,7 +18,7 @@ from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.lemmas import clauses, packed
-from closedform.emit.backends.latex.prose import Prose, escape, quoted
+from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.backends.latex.sheet import Block
 from closedform.emit.backends.latex.wide import Lines
 from closedform.emit.render import render
@@ -348,3 +348,15 @@ def test_tables_of_a_mechanism_are_as_wide_as_the_text_and_no_box_stands_alone()
     box = re.search(r"\\newcommand\{\\proofend\}.*", text)
     assert box and r"\nobreak\hskip1em" in box[0] and "penalty" not in box[0]
     assert text.count(r"\square") == 1
+
+
+def test_lines_of_a_formula_start_below_the_words_that_lead_to_them() -> None:
+    lines = r"$\begin{aligned} a &= b \\ &= c \end{aligned}$"
+    assert mixed(lines, led=True).startswith(r"\newline ")
+    assert r"\newline" not in mixed(lines) + mixed("$a$", led=True)
+
+
+def test_a_remark_is_not_broken_where_a_line_can_hold_it() -> None:
+    style = render("latex/robot.tex.jinja", context("scara"))
+    remark = re.search(r"\\newcommand\{\\remark\}\[1\]\{\\sbox.*\n.*", style)
+    assert remark and r"\usebox{\fitbox}" in remark[0] and r"\remark{#3}" in style

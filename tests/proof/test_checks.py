@@ -105,6 +105,8 @@ class TestIdentity:
         matrix = Identity(sp.Matrix([[1, x], [y, 2 * y]]), sp.Matrix([[1, x], [y, x]]))
         assert "entry (2,2) of the printed form is" in evidence(matrix)
         assert "part 2 of the printed form is" in evidence(Identity([x, x], [x, -x]))
+        named = Identity([x, x], [x, -x], names=("f", "zero"), parts=("for k = 1", "for k = 2"))
+        assert ": f for k = 2 is " in evidence(named) and "part" not in evidence(named)
 
     def test_sequences_are_compared_part_by_part(self) -> None:
         assert Identity([x, sin(x) ** 2], (x, 1 - cos(x) ** 2)).judge().kind == PROVED

@@ -61,6 +61,8 @@ class Identity(Check):
     small: sp.Symbol | tuple[sp.Symbol, ...] | None = None
     names: tuple[str, str] = ("the printed form", "the derived one")
     postures: Sequence[Point] = ()
+    parts: Sequence[str] = ()
+    """What the name of each part of a list adds to that of the list: ``for k = 1``."""
 
     def judge(self) -> Verdict:
         sides = list(zip(entries(self.printed), entries(self.derived), strict=True))
@@ -83,12 +85,14 @@ class Identity(Check):
         if shape:
             row, column = divmod(found.entry, shape[1])
             entry = f"entry ({row + 1},{column + 1}) of "
-        elif isinstance(self.printed, Sequence):
+        elif isinstance(self.printed, Sequence) and not self.parts:
             entry = f"part {found.entry + 1} of "
         printed, derived = (
             shown(entries(side)[found.entry], found.point) for side in (self.printed, self.derived)
         )
         left, right = self.names
+        if self.parts:
+            left = f"{left} {self.parts[found.entry]}"
         if right == f"${derived}$":
             return (*at(found.point), entry, left, " is ", printed, ", not ", derived)
         of = "" if not entry or right.startswith("that of ") else "that of "

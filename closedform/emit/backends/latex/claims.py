@@ -81,7 +81,7 @@ class Claims:
             "evidence": self.told(claim.evidence),
             "reading": mixed(claim.readings[0].text) if claim.readings else "",
             "others": [(mixed(r.text), r.kind, self.told(r.evidence)) for r in claim.readings[1:]],
-            "corrected": mixed(claim.corrected),
+            "corrected": mixed(claim.corrected, led=True),
             "erratum": claim.erratum,
             "title": titles.get(claim.erratum, ""),
         }

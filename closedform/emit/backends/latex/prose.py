@@ -151,8 +151,11 @@ def escape(text: str) -> str:
     return "".join(parts)
 
 
-def mixed(text: str) -> str:
-    """Text with formulas between dollar signs; a matrix or a wide fraction shrinks to fit."""
+def mixed(text: str, *, led: bool = False) -> str:
+    """Text with formulas between dollar signs; a matrix or a wide fraction shrinks to fit.
+
+    Formulas of several lines start on a new one, also if words that are not here lead to them.
+    """
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
@@ -165,7 +168,7 @@ def mixed(text: str) -> str:
         formula = ROWS.sub(_roomy, formula if stiff else loosen(formula))
         formula = rf"$\displaystyle {formula}$"
         formula = rf"\fit{{{formula}}}" if stiff else formula
-        if r"\begin{aligned}" in part and parts[i - 1].strip():  # its lines stand by themselves
+        if r"\begin{aligned}" in part and (led or parts[i - 1].strip()):
             formula = rf"\newline {formula}"
         parts[i] = formula if i % 2 else quoted(part)
     return "".join(parts)

@@ -283,3 +283,18 @@ def test_the_book_does_not_depend_on_the_hash_seed() -> None:
     ]
     printed = [run.communicate()[0] for run in runs]
     assert printed[0] == printed[1] and len(printed[0]) > 10_000
+
+
+def test_what_most_chapters_have_is_not_in_the_index() -> None:
+    def chapter(name: str, *entries: str) -> book.Chapter:
+        return book.Chapter(name, name, PAPER, (), None, entries)
+
+    usual = r"function!fk@\texttt{fk}"
+    four = [chapter("a", usual, "loop"), chapter("b", usual, "loop"), chapter("c", usual)]
+    assert book.everywhere([*four, chapter("d")]) == [usual]
+    assert book.everywhere(four[:2]) == []  # two chapters are no crowd
+    own = book.chapter(toy(), None).indexed
+    assert own == ("reach", "side", "again", r"function!side@\texttt{side}")
+    text = render("latex/book.tex.jinja", book.context([*four, chapter("d")]))
+    assert rf"\csname everywhere:\detokenize{{{usual}}}\endcsname" in text
+    assert all(rf"\indexed{{{entry}}}" in article(toy()) for entry in own)

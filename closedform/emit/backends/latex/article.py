@@ -53,7 +53,7 @@ from closedform.model.lemma import Lemma
 from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
-__all__ = ["Page", "document", "indexed", "tied"]
+__all__ = ["Page", "document", "index_of", "indexed", "tied"]
 
 FEW = 3
 """Fewer results that are arguments are equations like all others."""
@@ -252,6 +252,7 @@ class Page(Sheet):
     def function(self, function: Function) -> dict[str, Any]:
         return {
             "name": escape(function.name),
+            "index": index_of(function.name),
             "arguments": ", ".join(escape(a.name) for a in function.inputs),
             "summary": self.prose(function.summary),
             "source": self.prose(function.source),
@@ -434,6 +435,11 @@ def indexed(title: str) -> str:
     escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
     parts = (ARTICLE.sub("", part.strip()) for part in escaped.split(":"))
     return "!".join(p if PROPER.match(p) else p[:1].lower() + p[1:] for p in parts)
+
+
+def index_of(function: str) -> str:
+    """The entry of a function in the index."""
+    return rf"function!{function.replace('_', ' ')}@\texttt{{{escape(function)}}}"
 
 
 def default(value: sp.Rational) -> str:

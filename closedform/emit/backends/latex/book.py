@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from closedform.emit.backends.latex import bibliography, lemmas
+from closedform.emit.backends.latex.article import index_of, indexed
 from closedform.emit.backends.latex.prose import escape, mixed
 from closedform.emit.errata import MEANINGS, Entry, PaperErrata, Part, gathered
 from closedform.model.claims import VERDICTS
@@ -51,11 +53,16 @@ class Chapter:
     paper: Paper
     lemmas: tuple[str, ...]
     errata: Part | None
+    indexed: tuple[str, ...] = ()
+    """The entries of the index that its steps and functions have."""
 
 
 def chapter(derivation: Derivation, errata: Part | None) -> Chapter:
     used = tuple(lemmas.lemmas_of(derivation))
-    return Chapter(derivation.name, derivation.title, derivation.paper, used, errata)
+    found = [indexed(s.title) for s in derivation.steps]
+    found += [index_of(f.name) for f in derivation.functions]
+    entries = tuple(dict.fromkeys(found))
+    return Chapter(derivation.name, derivation.title, derivation.paper, used, errata, entries)
 
 
 def in_order(chapters: Iterable[Chapter]) -> list[Chapter]:
@@ -73,12 +80,19 @@ def context(shares: Sequence[Chapter]) -> dict[str, Any]:
             link = rf"\hyperref[chapter:{one.name}]{{{escape(one.title)}}}"
             used.setdefault(name, []).append(link)
     return {
+        "everywhere": everywhere(chapters),
         "names": [one.name for one in chapters],
         "theorems": lemmas.context(None, used),
         "papers": [_paper(p, chapters) for p in gathered(one.errata for one in chapters)],
         "meanings": [(kind, escape(MEANINGS[kind])) for kind in VERDICTS],
         "works": bibliography.entries(one.paper for one in chapters),
     }
+
+
+def everywhere(chapters: Sequence[Chapter]) -> list[str]:
+    """The entries of more than half of the chapters: the index would say nothing about them."""
+    found = Counter(entry for one in chapters for entry in one.indexed)
+    return sorted(entry for entry, n in found.items() if n > 2 and 2 * n > len(chapters))
 
 
 def _paper(found: PaperErrata, chapters: Sequence[Chapter]) -> dict[str, Any]:

@@ -345,6 +345,9 @@ def test_tables_of_a_mechanism_are_as_wide_as_the_text_and_no_box_stands_alone()
     text = render("latex/robot.tex.jinja", context("scara"))
     mechanism = text[text.index(r"\section{Mechanism}") : text.index(r"\section{Notation}")]
     assert mechanism.count(r"\begin{fulltable}") == mechanism.count(r"\endhead") == 2
+    notation = text[text.index(r"\section{Notation}") : text.index(r"\section{Derivation}")]
+    (measured,) = re.findall(r"\\symbols\{(.*)\}\n", notation)
+    assert all(rf"\widest{{{s}}}" in measured for s in re.findall(r"(?m)^(\$.*?\$) & ", notation))
     box = re.search(r"\\newcommand\{\\proofend\}.*", text)
     assert box and r"\nobreak\hskip1em" in box[0] and "penalty" not in box[0]
     assert text.count(r"\square") == 1

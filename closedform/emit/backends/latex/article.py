@@ -28,7 +28,7 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
-from closedform.emit.backends.latex.formulas import flat, measure
+from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.names import is_word
@@ -511,6 +511,5 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     return context | {
         "legend": [f"{short} = {full}" for short, full in legend],
         "symbols": notation,
-        "widest": max((symbol for symbol, _ in notation), key=measure, default=""),
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
     }

@@ -138,7 +138,7 @@ def closed_chain(robot: ModuleType) -> Any:
         way = end - foot
         turn = float(np.arctan2(way[1], way[0]))
         d.angle(foot, along, (0, 0, 1), turn, rf"$\theta_{joint}$", radius=0.09)
-    d.frame(A - np.array([0, 2.0]), names=("y", r"\rho", ""), reach=0.1)
+    d.frame(A - np.array([0, 3.0]), names=("y", r"\rho", ""), reach=0.1)
     d.clean([at, A[None] - [0, 2.4], D[None] + [2.2, 0]], margin=0.08)
     return ax
 

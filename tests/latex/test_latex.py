@@ -255,7 +255,7 @@ def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
         r"Since $\displaystyle a < b$.",
         r"\textbf{eq. (2)} (p. 3\_4): $x_{1}$ is one",
         r"\finding{Read as:}{all of $\displaystyle a_1$}",
-        r"\finding{Found:}{at $\displaystyle \theta_1 = 2\pi/3$: 1, not 0}",
+        r"\finding{Refuted:}{at $\displaystyle \theta_1 = 2\pi/3$: 1, not 0}",
         r"\finding{Other reading, proved:}{100 \% (\&)}",
         r"\finding{Holds instead, proved:}",
         r"\emph{What follows:} 5 \%.",

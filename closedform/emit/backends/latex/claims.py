@@ -77,6 +77,7 @@ class Claims:
             "verdict": claim.kind if claim.kind in HOLDS else rf"\textbf{{{claim.kind}}}",
             "printed": mixed(claim.printed),
             "paraphrase": claim.paraphrase,
+            "judged": f"{claim.kind.capitalize()}{':' if claim.evidence else '.'}",
             "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
             "evidence": self.told(claim.evidence),
             "reading": mixed(claim.readings[0].text) if claim.readings else "",

@@ -33,7 +33,7 @@ MEANINGS = {
     "J_o": "derivative of the task with respect to theta1, the virtual arm, yaw, roll and pitch",
     "J_i": "derivative of these quantities with respect to the joints",
     "P": "derivative of the position with respect to theta1 and the virtual arm",
-    "N": "derivative of the position with respect to the lengths of the virtual arm with the wrist",
+    "Q": "derivative of the position with respect to the lengths of the virtual arm with the wrist",
     "H": "derivative of these lengths with respect to yaw, roll and pitch",
     "H_0": "the same for a wrist of constant length",
     r"\mathbf w": "derivative of these lengths with respect to that of the wrist",
@@ -58,18 +58,18 @@ def factors_shown(
     lengths = sp.Matrix([aside, along, across])
     end = reach(m, posture.upper, posture.fore, L_2W, a_3W)
     place = in_space(m, posture.waist, end, -L_theta)
-    P, N = place.jacobian([q.theta1, theta2A, theta23A]), place.jacobian(LENGTHS)
+    P, Q = place.jacobian([q.theta1, theta2A, theta23A]), place.jacobian(LENGTHS)
     by_hand = lengths.diff(l_H)
     constant = lengths.jacobian(turns) + by_hand * sp.Matrix([whole]).jacobian(turns)
     slopes = sp.Matrix([wrist_squared(m, base)]).jacobian(turns) / (2 * wrist)
     known = dict(zip(LENGTHS, lengths, strict=True))
-    rows = sp.Matrix.hstack(P.subs(known), N * (constant + by_hand * slopes)).subs(l_H, whole)
+    rows = sp.Matrix.hstack(P.subs(known), Q * (constant + by_hand * slopes)).subs(l_H, whole)
     shown = {
         "J": r"J_o\,J_i",
-        "J_o": r"\begin{bmatrix} P & N\,H \\ 0 & I \end{bmatrix}",
+        "J_o": r"\begin{bmatrix} P & Q\,H \\ 0 & I \end{bmatrix}",
         "J_i": r"\begin{bmatrix} 1 & 0 & 0 \\ 0 & V & 0 \\ 0 & W & 0 \\ 0 & 0 & 1 \end{bmatrix}",
         "P": P,
-        "N": N,
+        "Q": Q,
         "H": r"H_0 + \mathbf w\,\mathbf g^T",
         "H_0": constant,
         r"\mathbf w": by_hand,

@@ -55,6 +55,17 @@ def test_names_are_defined_before_they_are_used_and_used_at_all(tex: Path) -> No
             assert name in later or RESULT.match(name) or (entry and entry[1] in later), name
 
 
+@pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
+def test_the_name_of_a_matrix_is_not_that_of_a_number(tex: Path) -> None:
+    """N was a factor of the Jacobian in a step, and a squared length in an algorithm."""
+    text = tex.read_text("utf-8")
+    matrices = set(re.findall(r"(?m)^(\S+) &= \\begin\{bmatrix\}", text))
+    for box in BOX.finditer(text):
+        items = [i for line in STEP.findall(box[2]) for i in line.split(r",\quad ")]
+        made = [m for i in items if (m := re.match(r"\$\\displaystyle (\S+) = (.*)", i))]
+        assert not {m[1] for m in made if "bmatrix" not in m[2]} & matrices, box[1]
+
+
 def test_the_part_of_a_part_stands_first() -> None:
     texts = [r"$\displaystyle x = u_{1}$", *(rf"$\displaystyle {n} = {e}$" for n, e in (
         ("u_{1}", "a u_{3} + u_{2}"), ("u_{2}", "b + u_{3}"), ("u_{3}", "c"),

@@ -86,7 +86,7 @@ def test_symbols_of_a_kind_share_a_row() -> None:
     rows = [(f"A_{{{k}}}", rf"see \eqref{{eq:r:{k}}}") for k in (1, 2, 3)]
     rows += [("f", r"see \eqref{eq:r:9}"), ("x", "task coordinate"), ("y", "task coordinate")]
     assert symbols.joined(rows) == [
-        (r"A_{1},\ \ldots,\ A_{3}", r"see \eqref{eq:r:1}--\eqref{eq:r:3}"),
+        (r"A_{1},\ A_{2},\ A_{3}", r"see \eqref{eq:r:1}--\eqref{eq:r:3}"),
         ("f", r"see \eqref{eq:r:9}"),
         (r"x,\ y", "task coordinates"),
     ]
@@ -238,7 +238,7 @@ def test_symbols_with_one_meaning_keep_it_in_their_row() -> None:
     rows = [(f"A_{{{k}}}", rf"a motion, see \eqref{{eq:r:{k}}}") for k in (1, 2, 3)]
     rows += [("B_{1}", r"a force, see \eqref{eq:r:4}"), ("B_{2}", r"a torque, see \eqref{eq:r:5}")]
     assert symbols.joined(rows) == [
-        (r"A_{1},\ \ldots,\ A_{3}", r"a motion, see \eqref{eq:r:1}--\eqref{eq:r:3}"),
+        (r"A_{1},\ A_{2},\ A_{3}", r"a motion, see \eqref{eq:r:1}--\eqref{eq:r:3}"),
         *rows[3:],
     ]
 
@@ -295,9 +295,11 @@ def test_a_sum_of_products_is_grouped() -> None:
 
 def test_the_entries_of_a_diagonal_share_a_row() -> None:
     rows = [(f"B_{{{k}{k}}}", rf"entry, see \eqref{{eq:x:{k}}}") for k in (1, 2, 3)]
-    whole = [(r"B_{11},\ \ldots,\ B_{33}", r"entry, see \eqref{eq:x:1}--\eqref{eq:x:3}")]
+    whole = [(r"B_{11},\ B_{22},\ B_{33}", r"entry, see \eqref{eq:x:1}--\eqref{eq:x:3}")]
     assert symbols.joined(rows) == whole
     assert symbols.joined([rows[0], rows[2]]) == [rows[0], rows[2]]
+    fourth = ("B_{44}", r"entry, see \eqref{eq:x:4}")
+    assert symbols.joined([*rows, fourth])[0][0] == r"B_{11},\ \ldots,\ B_{44}"
 
 
 @pytest.mark.parametrize(

@@ -244,6 +244,8 @@ DEFINED = re.compile(r"(.*?)see (\\eqref\{[^{}]*\})")
 """A meaning with the number of the equation that defines the symbol."""
 INDEXED = re.compile(r"(.+)_\{(\d+)\}('?)")
 """A symbol with a number."""
+FEW = 3
+"""So many names in a row are all written."""
 WIDEST = 24
 """The letters of the symbols in one row; more are too wide for their column."""
 
@@ -304,9 +306,9 @@ def _joined(forms: list[str], meaning: str, labels: list[str]) -> tuple[str, str
     if not labels:
         return r",\ ".join(forms), _plural(meaning)
     what = meaning.partition("see ")[0]
-    if len(forms) == 2:
-        return r",\ ".join(forms), f"{what}see {labels[0]} and {labels[1]}"
-    return rf"{forms[0]},\ \ldots,\ {forms[-1]}", f"{what}see {labels[0]}--{labels[-1]}"
+    named = forms if len(forms) <= FEW else [forms[0], r"\ldots", forms[-1]]
+    where = " and ".join(labels) if len(labels) == 2 else f"{labels[0]}--{labels[-1]}"
+    return r",\ ".join(named), f"{what}see {where}"
 
 
 def _plural(meaning: str) -> str:

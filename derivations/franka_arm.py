@@ -105,8 +105,9 @@ far = ik.let("far", sqrt(u.dot(u)))
 reach = ik.let("reach", sqrt(u[0] ** 2 + u[1] ** 2))
 d.step(
     "Inverse: the shoulder",
-    "theta7 is given, so the vector u from the wrist to the shoulder is known in the frame of "
-    "theta6.",
+    "In the frame of the hand, s leads to the shoulder from the point of the last axis that is d7 "
+    "before the hand.  theta7 is given, so the vector u from the wrist to the shoulder is known "
+    "too, in the frame of theta6.",
     {
         "s": ik.R.T * (sp.Matrix([0, 0, d1]) - ik.p) + sp.Matrix([0, 0, d7]),
         "u": rotation("x", pi / 2) * (rotation("z", theta7) * s + sp.Matrix([a7, 0, 0])),

@@ -218,7 +218,8 @@ class Hand:
         on_hand = any(leg.on_hand for leg in self.legs)
         less = ", minus the place of its far end on the hand," if on_hand else ""
         same = f"  The legs are alike: {INDEX} is any of 1 to {len(self.legs)}." * bool(self.alike)
-        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
+        strut = "  One rod, the strut, has no joint: its near end stands still."
+        strut *= len(self.driven) < len(self.legs)
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of rod {INDEX}{less} is "

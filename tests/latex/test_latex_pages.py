@@ -16,7 +16,7 @@ from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.article import Page, document, indexed, tied
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import Numbered, Numbers
-from closedform.emit.backends.latex.formulas import FITS, Printer, measure
+from closedform.emit.backends.latex.formulas import FITS, Printer, flat, measure
 from closedform.emit.backends.latex.lemmas import clauses, packed
 from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.backends.latex.sheet import Block
@@ -365,3 +365,9 @@ def test_a_remark_is_not_broken_where_a_line_can_hold_it() -> None:
     style = render("latex/robot.tex.jinja", context("scara"))
     remark = re.search(r"\\newcommand\{\\remark\}\[1\]\{\\sbox.*\n.*", style)
     assert remark and r"\usebox{\fitbox}" in remark[0] and r"\remark{#3}" in style
+
+
+def test_half_an_angle_in_a_line_has_brackets() -> None:
+    """A distance in a table was 2 r |sin b/2|."""
+    assert flat(r"2 r |\sin \frac{\beta_{1}}{2}|") == r"2 r |\sin(\beta_{1}/2)|"
+    assert flat(r"\cos \frac{a - b}{2} + \frac{1}{2}") == r"\cos((a - b)/2) + 1/2"

@@ -425,8 +425,8 @@ def natural(text: str) -> tuple[Any, ...]:
 
 FLAT = re.compile(r"\\frac\{((?:[^{}+-]|\{[^{}+-]*\})*)\}\{(\d+)\}")
 """A fraction that can stand in a line."""
-ANGLE = re.compile(r"(\\(?:sin|cos|tan)) \\frac\{((?:[^{}]|\{[^{}]*\})*[+-](?:[^{}]|\{[^{}]*\})*)\}\{(\d+)\}")  # fmt: skip  # noqa: E501
-"""The sine, the cosine or the tangent of a part of a sum."""
+ANGLE = re.compile(r"(\\(?:sin|cos|tan)) \\frac\{((?:[^{}]|\{[^{}]*\})*)\}\{(\d+)\}")
+"""The sine, the cosine or the tangent of a part of an angle."""
 
 
 def stacked(rows: Sequence[str]) -> str:
@@ -443,7 +443,13 @@ FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}\{((?:[^
 
 def flat(text: str) -> str:
     """The same with fractions that stand in a line, where that can be."""
-    return FLAT.sub(r"\1/\2", ANGLE.sub(r"\1((\2)/\3)", text))
+    return FLAT.sub(r"\1/\2", ANGLE.sub(_part_of_angle, text))
+
+
+def _part_of_angle(found: re.Match[str]) -> str:
+    """A function of a part of an angle, with brackets: sin a/2 would be read as (sin a)/2."""
+    function, angle, parts = found.groups()
+    return f"{function}({f'({angle})' if re.search('[+-]', angle) else angle}/{parts})"
 
 
 def is_nested(text: str) -> bool:

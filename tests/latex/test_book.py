@@ -287,7 +287,7 @@ def test_the_book_does_not_depend_on_the_hash_seed() -> None:
 
 def test_what_most_chapters_have_is_not_in_the_index() -> None:
     def chapter(name: str, *entries: str) -> book.Chapter:
-        return book.Chapter(name, name, PAPER, (), None, entries)
+        return book.Chapter(name, name, PAPER, (), None, indexed=entries)
 
     usual = r"function!fk@\texttt{fk}"
     four = [chapter("a", usual, "loop"), chapter("b", usual, "loop"), chapter("c", usual)]

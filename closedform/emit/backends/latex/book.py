@@ -62,7 +62,9 @@ def chapter(derivation: Derivation, errata: Part | None) -> Chapter:
     found = [indexed(s.title) for s in derivation.steps]
     found += [index_of(f.name) for f in derivation.functions]
     entries = tuple(dict.fromkeys(found))
-    return Chapter(derivation.name, derivation.title, derivation.paper, used, errata, entries)
+    return Chapter(
+        derivation.name, derivation.title, derivation.paper, used, errata, indexed=entries
+    )
 
 
 def in_order(chapters: Iterable[Chapter]) -> list[Chapter]:

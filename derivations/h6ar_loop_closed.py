@@ -144,17 +144,14 @@ d.step(
     "coordinates.",
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
+half_line = sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)])
 leaning = d.step(
     "Yaw and roll from the tips",
     "The base line of the wrist is along the y axis after roll and yaw, R_z(phi) R_x(psi) e_y.  "
     "Half of it, of length b, has the component d across the mid-plane.  So b is "
     "d / (cos(psi) cos(phi)), which replaces d / cos(psi) in (8).  The other components give "
     "tan(phi) = -x / d and tan(psi) = cos(phi) z / d.",
-    {
-        r"b\,R_z(\phi) R_x(\psi)\,\mathbf e_y": sp.Matrix(
-            [-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]
-        )
-    },
+    {r"b\,R_z(\phi) R_x(\psi)\,\mathbf e_y": half_line},
     published=("(3)", "(4)", "(8)"),
     proves="The turned y axis times half the base line has the components -d tan(phi), d and d "
     "tan(psi)/cos(phi).",

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.rows import RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
-from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
+from closedform.mechanics.lengths import numbers_of_tool
 from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     Bound,

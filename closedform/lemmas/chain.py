@@ -14,7 +14,7 @@ same for every robot (see :mod:`closedform.proof.glue`):
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -26,13 +26,13 @@ from closedform.lemmas.corrected import Corrected, Correction
 from closedform.lemmas.given import given_slide, given_turn
 from closedform.lemmas.pairs import direction
 from closedform.mechanics.frames import pose_symbols, require_pose
+from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
     Bound,
     Let,
     Match,
-    Program,
     Statement,
     Vanishes,
     branches,
@@ -76,32 +76,27 @@ class Chain:
     forward: Any
     angles: Sequence[str] = ()
     name: str = "ik"
-    program: Program = field(init=False, repr=False, default_factory=Program)
-    links: list[Link] = field(init=False, repr=False, default_factory=list)
-    choices: list[tuple[sp.Symbol, Choice]] = field(init=False, repr=False, default_factory=list)
-    values: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
-    meaning: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
-    defined: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
-    lengths: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
-    notes: list[str] = field(init=False, repr=False, default_factory=list)
-    degenerate: list[Degenerate] = field(init=False, repr=False, default_factory=list)
-    units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(
-        init=False, repr=False, default_factory=list
-    )
-    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(
-        init=False, repr=False, default_factory=dict
-    )
-    directions: dict[sp.Expr, Pair] = field(init=False, repr=False, default_factory=dict)
-    extra_coordinates: list[sp.Symbol] = field(init=False, repr=False, default_factory=list)
-    condition: sp.Expr = field(init=False, repr=False, default=sp.S.Zero)
-    corrected: Corrected | None = field(init=False, repr=False, default=None)
-    weights: dict[sp.Symbol, sp.Expr] = field(init=False, repr=False, default_factory=dict)
-    coefficients: set[sp.Symbol] = field(init=False, repr=False, default_factory=set)
-    """Names of the coefficients of lemmas, which are proved for all values of them."""
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
-        self.program.taken = self.d.program().taken
+        self.program = self.d.program()
+        self.links: list[Link] = []
+        self.choices: list[tuple[sp.Symbol, Choice]] = []
+        self.values: dict[sp.Symbol, sp.Expr] = {}
+        self.meaning: dict[sp.Symbol, sp.Expr] = {}
+        self.defined: dict[sp.Symbol, sp.Expr] = {}
+        self.lengths: dict[sp.Symbol, sp.Expr] = {}
+        self.notes: list[str] = []
+        self.degenerate: list[Degenerate] = []
+        self.units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = []
+        self.halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = {}
+        self.directions: dict[sp.Expr, Pair] = {}
+        self.extra_coordinates: list[sp.Symbol] = []
+        self.condition: sp.Expr = sp.S.Zero
+        self.corrected: Corrected | None = None
+        self.weights: dict[sp.Symbol, sp.Expr] = {}
+        self.coefficients: set[sp.Symbol] = set()
+        """Names of the coefficients of lemmas, which are proved for all values of them."""
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         self._size: sp.Expr | None = None
         if self.is_pose:
@@ -587,32 +582,4 @@ def _exact(argument: Any) -> Any:
     return sp.Integer(argument) if type(argument) is int else argument
 
 
-def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None = None) -> sp.Expr:
-    """The lengths in a coordinate that are numbers, not parameters: 3 in 3 cos(theta).
-
-    ``names`` are those of values for which the same is known.
-    """
-    names = names or {}
-    total = sp.S.Zero
-    for term in sp.Add.make_args(sp.expand(place)):
-        size, rest = term.as_independent(*term.free_symbols, as_Add=False)
-        for base, _ in (f.as_base_exp() for f in sp.Mul.make_args(rest) if f != 1):
-            size *= 1 if isinstance(base, sp.sin | sp.cos) else names.get(base, 0)
-        total += abs(size)
-    return total
-
-
-def numbers_of_tool(derivation: Derivation) -> list[float]:
-    """For each coordinate of the tool, the lengths in it that are numbers."""
-    found = []
-    for pose in (f for f in derivation.functions if f.name == "pose"):
-        names: dict[sp.Basic, sp.Expr] = {}
-        for statement in pose.body:
-            if isinstance(statement, (Let, Bound)):
-                names[statement.symbol] = lengths_in_numbers(statement.value, names)
-        places = pose.outputs[0].entries[3:12:4]
-        found += [float(lengths_in_numbers(place, names)) for place in places]
-    return found
-
-
-__all__ = ["Chain", "Choice", "lengths_in_numbers", "numbers_of_tool"]
+__all__ = ["Chain", "Choice"]

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 
 import sympy as sp
 
-from closedform.lemmas.chain import lengths_in_numbers
 from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
 from closedform.lemmas.planes import Flat
 from closedform.loops.reached import bounds_of_any, export_reach, signs_of
+from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,

@@ -20,10 +20,10 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.chain import lengths_in_numbers
 from closedform.lemmas.legs import Crank, vector
 from closedform.loops.hand import square
 from closedform.mechanics.assur import Dyad, Order, freedoms, needed_for, order
+from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 

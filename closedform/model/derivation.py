@@ -130,22 +130,14 @@ RESULTS = {"Solutions": "q", "Positions": "p"}
 class Derivation(Shown):
     """The derivation of one mechanism.
 
-    Its methods declare parameters and joints, state steps, and export functions and inverses.
-
     Parameters
     ----------
-    name
-        the name of the printed modules, and of the script
-    title
-        one line that says what the mechanism is
-    paper
-        the paper that it is from
-    mechanism
-        the mechanism in a few sentences
-    task
-        the names of the coordinates of the hand that the inverse reaches
-    branches, assembly_modes, singularities
-        names, in the order in which the functions return them
+    name, title
+        the name of the script and of the printed modules; in one line, what the mechanism is
+    paper, mechanism
+        the paper that it is from; the mechanism in a few sentences
+    task, branches, assembly_modes, singularities
+        names, in order: of the coordinates of a target, and of what the functions return
 
     A script leaves out the other arguments; the methods fill them.
     """

@@ -40,7 +40,7 @@
 #define CF_BOWED CLOSEDFORM_C(1e-3) /* a line whose direction rounding spoils; what is left is corrected */
 
 /* The functions and the sizes of one robot. task: 16 for a pose, 17 for a pose and a number that is
- * given beside it (the last of x, and of the rows of J), 9 for a rotation, or the number of
+ * given besides it (the last of x, and of the rows of J), 9 for a rotation, or the number of
  * coordinates; angles and revolute have a bit for each coordinate and each joint. lengths: the power
  * of a length in the determinant, which is NULL if there is none. */
 typedef struct {
@@ -57,7 +57,7 @@ typedef struct {
     const void *params;
     const real_t *x;
     real_t size;
-    size_t rows; /* of the error; the number beside the pose does not count where it is undefined */
+    size_t rows; /* of the error; the number besides the pose does not count where it is undefined */
 } cf_task;
 
 static inline int cf_is_pose(const cf_robot *robot)
@@ -164,7 +164,7 @@ static inline int cf_task_jacobian(const cf_task *t, const real_t *q, real_t *J)
         mode = cf_mode(t, at);
     }
     for (size_t i = 0; i < rows; ++i) {
-        const size_t place = cf_is_pose(t->robot) ? i + 10 : i; /* in x, of the number beside a pose */
+        const size_t place = cf_is_pose(t->robot) ? i + 10 : i; /* in x, of the number besides a pose */
         const int length = cf_is_pose(t->robot) && i < 6 ? i < 3
                            : t->robot->task == 9          ? 0
                                                           : !((t->robot->angles >> place) & 1u);
@@ -307,7 +307,7 @@ static inline void cf_gradient(size_t n, void (*value)(const void *params, const
     }
 }
 
-/* The same task, but the number beside the pose counts only if a posture of the inverse has it, and
+/* The same task, but the number besides the pose counts only if a posture of the inverse has it, and
  * postures to both sides of that one: where it is undefined it may have any value. */
 static inline cf_task cf_keeping(const cf_task *t, const real_t *q)
 {

@@ -11,7 +11,7 @@
 #define FRANKA_ARM_JOINTS 7
 #define FRANKA_ARM_BRANCHES 8
 
-/* What is given beside the target, at a posture. */
+/* What is given besides the target, at a posture. */
 static inline void franka_arm_nearest_given(const void *params, const real_t *q, real_t *theta7)
 {
     (void)params, *theta7 = q[6];
@@ -42,7 +42,7 @@ static inline void franka_arm_nearest_determinant(const void *params, const real
 /*
  * Of all branches of franka_arm_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
- * theta7: what the inverse takes beside the target; NULL: its value at the seed.
+ * theta7: what the inverse takes besides the target; NULL: its value at the seed.
  * limits: the lower limits of all joints (theta1, theta2, theta3, theta4, theta5, theta6, theta7), then the upper ones; NULL: none.
  * weights: of the squares of the joints in the distance; NULL: all 1.
  * q, status: the posture and the status of its branch; NaN and CLOSEDFORM_UNREACHABLE or

@@ -11,7 +11,7 @@
 #define SRS_ARM_JOINTS 7
 #define SRS_ARM_BRANCHES 8
 
-/* What is given beside the target, at a posture. */
+/* What is given besides the target, at a posture. */
 static inline void srs_arm_nearest_given(const void *params, const real_t *q, real_t *arm_angle)
 {
     srs_arm_arm_angle((const srs_arm_params *)params, q, arm_angle);
@@ -42,7 +42,7 @@ static inline void srs_arm_nearest_determinant(const void *params, const real_t 
 /*
  * Of all branches of srs_arm_ik, and all turns of each joint, the posture that is nearest to a seed.
  *
- * arm_angle: what the inverse takes beside the target; NULL: its value at the seed.
+ * arm_angle: what the inverse takes besides the target; NULL: its value at the seed.
  * limits: the lower limits of all joints (theta1, theta2, theta3, theta4, theta5, theta6, theta7), then the upper ones; NULL: none.
  * weights: of the squares of the joints in the distance; NULL: all 1.
  * q, status: the posture and the status of its branch; NaN and CLOSEDFORM_UNREACHABLE or

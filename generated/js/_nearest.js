@@ -36,7 +36,7 @@ const ANGLES = ["yaw", "pitch", "roll", "psi", "phi", "theta"];
  * @typedef {object} Options
  * @property {readonly [ArrayLike<number>, ArrayLike<number>]} [limits] the lower and the upper limits
  * @property {ArrayLike<number>} [weights] of the squares of the joints in the distance, 1 by default
- * @property {number} [given] what `robot.ik` takes beside the target, by default its value at the seed
+ * @property {number} [given] what `robot.ik` takes besides the target, by default its value at the seed
  */
 
 /**
@@ -80,7 +80,7 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
 }
 
 /**
- * What the inverse takes beside the target: a number, or undefined.
+ * What the inverse takes besides the target: a number, or undefined.
  *
  * @param {any} robot
  * @param {number | undefined} given
@@ -213,7 +213,7 @@ class Task {
      * @param {any} robot
      * @param {number[]} x
      * @param {Readonly<Record<string, number | undefined>>} parameters
-     * @param {number | undefined} given the number beside the target, if there is one
+     * @param {number | undefined} given the number besides the target, if there is one
      */
     constructor(robot, x, parameters, given) {
         this.robot = robot;
@@ -230,7 +230,7 @@ class Task {
     }
 
     /**
-     * The same task, but the number beside the target counts only if a posture of the inverse has it,
+     * The same task, but the number besides the target counts only if a posture of the inverse has it,
      * and postures to both sides of that one: where it is undefined it may have any value.
      *
      * @param {readonly number[]} q
@@ -245,7 +245,7 @@ class Task {
     }
 
     /**
-     * The error of the number beside the target at a posture; empty if there is no such number.
+     * The error of the number besides the target at a posture; empty if there is no such number.
      *
      * @param {readonly number[]} q
      */
@@ -256,7 +256,7 @@ class Task {
     }
 
     /**
-     * The derivatives of the number beside the target with respect to the joints.
+     * The derivatives of the number besides the target with respect to the joints.
      *
      * @param {readonly number[]} q
      */

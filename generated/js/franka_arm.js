@@ -40,7 +40,7 @@ export const TASK = Object.freeze(/** @type {const} */ (["T11", "T12", "T13", "T
 export const BRANCHES = Object.freeze(/** @type {const} */ (["bent_ahead_front", "bent_ahead_back", "bent_behind_front", "bent_behind_back", "over_ahead_front", "over_ahead_back", "over_behind_front", "over_behind_back"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "elbow", "axis", "wrist"]));
 
-/** What `ik` takes beside the target: a joint, or the function of this name. */
+/** What `ik` takes besides the target: a joint, or the function of this name. */
 export const GIVEN = "theta7";
 
 /** What `skeleton` draws: each link is a polyline through points of one rigid body. */

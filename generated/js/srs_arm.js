@@ -40,7 +40,7 @@ export const TASK = Object.freeze(/** @type {const} */ (["T11", "T12", "T13", "T
 export const BRANCHES = Object.freeze(/** @type {const} */ (["up_front_noflip", "up_front_flip", "up_back_noflip", "up_back_flip", "down_front_noflip", "down_front_flip", "down_back_noflip", "down_back_flip"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "elbow", "wrist", "upright"]));
 
-/** What `ik` takes beside the target: a joint, or the function of this name. */
+/** What `ik` takes besides the target: a joint, or the function of this name. */
 export const GIVEN = "arm_angle";
 
 /** What `skeleton` draws: each link is a polyline through points of one rigid body. */

@@ -200,7 +200,7 @@ def test_a_passive_leg_in_any_direction() -> None:
         ("axis = [0, 0, 1]", "axis = [1, 0, 1]", "the axes of o and s have to be at right angles"),
         ('at = "P", kind', 'at = "Q", kind', "s has to be at P, which is on the line of post"),
         ('"C1", kind = "spherical"', '"C1", axis = [0, 1, 0]',
-         "c1, c2 and c3 would hold platform by an axis; a leg is known to end"),
+         "c1, c2 and c3 would hold platform by an axis; a leg may end"),
         ("copies = 3", "copies = 2", "so three joints are driven, not q1 and q2"),
     ],
 )  # fmt: skip

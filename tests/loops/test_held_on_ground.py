@@ -164,7 +164,7 @@ def test_a_matrix_that_is_no_rotation_is_invalid(robot: ModuleType) -> None:
         ("ankle", ", second = [1, 0, 0]", "", "give it two axes at right angles"),
         ("ankle", "second = [1, 0, 0]", "second = [1, 1, 0]", "second of ankle have to be at"),
         ("ankle", 'kind = "universal", axis = [0, 1, 0], second = [1, 0, 0]', 'kind = "spherical"',
-         "ankle leaves the hand three freedoms, so three joints are driven, not q1 and q2"),
+         "ankle leaves the hand three degrees of freedom, so three joints are driven, not q1"),
         ("ankle", 'kind = "universal", axis = [0, 1, 0], second', 'kind = "spherical", second',
          "only a universal joint has a second axis"),
         ("ankle", 'kind = "universal", axis = [0, 1, 0], second = [1, 0, 0]', 'axis = [0, 1, 0]',

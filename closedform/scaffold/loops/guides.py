@@ -14,7 +14,7 @@ from closedform.scaffold.loops.legs import Legs, listed
 
 SPACE = 3
 DRIVEN = {"universal": 2, "spherical": 3}
-"""The freedoms that a joint on the ground leaves the hand, for each of which there is a leg."""
+"""The degrees of freedom that a joint on the ground leaves the hand; each has a driven leg."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,8 @@ def _check_driven(found: Legs, held: Joint, needed: int, by: str) -> None:
     if len(driven) != needed:
         count = {2: "two", 3: "three"}[needed]
         raise found.loop.error(
-            f"{by} leave{'s' * (held.name == by)} the hand {count} freedoms, so {count} joints are "
-            f"driven, not {listed([j.name for j in driven])}"
+            f"{by} leave{'s' * (held.name == by)} the hand {count} degrees of freedom, so {count} "
+            f"joints are driven, not {listed([j.name for j in driven])}"
         )
 
 

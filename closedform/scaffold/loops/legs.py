@@ -105,7 +105,7 @@ class Legs:
         if len(ends) == 1 and hinge:
             raise self.loop.error(
                 f"{hinge.name} and {ends[0][0].name} hold {self.end} by the axes of a leg, as in "
-                f"an Exechon; this is not known.  A leg with universal joints keeps it from "
+                f"an Exechon; this is not supported.  A leg with universal joints keeps it from "
                 f"turning if both ends have one; if an end is a ball joint, write kind = "
                 f'"spherical"'
             )
@@ -156,7 +156,7 @@ class Legs:
             ):
                 raise self.loop.error(
                     f"{name} joins {self.turning} to the ground itself; of the joints that hold a "
-                    f"hand on the ground, a universal and a spherical one in space are known"
+                    f"hand on the ground, a universal and a spherical one in space are supported"
                 )
         if left := [name for name in self.loop.joints if name not in self.used]:
             raise self.loop.error(
@@ -207,7 +207,7 @@ class Legs:
         if joint.kind == "revolute" and slides and not rods:
             raise loop.error(
                 f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
-                f"known on a driven slider, not on a driven crank"
+                f"supported on a driven slider, not on a driven crank"
             )
         if len(rods) != 1 or len(onward) != 1:
             carried = listed([j.other(body) for j in onward]) or "nothing else"
@@ -252,9 +252,9 @@ class Legs:
             or any(axes[0].cross(axis) != sp.zeros(3, 1) for axis in axes)
         ):
             raise loop.error(
-                f"{joint.name} moves two rods one after the other; this is known if three revolute "
-                f"joints with parallel axes join the slider, the rods {first} and {second} and the "
-                f"hand: give each its axis"
+                f"{joint.name} moves two rods one after the other; this is supported if three "
+                f"revolute joints with parallel axes join the slider, the rods {first} and "
+                f"{second} and the hand: give each its axis"
             )
         assert joint.axis is not None
         advance = sp.simplify(axes[0].dot(joint.axis))
@@ -310,8 +310,10 @@ class Legs:
         """A slider with a rail, along which a body slides that has the point of the hand."""
         loop, far = self.loop, slide.other(body)
         if loop.dimensions == 3 or slide.driven:
-            raise loop.error(f"{slide.name} slides on {body}; this is known for a passive slide "
-                             f"in a plane only")  # fmt: skip
+            raise loop.error(
+                f"{slide.name} slides on {body}; this is supported for a passive slide in a plane "
+                f"only"
+            )
         for j in (joint, slide):
             if j.axis is None:
                 raise loop.error(f"{j.name} slides; say in which direction with axis")

@@ -63,7 +63,7 @@ def _check_slides(loop: Loop, driven: Sequence[Joint], moving: int) -> None:
     if loop.dimensions == 2 and len(driven) == 1 and moving > FEW[1] and slides:
         raise loop.error(
             f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
-            f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is known with "
+            f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is supported with "
             f"revolute joints alone.  If a slide only ends the linkage, leave it and its rod out, "
             f"and take the point that drives the rod as the hand"
         )
@@ -119,7 +119,7 @@ def _ordered(
     if free != len(turning):
         raise loop.error(
             f"{listed([j.name for j in turning.values()])} drive this linkage, but by the count of "
-            f"its bodies and pins it has {free} freedoms"
+            f"its bodies and pins it has {free} degrees of freedom"
         )
     found = order(points, [GROUND, *turning])
     for step in found.held:

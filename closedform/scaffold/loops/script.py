@@ -135,7 +135,7 @@ def _check_ends(found: Legs, *, fixed: bool = False) -> None:
     hinges = [j for j in loop.of(body) if j.kind == "revolute"]
     if held := [j.name for j in hinges if fixed or j.axis is not None]:
         raise loop.error(
-            f"{listed(held)} would hold {body} by an axis; a leg is known to end on a hand that "
+            f"{listed(held)} would hold {body} by an axis; a leg may end on a hand that "
             f'turns in a spherical or a universal joint, as in kind = "spherical".  {BY_HAND}'
         )
 
@@ -147,7 +147,7 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
     if rails and not rails == len(legs) == TURNING[2]:
         degree = DEGREES.get(rails) if len(legs) == TURNING[2] else None
         raise loop.error(
-            f"{body} may turn; this is not known for a hand on a rail"
+            f"{body} may turn; this is not supported for a hand on a rail"
             + f", and leads to an equation of degree {degree}" * (degree is not None)
         )
     if loop.parallelograms:
@@ -194,7 +194,7 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     found.check_all_used()
     _check_axes(loop, driver, follower)
     if any(leg.passive for leg in legs):
-        raise loop.error("a single loop with a rail is not known; a rod has to close it")
+        raise loop.error("a single loop with a rail is not supported; a rod has to close it")
     return legs
 
 
@@ -211,7 +211,7 @@ def _check_axes(loop: Loop, driver: Joint, follower: Joint) -> None:
         raise loop.error(
             f"{listed(held)} would hold the rod by an axis.  In space four axes leave a loop a "
             f"motion only if they are parallel, meet in one point, or as in a Bennett linkage, "
-            f"which is not known.  If they meet in one point, leave the axis of {listed(held)} "
+            f"which is not supported.  If they meet in one point, leave the axis of {listed(held)} "
             f'out; if the rod has ball joints, write kind = "spherical"'
         )
 

@@ -27,7 +27,7 @@ def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
     if crank.kind != "revolute":
         raise loop.error(
             f"{crank.name} moves the pin of {pin.name}, which slides along {slide.other(block)}; "
-            f"this is known if {crank.other(GROUND)} turns about the ground"
+            f"this is supported if {crank.other(GROUND)} turns about the ground"
         )
     if slide.axis is None:
         raise loop.error(f"{slide.name} slides; say in which direction with axis")

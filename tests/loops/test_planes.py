@@ -147,7 +147,7 @@ def test_legs_that_do_not_fit_say_why() -> None:
     q = [d.joint(f"q{k + 1}", "prismatic") for k in range(3)]
     hand, o = tuple(map(real, "xyz")), (0, 0, 0)
     x, y, z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
-    with pytest.raises(ShapeError, match="not at right angles to the axes"):
+    with pytest.raises(ShapeError, match="must not be at right angles to the axes"):
         Plane(q[0], (1, 1), o, x, y)
     with pytest.raises(ShapeError, match="vectors of a plane need 3 entries"):
         Plane(q[0], (1, 1), (0, 0), (1, 0), (1, 0))

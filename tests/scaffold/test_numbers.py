@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from chains import printed
 
-import closedform.check.crosscheck
-from closedform.check.finding import module_backend
+import closedform.check.inverses
+from closedform.check.finding import Backend, module_backend
 from closedform.check.inverses import check_inverse
 from closedform.check.runners.python import module
 from closedform.check.samples import Sample
@@ -119,12 +119,12 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
     quarter, e = np.pi / 2, 1e-9
     posture = np.array([[1e-6 - np.pi, -np.pi - e, -quarter, np.pi, e - np.pi, 0.1 - quarter]])
     sample = Sample("two limits", posture, ())
-    monkeypatch.setattr(closedform.check.crosscheck, "inverse_postures", lambda *_: [sample])
+    monkeypatch.setattr(closedform.check.inverses, "inverse_postures", lambda *_: [sample])
     backend = module_backend("numpy", printed(d, tmp_path))
     (inverse,) = d.inverses
     assert check_inverse(d, d["ik"], inverse, backend).failures == []
     quarters = Sample("elsewhere", np.array([[0.3, 1.0, 0.7, 0.4, 0.9, 0.2]]), ())
-    monkeypatch.setattr(closedform.check.crosscheck, "inverse_postures", lambda *_: [quarters])
+    monkeypatch.setattr(closedform.check.inverses, "inverse_postures", lambda *_: [quarters])
 
     def without_half(name: str):
         def changed(*arguments):
@@ -135,9 +135,7 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
         return changed
 
     printed_module = module(tmp_path / "numpy", d.name)
-    broken = closedform.check.crosscheck.Backend(
-        "broken", without_half, np.float64, backend.tolerances
-    )
+    broken = Backend("broken", without_half, np.float64, backend.tolerances)
     assert "is not among" in check_inverse(d, d["ik"], inverse, broken).failures[0]
 
 

@@ -201,7 +201,7 @@ def test_files_and_options(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         (["screws", "nowhere.toml"], "there is no file nowhere.toml"),
         (["screws", str(tmp_path)], "is not a file"),
         (["usd", str(table)], "urdf FILE.urdf, mjcf FILE.xml or loop FILE.toml, not usd"),
-        (["screws", str(table), "--modified"], "--modified needs --from dh"),
+        (["screws", str(table), "--modified"], "--modified is for --from dh"),
     ):
         assert main(["new", "arm", "-o", str(tmp_path), "--from", *arguments]) == 2
         assert message in capsys.readouterr().err

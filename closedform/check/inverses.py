@@ -42,9 +42,7 @@ def check_inverse(
         if not truth.stated:
             return check_forward(derivation, function, backend)
         for sample in joint_samples(derivation, function):
-            posed = rounded(sample, backend)
-            _Batch(finding, truth, backend, posed, exact=True).check(None)
-            _check_branches(finding, truth, backend, posed)
+            _Batch(finding, truth, backend, rounded(sample, backend), exact=True).check(None)
         return finding
     answers = len(inverse.unknowns) * len(list(function.cases()))
     for sample in inverse_postures(derivation, inverse.unknowns):
@@ -55,8 +53,6 @@ def check_inverse(
         for values, known in ((images, known_postures), (perturbed(images), None)):
             posed = rounded(Sample(sample.name, values, sample.parameters), backend)
             _Batch(finding, truth, backend, posed, exact=known is not None).check(known)
-            if known is not None:
-                _check_branches(finding, truth, backend, posed)
     for sample in _singular_samples(derivation, inverse.unknowns):
         _check_round_trips(finding, truth, backend, rounded(sample, backend))
     return finding
@@ -99,6 +95,8 @@ class _Batch:
         if self.exact and truth.stated:
             answered = np.argwhere(~wrong & np.isin(status, (OK, SINGULAR)))
             self._see_residuals(solutions, margins, answered)
+        if self.exact and sample.name == "random" and status.shape[1] > 1:
+            self._compare_branches(solutions, status)
         if known is not None:
             spread = eps * _spread(sample.parameters)
             gap = np.fmin.reduce(truth.gap(solutions, known[:, None]), axis=1, initial=np.inf)
@@ -106,6 +104,22 @@ class _Batch:
                 self._check_known(row, solutions[row], known[row])
                 if self.finding.full:
                     return
+
+    def _compare_branches(self, solutions: NDArray[Any], status: NDArray[Any]) -> None:
+        """No branch has the answer of another one.
+
+        Only answers are judged that are far from their own branch and on another one, at random
+        postures: near a singular one, rounding may move an answer from one branch to another.
+        """
+        apart = 1e3 * math.sqrt(self.backend.eps)  # branches that meet differ by a rounding's root
+        exact, radius = self.truth.answers(self.sample.values, self.sample.parameters)
+        known = radius < apart
+        gaps = self.truth.gap(solutions[:, :, None], exact[:, None])
+        own = np.diagonal(gaps, axis1=1, axis2=2)[:, :, None]
+        judged = ((status == OK) & known)[:, :, None] & known[:, None] & (own > apart)
+        for row, branch, other in np.argwhere(judged & (gaps < own / 1e3)):
+            where = self._where(row)
+            self.finding.fail(f"branch {branch} has the answer of branch {other}; {where}")
 
     def _where(self, row: Any) -> str:
         sample = self.sample
@@ -189,28 +203,6 @@ class _Batch:
             self.finding.fail(
                 f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
             )
-
-
-def _check_branches(finding: Finding, truth: Solutions, backend: Backend, sample: Sample) -> None:
-    """No branch has the answer of another one.
-
-    Only answers are judged that are far from their own branch and on another one, at random
-    postures: near a singular one, rounding may move an answer from one branch to another.
-    """
-    if sample.name != "random" or sum(1 for _ in truth.function.cases()) < 2:
-        return
-    apart = 1e3 * math.sqrt(backend.eps)  # branches that meet differ by the root of a rounding
-    solutions, status = called(backend, truth.function, sample)
-    exact, radius = truth.answers(sample.values, sample.parameters)
-    known = radius < apart
-    gaps = truth.gap(solutions[:, :, None], exact[:, None])
-    own = np.diagonal(gaps, axis1=1, axis2=2)[:, :, None]
-    judged = ((status == OK) & known)[:, :, None] & known[:, None] & (own > apart)
-    for row, branch, other in np.argwhere(judged & (gaps < own / 1e3)):
-        finding.fail(
-            f"branch {branch} has the answer of branch {other}; "
-            f"{sample.name}: {sample.values[row].tolist()}, parameters {sample.parameters}"
-        )
 
 
 def _check_round_trips(

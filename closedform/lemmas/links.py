@@ -339,6 +339,31 @@ x)$.""",
 )
 
 
+def polar_lemma(
+    solution: Mapping[sp.Symbol, sp.Expr],
+    target: Sequence[sp.Expr],
+    count: int = 1,
+    sign: str = "",
+) -> Lemma:
+    """The lemma for an angle and a length, in this order, of which ``count`` pairs are found.
+
+    ``sign`` is how the statement writes that of the length.
+    """
+    (angle, length), (x, y) = solution, target
+    space = " " if sign else ""
+    return Lemma(
+        "polar coordinates",
+        r"\rho\cos\theta = x,\ \rho\sin\theta = y \;\Rightarrow\; "
+        rf"\rho = {sign}\sqrt{{x^2 + y^2}},\ "
+        rf"\theta = \operatorname{{atan2}}({sign}{space}y, {sign}{space}x)",
+        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
+        dict(solution),
+        count,
+        excluded=2 - count,
+        roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
+    )
+
+
 @chain_lemma("r u(x) = (x, y)", "the pair of x, and r")
 def polar(
     chain: Chain,
@@ -379,16 +404,8 @@ def polar(
         )
     pair, means = named(chain, angle, direction(sigma * y, sigma * x, r, flag))
     value = p.let(f"{length.name}_{name}", sigma * r)
-    lemma = Lemma(
-        "polar coordinates",
-        r"\rho\cos\theta = x,\ \rho\sin\theta = y \;\Rightarrow\; \rho = \sigma\sqrt{x^2 + y^2},\ "
-        r"\theta = \operatorname{atan2}(\sigma y, \sigma x)",
-        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
-        {angle: pair.angle, length: value},
-        2 if choice else 1,
-        excluded=0 if choice else 1,
-        roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
-    )
+    solution = {angle: pair.angle, length: value}
+    lemma = polar_lemma(solution, (x, y), 2 if choice else 1, r"\sigma")
     meaning = f"the target is on the axis of {angle}; {angle} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(x, y)], angle, meaning)
     return Applied(lemma, (pair, value), means | {value: length}, {}, cases)

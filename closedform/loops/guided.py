@@ -76,7 +76,7 @@ class Guided:
 
     @property
     def far(self) -> list[str]:
-        """The names of these ends in the drawing."""
+        """The names of the far ends of the legs in the drawing."""
         return ["P" if e.is_zero_matrix else f"C{k}" for k, e in enumerate(self.places, 1)]
 
     @property
@@ -107,7 +107,7 @@ class Guided:
         return self.guide.place(p, self.places).explicit(p)
 
     def closed(self, arms: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
-        """The same for the far ends of the legs, as seen from the pivot."""
+        """The equations of the loop, for far ends of the legs as seen from the pivot."""
         return tuple(
             square(self.pivot + arm - leg.end()) - sp.sympify(leg.rod, strict=True) ** 2
             for leg, arm in zip(self.legs, arms, strict=True)
@@ -390,9 +390,8 @@ def _state_velocity(m: Guided, loop: Step) -> None:
             r"\mathbf u^T\mathbf r_i\end{bmatrix}",
             r"\mathbf a_i": r"\mathbf D_i\,G^{-1}",
             "G": at.slide.rates,
-            **shown,
+            "B_{ii}": shown["B_{ii}"],
         }
-        shown[r"\mathbf a_i"] = r"\mathbf D_i\,G^{-1}"
         joints = (*TURNS, LENGTH)
         equal += [
             (at.shift.jacobian(joints), at.slide.rates),

@@ -14,12 +14,12 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from closedform.lemmas.legs import vector
+from closedform.lemmas.links import polar_lemma
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
 from closedform.mechanics.frames import require_rotation, rotation
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
-from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 
 TURNS = sp.Matrix([real("turn_1"), real("turn_2")])
@@ -161,16 +161,7 @@ def _polar(
         locus = {e if e.is_Symbol else -e: sp.S.Zero for e in target}
         cases.append(Degenerate((flag,), locus, angle, meaning))
     pair = pair.known_as(p, f"_{angle}")
-    lemma = Lemma(
-        "polar coordinates",
-        r"\rho\cos\theta = x,\ \rho\sin\theta = y \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
-        r"\theta = \operatorname{atan2}(y, x)",
-        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
-        {angle: pair.angle, length: r},
-        1,
-        excluded=1,
-        roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
-    )
+    lemma = polar_lemma({angle: pair.angle, length: r}, (x, y))
     return Link(
         unknowns=(angle, length),
         equations=lemma.equations,

@@ -41,7 +41,7 @@ def derived(name: str, script: str, folder: Path, *, crosscheck: bool = False) -
 
 def newton(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray | None:
     """A zero of ``f`` that is found from a start, if any is."""
-    for _ in range(60):
+    for _ in range(30):
         here = f(x)
         if np.abs(here).max() < 1e-13:
             return x

@@ -10,8 +10,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from closedform.generated.c import planar_2r
-from fuzz import ATTACKS, arguments, kernels, postures, tables
+from closedform.generated.c import planar_2r, three_prs
+from fuzz import ATTACKS, arguments, kernels, postures, tables, targets
 from fuzz.__main__ import attack, table
 from fuzz.outcome import CASES
 from fuzz.robots import Robot, robot
@@ -31,14 +31,14 @@ def test_saved_case(path: Path) -> None:
 def test_small_round(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(postures, "SIZE", 150)
     monkeypatch.setattr(postures, "robots", lambda: tuple(map(robot, QUICK)))
-    monkeypatch.setattr(postures, "without_forward_map", lambda: ("headless",))
+    monkeypatch.setattr(targets, "SIZE", 150)
     monkeypatch.setattr(arguments, "CALLS", 300)
     monkeypatch.setattr(tables, "TABLES", 25)
-    total = attack([postures, arguments, tables], SEED, 0, tmp_path)
+    total = attack([postures, targets, arguments, tables], SEED, 0, tmp_path)
     assert [f.problem for outcome in total.values() for f in outcome.failures] == []
     printed = "\n".join(table(total))
     assert "| ur_arm | " in printed
-    assert "Not tried, because `fk` is needed: `headless`." in printed
+    assert "| three_prs | " in printed
 
 
 def test_another_unit_of_length_changes_no_angle() -> None:
@@ -87,6 +87,29 @@ def test_faults_are_found(monkeypatch: pytest.MonkeyPatch, ik, kind: str) -> Non
     lengths = np.tile(planar.defaults, (100, 1))
     q = rng.uniform(-np.pi, np.pi, (100, 2))
     assert kind in {problem for problem, _, _ in postures.check(planar, lengths, q)}
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"),
+    [
+        (lambda q, status: (q + 1e-9, status), "miss"),
+        (lambda q, status: (np.full_like(q, np.nan), np.ones_like(status)), "lost"),
+        (lambda q, status: (np.repeat(q[..., ::2, :], 2, axis=-2), status), "twice"),
+    ],
+    ids=["one_off", "lossy", "repeating"],
+)
+def test_faults_without_a_forward_map_are_found(
+    monkeypatch: pytest.MonkeyPatch, change, kind: str
+) -> None:
+    def ik(x, params):
+        return three_prs.Solutions(*change(*three_prs.ik(x, params)))
+
+    broken = SimpleNamespace(SKELETON=three_prs.SKELETON, skeleton=three_prs.skeleton, ik=ik)
+    tripod = robot("three_prs")
+    monkeypatch.setattr(Robot, "module", lambda _self, _backend: broken)
+    x = np.random.default_rng(0).uniform(-0.3, 0.3, (50, 3))
+    found = targets.check(tripod, np.tile(tripod.defaults, (50, 1)), x)
+    assert kind in {problem for problem, _, _ in found}
 
 
 def test_failure_is_saved_and_replayed(tmp_path: Path) -> None:

@@ -4,6 +4,6 @@ An attack is a module with a ``NAME``, a function ``round`` that draws one round
 what it tried and what failed, and a function ``replay`` that tries one saved failure again.
 """
 
-from . import arguments, kernels, postures, tables
+from . import arguments, kernels, postures, tables, targets
 
-ATTACKS = {attack.NAME: attack for attack in (postures, arguments, kernels, tables)}
+ATTACKS = {attack.NAME: attack for attack in (postures, targets, arguments, kernels, tables)}

@@ -69,8 +69,6 @@ def table(total: dict[str, Outcome]) -> list[str]:
         if len(outcome.counts) > 1:
             sums = [sum(n[c] for n in outcome.counts.values()) for c in columns]
             lines.append("| together | " + " | ".join(f"{s:,}" for s in sums) + " |")
-        if note := getattr(ATTACKS[name], "note", None):
-            lines += ["", note()]
     return lines
 
 

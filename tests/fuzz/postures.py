@@ -13,7 +13,7 @@ from closedform.model.tolerances import DOUBLE
 
 from .lengths import draw_lengths, draw_postures
 from .outcome import Failure, Outcome, hexed, unhexed
-from .robots import BACKENDS, Robot, robot, robots, without_forward_map
+from .robots import BACKENDS, Robot, robot, robots
 
 NAME = "postures"
 SIZE = 2000
@@ -51,12 +51,6 @@ def round(rng: np.random.Generator) -> Outcome:
                 case = {"robot": subject.name, "lengths": hexed(lengths[row]), "q": hexed(q[row])}
                 outcome.failures.append(Failure(NAME, f"{subject.name}: {message}", case))
     return outcome
-
-
-def note() -> str:
-    """What the table of this attack leaves out."""
-    names = ", ".join(f"`{name}`" for name in without_forward_map()) or "none"
-    return f"Not tried, because `fk` is needed: {names}."
 
 
 def replay(case: Mapping[str, Any]) -> list[str]:

@@ -58,9 +58,9 @@ def robots() -> tuple[Robot, ...]:
 
 
 @cache
-def without_forward_map() -> tuple[str, ...]:
-    """Every mechanism that has no ``fk``, of whose postures no targets can be made."""
-    return tuple(s.name for s in scripts.sources() if not scripts.load(s).has_forward_map)
+def without_forward_map() -> tuple[Robot, ...]:
+    """Every mechanism that has no ``fk``."""
+    return tuple(_robot(s) for s in scripts.sources() if not scripts.load(s).has_forward_map)
 
 
 @cache

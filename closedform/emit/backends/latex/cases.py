@@ -149,10 +149,10 @@ class Cases:
         answer = "rounded joints do not determine the posture"
         rest: list[str] = []
         first, scale = statement.name, self.algorithm.full(statement.scale)
-        value = self.algorithm.full(statement.value)
-        if scale == 0 or (not first and value.has(sp.Piecewise)):
+        value = None if first else self.algorithm.full(statement.value)  # which can be long
+        if scale == 0 or (value and value.has(sp.Piecewise)):
             return Case(f"within rounding of the case that {meaning}", "", answer, "singular")
-        if not first:
+        if value:
             if sp.count_ops(value) > LONGEST:
                 value = self.algorithm.shown(statement.value)
             rows = self.page.equations("", value)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -242,15 +242,17 @@ def _spread(parameters: Sequence[float]) -> float:
 
 
 def _movement(truth: Solutions, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
-    """How far the answers move when every coordinate of the target moves by an ulp.
+    """How far the answers move when a coordinate of the target or a parameter moves by an ulp.
 
-    The first rounding may hide a single ulp, so four ulps are tried as well.
+    A tiny coordinate hardly moves by an ulp, but lengths that nearly cancel do: where a rod ends
+    close to the axis of its crank, the angle depends on the last bits of two equal lengths.  The
+    first rounding may hide a single ulp, so four ulps are tried as well.
     """
     largest = 0.0
     for ulps in (1, 4):
-        nearby = _nearby(backend, sample, ulps)
-        moved = truth.gap(called(backend, truth.function, nearby)[0], solutions) / ulps
-        largest = float(np.max(moved, initial=largest, where=np.isfinite(moved)))
+        for nearby in (_nearby(backend, sample, ulps), *_resized(backend, sample, ulps)):
+            moved = truth.gap(called(backend, truth.function, nearby)[0], solutions) / ulps
+            largest = float(np.max(moved, initial=largest, where=np.isfinite(moved)))
     return largest
 
 
@@ -271,6 +273,15 @@ def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
     signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
     moved = sample.values * (1 + ulps * signs * backend.eps)
     return Sample(sample.name, moved, sample.parameters)
+
+
+def _resized(backend: Backend, sample: Sample, ulps: int) -> Iterator[Sample]:
+    """The same target for mechanisms in which one parameter differs by some ulps."""
+    for k, parameter in enumerate(sample.parameters):
+        others = sample.parameters[:k], sample.parameters[k + 1 :]
+        for step in (ulps * backend.eps, -ulps * backend.eps):
+            resized = (*others[0], parameter * (1 + step), *others[1])
+            yield replace(sample, parameters=resized)
 
 
 __all__ = ["check_inverse"]

@@ -289,3 +289,25 @@ def test_a_parallelogram_in_a_table_of_joints(tmp_path: Path) -> None:
     d = read_script(script)
     prove(d)
     assert any("antiparallelogram" in step.reason for step in d.steps)
+
+
+CRANKS_AND_A_SLIDE = """
+from closedform import Crank, Derivation, Paper, Parallelogram, Slide, parallel, real
+d = Derivation("toy_cranks", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
+d.task = ["x", "y", "z"]
+L, l, f, e, w = (d.parameter(n, value=1, unit="m", meaning=n) for n in ("L", "l", "f", "e", "w"))
+q1, q2, q3 = d.joint("q1"), d.joint("q2"), d.joint("q3", "prismatic")
+x, y, z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+legs = [
+    Crank(q1, L, Parallelogram(l, y, w), (f, 0, 0), x, z, (e, 0, 0)),
+    Crank(q2, L, Parallelogram(l, x, w), (0, 0, f), z, y, (0, 0, e)),
+    Slide(q3, Parallelogram(l, z, w), (0, 0, 0), y, (0, e, 0)),
+]
+parallel(d, [real(n) for n in "xyz"], legs)
+"""
+
+
+def test_legs_of_equal_lengths_pass_the_cross_check(tmp_path: Path) -> None:
+    """A rod that ends close to the axis of its crank turns it by the last bits of two lengths."""
+    robot = derived("toy_cranks", CRANKS_AND_A_SLIDE, tmp_path, crosscheck=True)
+    assert len(robot.BRANCHES) == 8

@@ -74,6 +74,9 @@ from closedform.loops.guided import guided as guided
 from closedform.loops.guides import Ball as Ball
 from closedform.loops.guides import Gimbal as Gimbal
 from closedform.loops.guides import Guide as Guide
+from closedform.loops.hinges import Hinged as Hinged
+from closedform.loops.hinges import TurningPlane as TurningPlane
+from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.linkage import Body as Body
 from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel

@@ -140,7 +140,7 @@ def to_float(ball: arb) -> float:
     try:
         return float(Fraction(mantissa) * Fraction(2) ** exponent)
     except OverflowError:
-        return math.copysign(math.inf, mantissa)
+        return math.inf if mantissa > 0 else -math.inf
 
 
 class _Point:

@@ -206,11 +206,12 @@ def _variation(
 
 def _ulps(computed: float, exact: arb, scale: float, backend: Backend) -> float:
     """The error in units in the last place of the larger of the value and its natural scale."""
-    if not exact.is_finite() or not math.isfinite(scale):
+    value = abs(to_float(exact))
+    if not (math.isfinite(value) and math.isfinite(scale)):
         return 0.0
     if not math.isfinite(computed):
         return math.inf
-    size = max(scale, abs(to_float(exact)), float(np.finfo(backend.dtype).tiny))
+    size = max(scale, value, float(np.finfo(backend.dtype).tiny))
     unit = 2.0 ** math.floor(math.log2(size)) * backend.eps
     return abs(to_float(exact - arb(computed))) / max(unit, 5e-324)
 

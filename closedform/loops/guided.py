@@ -20,8 +20,10 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Holder, Placed
+from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Placed
 from closedform.loops.hand import check_order, check_plain, rate_of, square
+from closedform.loops.hinged_pose import motions, state_pose
+from closedform.loops.hinges import Hinged, Hinges, TurningPlane
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
@@ -30,7 +32,9 @@ from closedform.model.functions import Program, real
 from closedform.model.step import Step
 
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
-COUNTS = {2: "two", 3: "three"}
+COUNTS = {2: "two", 3: "three", 4: "four"}
+Holder = Guide | Gimbal | Ball | Hinges
+"""What rules the motion of a hand."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ class Guided:
                 f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
                 f"leg that stretches"
             )
-        if not isinstance(self.guide, Ball) and self.guide.joint.faulty:
+        if isinstance(self.guide, Guide | Gimbal | TurningPlane) and self.guide.joint.faulty:
             raise ShapeError(
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )
@@ -92,6 +96,8 @@ class Guided:
     def joints(self) -> list[tuple[sp.Symbol, sp.Matrix]]:
         """The joints that hold the hand, each with the axis or the direction of its motion."""
         at = self.posture
+        if isinstance(self.guide, Ball | Hinges):
+            return []
         slide = [(LENGTH, at.slide.ahead)] if at.slide else []
         return [*zip(TURNS, at.turns, strict=True), *slide]
 
@@ -99,6 +105,12 @@ class Guided:
     def size(self) -> sp.Expr:
         """The sum of all lengths."""
         return size_of(self.d, self.legs, self.guide.moved)
+
+    def placed(self, p: Program) -> Placed:
+        """Name the hand at a target in a program, outside of an inverse."""
+        return self.guide.place(
+            p, self.places, None if isinstance(self.guide, Hinges) else self.size
+        )
 
     @cached_property
     def exact(self) -> Placed:
@@ -116,13 +128,13 @@ class Guided:
     def rows(self, p: Program, placed: Placed, rods: Sequence[sp.Matrix]) -> list[sp.Matrix]:
         """How the joints that hold the hand stretch the rods, from the vectors along the rods."""
         found = []
-        for k, (arm, rod) in enumerate(zip(placed.arms, rods, strict=True), 1):
-            row = enumerate(placed.row(arm, rod), 1)
+        for k, rod in enumerate(rods, 1):
+            row = enumerate(placed.row(k - 1, rod), 1)
             found.append(sp.Matrix([[named_in(p, f"D_{k}{i}", e) for i, e in row]]))
         return found
 
 
-def guided(d: Derivation, guide: Holder, legs: Sequence[Leg]) -> None:
+def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
     """Derive and export a hand that something without a motor holds on the ground.
 
     The task is the position ``x, y, z`` of the hand on a passive leg, the angles ``turn_1, turn_2``
@@ -144,11 +156,15 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg]) -> None:
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
     """
-    m = Guided(d, guide, tuple(legs))
+    guide = guide.with_legs(d.name, legs) if isinstance(guide, Hinges) else guide
+    m = Guided(d, guide, tuple(e.leg if isinstance(e, Hinged) else e for e in legs))
     if not d.singularities:
         numbered = [f"leg {k}" for k, _ in m.numbered]
         d.singularities = (*numbered, "all legs", *guide.own)
-    placed = None if isinstance(guide, Ball) else _place(m, guide)
+    if isinstance(guide, Hinges):
+        placed: Step | None = state_pose(d, guide, m.places, m.posture)
+    else:
+        placed = None if isinstance(guide, Ball) else _place(m, guide)
     loop = _close(m, placed)
     _velocity(m, loop)
     _draw(m)
@@ -271,13 +287,14 @@ def _close(m: Guided, placed: Step | None) -> Step:
 def _velocity(m: Guided, loop: Step) -> None:
     """A*dx = B*dq, for the velocity of the hand."""
     d, p = m.d, m.d.program()
-    placed = m.guide.place(p, m.places, m.size)
+    placed = m.placed(p)
     rods = []
     for (k, leg), arm in zip(m.numbered, placed.arms, strict=True):
         near = [named_in(p, f"b_{k}{i}", e) for i, e in enumerate(leg.end(), 1)]
         rod = m.pivot + arm - sp.Matrix(near)
         rods.append(sp.Matrix([named_in(p, f"r_{k}{i}", e) for i, e in enumerate(rod, 1)]))
     rows = m.rows(p, placed, rods)
+    stretched = [placed.row(k, rod) for k, rod in enumerate(rods)]
     driven = [
         named_in(p, f"B_{k}{k}", rate_of(leg, rod))
         for (k, leg), rod in zip(m.numbered, rods, strict=True)
@@ -287,13 +304,18 @@ def _velocity(m: Guided, loop: Step) -> None:
     _state_velocity(m, loop)
     J = D.adjugate() * sp.diag(*driven) / volume
     det, own = sp.Mul(*driven) / volume, []
+    if placed.fixed != 1:
+        own = [placed.fixed]
     if slide := placed.slide:
-        rows = [row * slide.inverse for row in rows]
+        rows = stretched = [row * slide.inverse for row in rows]
         J, det, own = slide.rates * J, slide.volume * det, [slide.volume]
     ball = isinstance(m.guide, Ball)
     per = "angular velocity" if ball else "rate of the target"
     finite = "Not finite at a parallel singularity."
-    on_axis = ["Not finite where the hand is on the first axis of the passive leg."] * bool(own)
+    where = "the hand is on the first axis of the passive leg"
+    if isinstance(m.guide, Hinges):
+        where = "the hinges do not fix the place of the hand"
+    on_axis = [f"Not finite where {where}."] * bool(own)
     exported: list[tuple[str, str, dict[str, Any], Sequence[str]]] = [
         ("jacobian_parallel", "A of A*dx = B*dq.", {"A": sp.Matrix.vstack(*rows)}, on_axis),
         (
@@ -305,7 +327,7 @@ def _velocity(m: Guided, loop: Step) -> None:
         (
             "jacobian_inverse",
             f"B^-1*A: joint rates per {per}.",
-            {"K": sp.Matrix.vstack(*(row / b for row, b in zip(rows, driven, strict=True)))},
+            {"K": sp.Matrix.vstack(*map(_rates, rows, stretched, driven))},
             ("Not finite at a serial singularity.", *on_axis),
         ),
         (
@@ -325,7 +347,11 @@ def _velocity(m: Guided, loop: Step) -> None:
         (
             "singularities",
             "The diagonal of B (serial) and the determinant "
-            + ("of D (parallel), and that of G (the passive leg)." if own else "of A (parallel)."),
+            + (
+                "of D (parallel), and that of G (the passive leg)."
+                if placed.slide
+                else "of A (parallel)" + ", and what the hinges fix." * bool(own) + "." * (not own)
+            ),
             {"factors": [*driven, volume, *own]},
             (),
         ),
@@ -339,6 +365,16 @@ def _velocity(m: Guided, loop: Step) -> None:
             program=p,
             notes=(TOGETHER, *notes),
         )
+
+
+def _rates(row: sp.Matrix, stretched: sp.Matrix, driven: sp.Expr) -> sp.Matrix:
+    """A row over its entry of B, which cancels in an entry that has it as a factor."""
+
+    def over(name: sp.Expr, value: sp.Expr) -> sp.Expr:
+        found = value / driven
+        return name / driven if found.as_numer_denom()[1].has(driven) else found
+
+    return sp.Matrix([[over(*entry) for entry in zip(row, stretched, strict=True)]])
 
 
 def _state_velocity(m: Guided, loop: Step) -> None:
@@ -355,9 +391,13 @@ def _state_velocity(m: Guided, loop: Step) -> None:
             "B_{ii}": "entry of the diagonal of B",
         }
     )
+    hinges = isinstance(m.guide, Hinges)
     moment = r"(\mathbf f_i\times\mathbf r_i)"
+    entry = r"\mathbf a^T(\mathbf e_i\times\mathbf r_i) + \mathbf w^T\mathbf r_i"
     shown: dict[str, Any] = {
-        r"\mathbf a_i": rf"{moment}^T"
+        ("A_{ik}" if hinges else r"\mathbf a_i"): entry
+        if hinges
+        else rf"{moment}^T"
         if isinstance(m.guide, Ball)
         else rf"\begin{{bmatrix}}\mathbf a^T{moment} & \mathbf v^T{moment}\end{{bmatrix}}",
         "B_{ii}": r"\mathbf r_i^T\,\frac{\partial\mathbf b_i}{\partial q_i}",
@@ -367,12 +407,23 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         "The product of r_i with a velocity of turning is its moment.  The derivative of each loop "
         "equation with respect to its joint is minus twice the entry of B."
     )
-    if not isinstance(m.guide, Ball):
+    if isinstance(m.guide, Hinges):
+        d.explain(
+            {
+                r"\mathbf e_i": "from the point of the hand to the far end of rod i",
+                r"\mathbf a": "axis about which a coordinate turns the hand",
+                r"\mathbf w": "velocity of the point of the hand per rate of a coordinate",
+            }
+        )
+        equal += motions(m.guide, at)
+        proves += "  The derivatives of the position and of each e_i with respect to the target "
+        proves += "are those motions."
+    elif not isinstance(m.guide, Ball):
         d.explain({r"\mathbf a": "first axis"})
         proves += "  The derivative of each f_i with respect to a joint that holds the hand is "
         proves += "that of a point that this joint moves."
     for arm in at.arms:
-        for joint, axis in [] if isinstance(m.guide, Ball) else m.joints:
+        for joint, axis in m.joints:
             equal.append((arm.diff(joint), axis if joint == LENGTH else axis.cross(arm)))
     equal += [
         (e.diff(leg.joint), -2 * rate_of(leg, rod))
@@ -425,14 +476,14 @@ def _state_velocity(m: Guided, loop: Step) -> None:
 def _draw(m: Guided) -> None:
     """The skeleton: pivot O, bases A, near ends B and far ends C of the legs, and P, the hand."""
     p = m.d.program()
-    placed = m.guide.place(p, m.places, m.size)
+    placed = m.placed(p)
     exact, loop = m.exact, m.closed(m.exact.arms)
-    held = placed.slide is None
+    held = isinstance(m.guide, Gimbal | Ball)
 
     def points(shift: sp.Matrix, arms: Sequence[sp.Matrix]) -> dict[str, Sequence[Any]]:
         hand = m.pivot + shift
         found: dict[str, Sequence[Any]] = {"P": [*hand]}
-        if not held:
+        if isinstance(m.guide, Guide):
             found = {"O": [*m.pivot], **found}
         for (k, leg), arm, far in zip(m.numbered, arms, m.far, strict=True):
             found |= points_of(k, leg, far, m.pivot + arm)
@@ -458,7 +509,7 @@ def _draw(m: Guided) -> None:
         links=drawn.links,
         joints=drawn.joints,
         hand="P",
-        ground=(*(["P"] if held else ["O"]), *bases),
+        ground=(*(["P"] if held else ["O"] * isinstance(m.guide, Guide)), *bases),
         lengths=drawn.lengths,
         pose=m.inputs,
         program=p,
@@ -470,7 +521,8 @@ def _draw(m: Guided) -> None:
 
 def _inverse(m: Guided, loop: Step) -> None:
     d, g, guide = m.d, m.d.program(), m.guide
-    guide.check(g)
+    if isinstance(guide, Ball):
+        guide.check(g)
     size = g.let("size", m.size)
     solved = LegByLeg(d, g, size)
     placed = guide.place(g, m.places, size)
@@ -484,12 +536,12 @@ def _inverse(m: Guided, loop: Step) -> None:
     lever = spread if guide.turning == 2 else spread ** sp.Rational(3, 2)
     least = g.let("least", solved.lengths(m.legs) * lever, nonnegative=True)
     meet = "the rods do not hold the hand"
-    matrix = "D" if placed.slide else "A"
+    matrix, loose = "D" if placed.slide else "A", placed.fixed != 1
     g.determined(
-        sp.Abs(volume),
+        sp.Min(sp.Abs(volume), sp.Abs(placed.fixed) * least) if loose else sp.Abs(volume),
         least,
         meet,
-        name=rf"|\det {matrix}|",
+        name=r"\min(|\det A|,\ |\Gamma|\,\Lambda)" if loose else rf"|\det {matrix}|",
         scale_name=r"\Lambda",
         missed=solved.missed,
         size=solved.size,
@@ -500,7 +552,11 @@ def _inverse(m: Guided, loop: Step) -> None:
         f"The target gives the pose of the hand, and each leg is solved alone.  {solved.on_modes}"
         "Near a parallel singularity rounded joints do not determine the hand.  The status is "
         f"SINGULAR if the determinant of {matrix} is less than 2^-10 of Lambda, the product of the "
-        f"lengths of the rods and the {power} distance of their far ends from the pivot.  {MISSED}",
+        f"lengths of the rods and the {power} distance of their far ends from the "
+        f"{'point of the hand' if isinstance(guide, Hinges) else 'pivot'}."
+        + "  It is SINGULAR too if Gamma, which divides what the hinges fix, is less than 2^-10."
+        * loose
+        + f"  {MISSED}",
         {},
         uses=[loop],
         solves={"ik": ()},
@@ -527,7 +583,8 @@ def _inverse(m: Guided, loop: Step) -> None:
     )
     means = {name: e for link in placed.links for name, e in link.means.items()}
     held = (g.explicit(e.xreplace(means)) for link in placed.links for e in link.equations)
-    arms = [placed.shift + m.posture.rotation * place for place in m.places]
+    shift = placed.shift if placed.slide else m.posture.shift
+    arms = [shift + m.posture.rotation * place for place in m.places]
     solved.certify((*held, *m.closed(arms)), before=placed.links)
 
 

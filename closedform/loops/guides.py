@@ -73,6 +73,12 @@ class Placed:
     """What a passive slide adds."""
     links: tuple[Link, ...] = ()
     """How the joints that hold the hand were found."""
+    moves: tuple[sp.Matrix, ...] = ()
+    """How the coordinates move the point of the hand; empty if all turn about the pivot."""
+    levers: tuple[sp.Matrix, ...] = ()
+    """The ends of the legs from the point of the hand, beside moves."""
+    fixed: sp.Expr = sp.S.One
+    """What vanishes where nothing fixes the place of the hand."""
 
     def explicit(self, p: Program) -> Placed:
         """The same without the names of a program."""
@@ -80,19 +86,27 @@ class Placed:
             self,
             rotation=p.explicit(self.rotation),
             turns=tuple(map(p.explicit, self.turns)),
+            shift=p.explicit(self.shift),
             arms=tuple(map(p.explicit, self.arms)),
+            moves=tuple(map(p.explicit, self.moves)),
+            levers=tuple(map(p.explicit, self.levers)),
+            fixed=p.explicit(self.fixed),
             slide=self.slide and self.slide.explicit(p),
         )
 
-    def row(self, arm: sp.Matrix, rod: sp.Matrix) -> sp.Matrix:
-        """How the joints that hold the hand stretch a rod at the end of an arm."""
-        moment = arm.cross(rod)
+    def row(self, k: int, rod: sp.Matrix) -> sp.Matrix:
+        """How the joints that hold the hand stretch the rod of leg ``k``."""
+        if self.moves:
+            moment = self.levers[k].cross(rod)
+            motions = zip(self.turns, self.moves, strict=True)
+            return sp.Matrix([[axis.dot(moment) + move.dot(rod) for axis, move in motions]])
+        moment = self.arms[k].cross(rod)
         along = [rod.dot(self.slide.ahead)] if self.slide else []
         return sp.Matrix([[*(axis.dot(moment) for axis in self.turns), *along]])
 
 
 @dataclass(frozen=True)
-class _Turning:
+class Turning:
     """Two axes at right angles: the first is fixed to the ground, the second to the hand."""
 
     pivot: Sequence[Any]
@@ -130,14 +144,14 @@ def named(p: Program, letter: str, v: sp.Matrix) -> sp.Matrix:
     return sp.Matrix([named_in(p, f"{letter}_{i}", e) for i, e in zip("xyz", v, strict=True)])
 
 
-def _arms(
-    p: Program, R: sp.Matrix, shift: sp.Matrix, places: Sequence[sp.Matrix]
+def arms_at(
+    p: Program, R: sp.Matrix, shift: sp.Matrix, places: Sequence[sp.Matrix], letter: str = "f"
 ) -> tuple[sp.Matrix, ...]:
     """The ends of the legs, from the pivot."""
     found = []
     for k, place in enumerate(places, 1):
         far = enumerate(shift + R * place, 1)
-        found.append(sp.Matrix([named_in(p, f"f_{k}{i}", e) for i, e in far]))
+        found.append(sp.Matrix([named_in(p, f"{letter}_{k}{i}", e) for i, e in far]))
     return tuple(found)
 
 
@@ -204,8 +218,8 @@ class Guide:
     )
 
     @property
-    def joint(self) -> _Turning:
-        return _Turning(self.pivot, self.first, self.second)
+    def joint(self) -> Turning:
+        return Turning(self.pivot, self.first, self.second)
 
     @property
     def inputs(self) -> dict[str, Any]:
@@ -214,9 +228,6 @@ class Guide:
     @property
     def moved(self) -> tuple[sp.Symbol, ...]:
         return tuple(map(real, self.task))
-
-    def check(self, p: Program) -> None:
-        """Nothing is required of a position."""
 
     def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
         """Name the hand at a target in a program; with a ``size`` also where a turn is free.
@@ -233,7 +244,7 @@ class Guide:
         names |= {e: name for name, e in second.means.items()}
         R, *axes = self.joint.turned(p, names)
         slide = Sliding.of(names[LENGTH], rho, axes)
-        arms = _arms(p, R, shift, places)
+        arms = arms_at(p, R, shift, places)
         return Placed(
             rotation=R,
             turns=(vector(self.first), axes[0]),
@@ -254,7 +265,7 @@ class Guide:
 
 
 @dataclass(frozen=True)
-class Gimbal(_Turning):
+class Gimbal(Turning):
     """A universal joint at ``pivot``, which holds the hand on the ground.
 
     It turns the hand about ``first``, which is fixed to the ground, and about ``second``, which is
@@ -278,21 +289,18 @@ class Gimbal(_Turning):
     )
 
     @property
-    def joint(self) -> _Turning:
+    def joint(self) -> Turning:
         return self
 
     @property
     def inputs(self) -> dict[str, Any]:
         return {"x": tuple(TURNS)}
 
-    def check(self, p: Program) -> None:
-        """Nothing is required of angles."""
-
     def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
         """Name the hand at a target in a program."""
         R, v, *_ = self.turned(p, {})
         none = sp.zeros(3, 1)
-        return Placed(R, (vector(self.first), v), none, _arms(p, R, none, places))
+        return Placed(R, (vector(self.first), v), none, arms_at(p, R, none, places))
 
     def posture(self, places: Sequence[sp.Matrix]) -> Placed:
         """The hand in its angles, without a program."""
@@ -339,14 +347,11 @@ class Ball:
     def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
         """Name the hand at a target in a program."""
         none, axes = sp.zeros(3, 1), tuple(sp.eye(3).col(k) for k in range(3))
-        return Placed(self.rotation, axes, none, _arms(p, self.rotation, none, places))
+        return Placed(self.rotation, axes, none, arms_at(p, self.rotation, none, places))
 
     def posture(self, places: Sequence[sp.Matrix]) -> Placed:
         """The hand by its rotation, without a program."""
         return self.place(Program(), places)
 
 
-Holder = Guide | Gimbal | Ball
-"""What rules the motion of a hand."""
-
-__all__ = ["LENGTH", "TURNS", "Ball", "Gimbal", "Guide", "Holder", "Placed"]
+__all__ = ["LENGTH", "TURNS", "Ball", "Gimbal", "Guide", "Placed", "Turning", "arms_at", "named"]

@@ -1,10 +1,12 @@
 """Balls over arrays hold what Arb finds, or say that they do not know."""
 
+import math
+
 import flint
 import numpy as np
 import pytest
 import sympy as sp
-from flint import arb
+from flint import arb, ctx
 
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.rows import WIDE, RowEvaluator, crosses, inaccurate
@@ -94,3 +96,10 @@ def test_what_no_precision_settles_is_an_error() -> None:
     )
     with pytest.raises(Undetermined):
         evaluator.settled(np.array([[1.0]]), crosses(0.5))
+
+
+def test_a_number_beyond_all_doubles_is_infinite() -> None:
+    with ctx.workprec(3000):
+        huge = (arb(2) ** 1100 + 1) ** 2
+    assert to_float(huge) == math.inf
+    assert to_float(-huge) == -math.inf

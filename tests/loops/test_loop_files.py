@@ -124,9 +124,11 @@ c3 = {between = ["p3", "platform"], at = "C3", axis = [1, 0, 0]}
 """
 
 
-def test_an_exechon_is_refused_by_name(tmp_path: Path) -> None:
-    with pytest.raises(TableError, match="c1 and a1 hold the hand by the axes of a leg, as in an"):
-        script_of("exechon", EXECHON, tmp_path)
+def test_a_leg_that_begins_with_a_hinge_and_ends_with_axes_is_refused(tmp_path: Path) -> None:
+    text = EXECHON.replace('at = "A1", kind = "universal"', 'at = "A1"')
+    text = text.replace('at = "C1", axis', 'at = "C1", kind = "universal", axis')
+    with pytest.raises(TableError, match="a1 and c1 hold the hand by the axes of a leg"):
+        script_of("exechon", text, tmp_path)
 
 
 EXCAVATOR = """hand = "P"

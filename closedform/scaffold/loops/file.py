@@ -61,6 +61,7 @@ USED |= {
     "Gimbal",
     "Guide",
     "Half",
+    "Hinged",
     "Lever",
     "Parallelogram",
     "Plane",
@@ -68,6 +69,8 @@ USED |= {
     "Slide",
     "Stretch",
     "Strut",
+    "TurningPlane",
+    "TwoHinges",
     "Universal",
     "Upright",
 }

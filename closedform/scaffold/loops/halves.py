@@ -30,7 +30,7 @@ def halves(loop: Loop) -> tuple[dict[str, Pin], int]:
     if loop.dimensions != 3 or len(bars) != 1:
         return {}, 0
     (bar,) = bars
-    pins = [j for j in loop.of(bar) if j.kind == "revolute" and j.other(bar) not in loop.rods]
+    pins = [j for j in loop.of(bar) if j.kind == "revolute" and _may_be_half(loop, j.other(bar))]
     if len(pins) != PAIR or any(j.driven or GROUND in j.between for j in pins):
         return {}, 0
     found = {j.other(bar): _pin(loop, j, bar) for j in pins}
@@ -43,6 +43,11 @@ def halves(loop: Loop) -> tuple[dict[str, Pin], int]:
     if second:
         _check_parallel(loop, found, bar, *second)
     return found, 1 + len(second)
+
+
+def _may_be_half(loop: Loop, body: str) -> bool:
+    """Whether a body is neither a rod nor part of a leg that stretches."""
+    return body not in loop.rods and not any(j.driven for j in loop.of(body))
 
 
 def _pin(loop: Loop, joint: Joint, bar: str) -> Pin:

@@ -13,6 +13,7 @@ from closedform.algebra.formulas import number
 from closedform.scaffold.inputs.tables import Table, add_joint
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
+from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.legs import TURNING, Legs, LoopLeg, listed
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.on_rod import on_rod
@@ -91,6 +92,9 @@ def _on_legs(found: Legs) -> _Way:
     loop, driven, struts = found.loop, found.legs(), found.struts()
     passive = None if loop.parallelograms else guide(found)
     found.check_all_used()
+    held = bool(passive or struts or loop.parallelograms or loop.dimensions == 2)
+    if found.turning and not held and (on_hinges := hinged(found, driven)):
+        return _Way(on_hinges[0], [], guide=on_hinges[1])
     _check_ends(found)
     if passive:
         return _Way(driven, [], guide=passive)

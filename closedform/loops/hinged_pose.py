@@ -1,0 +1,86 @@
+"""What the article says of a hand on hinged legs: its pose, and how it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.legs import vector
+from closedform.loops.guides import Placed
+from closedform.loops.hinges import Hinges, TurningPlane
+from closedform.model.derivation import Derivation
+from closedform.model.step import Step
+
+IN_PLANE = (
+    "The axes of the revolute joints on the hand are at right angles to the first axis of the "
+    "universal joints, so the hand stays in a plane through this axis.  The plane turns about it "
+    "by turn_1, and v is its normal.  The hand turns in the plane, about v, by turn_2.  R is the "
+    "rotation of the hand, and w is the direction in the plane at right angles to the axis: the "
+    "distance of the hand is measured along it.  "
+)
+TILTS = (
+    "The hand is twisted about its own z axis, then turned by tilt_x about the x axis of the base "
+    "and by tilt_y about the y axis.  This is its rotation R.  "
+)
+HINGED = (
+    "A hinge keeps leg k in a plane, whose normal m is an axis of the ground, or of the hand.  "
+    "So m is at right angles to the vector from the base of the leg to its end on the hand.  For "
+    "a given rotation this is linear in the position p of the hand, and gives {them}."
+)
+
+
+def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Placed) -> Step:
+    """The step on the pose of the hand, and the function that returns it."""
+    p = d.program()
+    placed = guide.place(p, places)
+    plane = guide if isinstance(guide, TurningPlane) else None
+    them = "its place along the axis" if plane else "its place sideways, x and y"
+    d.explain({"R": "rotation of the hand", r"\mathbf p": "position of the point of the hand"})
+    shown: dict[str, Any] = {"R": at.rotation, r"\mathbf p": vector(guide.pivot) + at.shift}
+    proves = "R is a rotation.  "
+    equal: list[tuple[Any, Any]] = [(at.rotation.T * at.rotation, sp.eye(3))]
+    if plane:
+        a, b, _ = plane.joint.axes
+        v = at.rotation * b
+        d.explain({r"\mathbf v": "normal of the plane", "distance": "of the hand from the axis"})
+        shown[r"\mathbf v"] = v
+        equal.append((v.dot(a), sp.S.Zero))
+        equal += [((at.shift + at.levers[k]).dot(v), sp.S.Zero) for k in plane.inside]
+        proves += "Its normal is at right angles to the axis, and the legs end in the plane.  "
+    for k, h in guide.hinged:
+        normal = at.rotation * h.axis if h.on_hand else h.axis
+        span = vector(guide.pivot) + at.arms[k] - h.leg.base
+        equal.append((normal.dot(span), sp.S.Zero))
+    if guide.hinged:
+        proves += "The hinged legs are in their planes.  "
+    step = d.step(
+        "Pose of the hand",
+        (IN_PLANE if plane else TILTS) + HINGED.format(them=them) * bool(guide.hinged),
+        shown,
+        proves=proves.rstrip(),
+        equal=equal,
+    )
+    T = placed.rotation.row_join(vector(guide.pivot) + placed.shift)
+    d.function(
+        "hand_pose",
+        "Pose of the hand, which the target determines.",
+        guide.inputs,
+        {"T": sp.Matrix.vstack(T, sp.Matrix([[0, 0, 0, 1]]))},
+        program=p,
+        notes=("Not finite where the hinges do not fix the place of the hand.",) * guide.loose,
+    )
+    return step
+
+
+def motions(guide: Hinges, at: Placed) -> list[tuple[Any, Any]]:
+    """That the hand moves as the rows of A have it."""
+    found: list[tuple[Any, Any]] = []
+    for x, axis, move in zip(guide.target, at.turns, at.moves, strict=True):
+        found.append((at.shift.diff(x), move))
+        found += [(lever.diff(x), axis.cross(lever)) for lever in at.levers]
+    return found
+
+
+__all__ = ["motions", "state_pose"]

@@ -1,0 +1,369 @@
+"""Legs that revolute joints keep in planes, and a hand that they rule without a passive leg.
+
+A revolute joint at one end of a leg, with a ball joint at the other, keeps the leg in a plane: that
+of the ground or that of the hand.  A universal joint on the ground and a revolute joint on the hand
+do even more: the hand stays in a plane that turns about an axis of the ground.  If the hand is
+turned in a given way, all these conditions are linear in its position.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Leg, Stretch, vector
+from closedform.loops.guides import TURNS, Placed, Turning, arms_at, named
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import named_in
+from closedform.mechanics.frames import rotation
+from closedform.model.functions import Program, choose, real
+
+ALONG, DISTANCE = real("along"), real("distance")
+TILTED = tuple(map(real, ("z", "tilt_x", "tilt_y", "twist")))
+
+NOTHING = sp.Rational(1, 2**40)
+"""The scale below which nothing fixes a coordinate; near there it is large, but loses no digit."""
+
+
+@dataclass(frozen=True)
+class Hinged:
+    """A leg that a revolute joint keeps in a plane; the other end has a ball joint.
+
+    Either the joint is at the near end of the rod, with the axis ``on_ground``, or it is on the
+    hand, with the axis ``on_hand`` in the frame of the hand; both are unit vectors in numbers.  In
+    the plane of a :class:`TurningPlane` the leg has a universal joint instead of the ball joint.
+    """
+
+    leg: Leg
+    on_ground: Sequence[Any] = ()
+    on_hand: Sequence[Any] = ()
+
+    @property
+    def axis(self) -> sp.Matrix:
+        return vector(self.on_ground or self.on_hand)
+
+    def check(self, name: str) -> None:
+        """Refuse a leg that leaves its plane."""
+        if bool(self.on_ground) == bool(self.on_hand):
+            raise ShapeError(f"{name}: a Hinged leg has one axis, on_ground or on_hand")
+        if sp.simplify(square(self.axis) - 1) != 0:
+            raise ShapeError(f"{name}: the axis of a Hinged leg must be a unit vector, in numbers")
+        if self.on_ground and sp.simplify(self.axis.dot(self.leg.rate)) != 0:
+            raise ShapeError(
+                f"{name}: {self.leg.joint} moves the leg out of the plane in which its hinge is"
+            )
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a target says of a hand whose hinges do not count yet, in the names of a program."""
+
+    rotation: sp.Matrix
+    axes: tuple[sp.Matrix, ...]
+    """About which each coordinate of the target turns the hand; zero if it does not turn it."""
+    shift: sp.Matrix
+    """From the pivot to the point of the hand, where the coordinates that hinges fix are zero."""
+    moves: tuple[sp.Matrix, ...]
+    """How each coordinate of the target moves the point, while the fixed ones stand still."""
+
+
+@dataclass(frozen=True)
+class Hinges(ABC):
+    """A hand whose legs are hinged, besides others that are not."""
+
+    pivot: Sequence[Any]
+    """The point from which the place of the hand is seen."""
+    hinged: tuple[tuple[int, Hinged], ...] = field(default=(), kw_only=True)
+    """The hinged legs that fix a coordinate, with their numbers; found from the legs."""
+
+    moved: ClassVar[tuple[sp.Symbol, ...]] = ()
+    what: ClassVar[str]
+    holds: ClassVar[str] = ""
+    follow: ClassVar[str] = "the pose of the hand follows"
+    motion: ClassVar[str] = (
+        "A coordinate of the target turns the hand about an axis, or not at all, and moves its "
+        "point by w.  So an entry of A is the part of w along r_i, the vector along rod i, and the "
+        "moment about the axis of r_i at e_i, which leads from the point of the hand to the end of "
+        "rod i"
+    )
+
+    @property
+    @abstractmethod
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """All coordinates that the hand has without its hinges."""
+
+    @property
+    @abstractmethod
+    def solved(self) -> dict[sp.Symbol, sp.Matrix]:
+        """The coordinates that the hinges fix, with the directions in which they move the hand."""
+
+    @abstractmethod
+    def frame(self, p: Program) -> Frame:
+        """The rotation of the hand and what moves it, in the names of a program."""
+
+    @abstractmethod
+    def with_legs(self, name: str, legs: Sequence[Leg | Hinged]) -> Hinges:
+        """The same, with the hinged legs that fix a coordinate."""
+
+    @property
+    def target(self) -> tuple[sp.Symbol, ...]:
+        return tuple(c for c in self.coordinates if c not in self.solved)
+
+    @property
+    def legs(self) -> int:
+        return len(self.target)
+
+    @property
+    def task(self) -> tuple[str, ...]:
+        return tuple(map(str, self.target))
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        return {"x": self.target}
+
+    @property
+    def turning(self) -> int:
+        return len([t for t in self.target if t not in (ALONG, DISTANCE, TILTED[0])])
+
+    @property
+    def degree(self) -> int:
+        """Of the forward problem in general."""
+        raise NotImplementedError
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        return ("hinges",) * self.loose
+
+    @property
+    def loose(self) -> bool:
+        """Whether there are postures in which the hinges do not fix the coordinates."""
+        return any(h.on_hand for _, h in self.hinged)
+
+    def posture(self, places: Sequence[sp.Matrix]) -> Placed:
+        """The hand at a target, without names."""
+        p = Program()
+        return self.place(p, places).explicit(p)
+
+    def place(
+        self,
+        p: Program,
+        places: Sequence[sp.Matrix],
+        size: sp.Expr | None = None,
+    ) -> Placed:
+        """Name the hand at a target in a program; with a ``size`` also where it is not fixed.
+
+        There the coordinates that the hinges should fix are taken as zero.
+        """
+        at = self.frame(p)
+        levers = arms_at(p, at.rotation, sp.zeros(3, 1), places, "e")
+        given = at.shift
+        ways = list(self.solved.values())
+        pulls, rest = [], []
+        for k, h in self.hinged:
+            near = h.leg.base - vector(self.pivot) - given
+            if h.on_hand:
+                pull = named(p, f"m_{k + 1}", at.rotation * h.axis)
+                rest.append(pull.dot(near) - h.axis.dot(places[k]))
+            else:
+                pull = h.axis
+                rest.append(pull.dot(near - levers[k]))
+            pulls.append(pull)
+        if not self.hinged:
+            return Placed(
+                at.rotation, at.axes, given, _ends(p, given, levers), moves=at.moves, levers=levers
+            )
+        M = sp.Matrix([[pull.dot(way) for way in ways] for pull in pulls])
+        width = named_in(p, "fixed", sp.factor(M.det()))
+        adjugate = M.adjugate()
+        found = adjugate * sp.Matrix(rest) / width
+        if size is not None and self.loose:
+            meaning = "the hinges do not hold the hand"
+            free = p.vanishes("loose", sp.Abs(width), NOTHING, meaning)
+            found = found.applyfunc(lambda e: choose(free, 0, e))
+        u = [named_in(p, f"u_{k}", e) for k, e in enumerate(found, 1)]
+        total = given + sum((e * way for e, way in zip(u, ways, strict=True)), sp.zeros(3, 1))
+        shift = named(p, "p", total)
+        moves: list[sp.Matrix] = []
+        for axis, move in zip(at.axes, at.moves, strict=True):
+            rates = []
+            for (k, h), pull in zip(self.hinged, pulls, strict=True):
+                if h.on_hand:
+                    across = axis.cross(pull).dot(vector(self.pivot) + shift - h.leg.base)
+                else:
+                    across = pull.dot(axis.cross(levers[k]))
+                rates.append(across + pull.dot(move))
+            follows = -adjugate * sp.Matrix(rates) / width
+            number = len(moves) + 1
+            names = [named_in(p, f"u_{k}{number}", e) for k, e in enumerate(follows, 1)]
+            moves.append(
+                move + sum((e * way for e, way in zip(names, ways, strict=True)), sp.zeros(3, 1))
+            )
+        return Placed(
+            rotation=at.rotation,
+            turns=at.axes,
+            shift=shift,
+            arms=_ends(p, shift, levers),
+            moves=tuple(moves),
+            levers=levers,
+            fixed=width if self.loose else sp.S.One,
+        )
+
+
+def _ends(p: Program, shift: sp.Matrix, levers: Sequence[sp.Matrix]) -> tuple[sp.Matrix, ...]:
+    """The ends of the legs, from the pivot; a hinge may keep a coordinate at zero."""
+    found = []
+    for k, lever in enumerate(levers, 1):
+        entries = [
+            sp.S.Zero if sp.expand(p.explicit(e)) == 0 else named_in(p, f"f_{k}{i}", e)
+            for i, e in enumerate(shift + lever, 1)
+        ]
+        found.append(sp.Matrix(entries))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class TurningPlane(Hinges):
+    """A plane that turns about an axis on the ground, in which legs keep the hand.
+
+    Each of these legs has a universal joint on this axis and a revolute joint on the hand, as two
+    legs of an Exechon.  The axis ``first`` passes through ``pivot``.  ``second`` is the normal of
+    the plane and the direction of the revolute joints, where nothing is turned.  Both are unit
+    vectors in numbers, at right angles.  In Python such a leg is ``Hinged(leg, on_hand=second)``.
+
+    With three legs one more is hinged.  The target is the distance of the hand from the axis, in
+    the direction ``first x second`` where nothing is turned, the turn of the plane, and the turn of
+    the hand in it.  With four legs the place of the hand along the axis comes first.
+    """
+
+    first: Sequence[Any]
+    second: Sequence[Any]
+    aside: sp.Expr = field(default=sp.S.Zero, kw_only=True)
+    """How far the legs end beside the point of the hand, along ``second``; found from them."""
+    inside: tuple[int, ...] = field(default=(), kw_only=True)
+    """The numbers of the legs in the plane; found from the legs."""
+
+    what: ClassVar[str] = "a plane that turns"
+
+    @property
+    def joint(self) -> Turning:
+        return Turning(self.pivot, self.first, self.second)
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        return (ALONG, DISTANCE, *TURNS)
+
+    @property
+    def solved(self) -> dict[sp.Symbol, sp.Matrix]:
+        return {ALONG: vector(self.first)} if self.hinged else {}
+
+    def with_legs(self, name: str, legs: Sequence[Leg | Hinged]) -> TurningPlane:
+        a, b, _ = self.joint.axes
+        inside, others, aside = [], [], set()
+        for k, h in enumerate(legs):
+            if not isinstance(h, Hinged):
+                continue
+            h.check(name)
+            if not h.on_hand or any(h.axis.cross(b)):
+                others.append((k, h))
+                continue
+            off = (h.leg.base - vector(self.pivot)).cross(a)
+            if any(map(sp.simplify, [*off, *h.leg.rate.cross(a)])):
+                raise ShapeError(f"{name}: a leg in the plane has to begin on its axis")
+            inside.append(k)
+            aside.add(sp.simplify(vector(h.leg.on_hand or (0, 0, 0)).dot(b)))
+        if not inside:
+            raise ShapeError(
+                f"{name}: no leg keeps the hand in the plane; at least one is Hinged with the "
+                f"normal of the plane on_hand"
+            )
+        if len(aside) > 1:
+            raise ShapeError(f"{name}: the legs in the plane have to end in one plane of the hand")
+        _check_hinges(name, others, most=1)
+        return replace(self, hinged=tuple(others), aside=aside.pop(), inside=tuple(inside))
+
+    def frame(self, p: Program) -> Frame:
+        a = vector(self.first)
+        R, v, *_ = self.joint.turned(p, {})
+        w = named(p, "w", a.cross(v))
+        shift = DISTANCE * w - self.aside * v
+        none, along = sp.zeros(3, 1), [] if self.hinged else [a]
+        return Frame(
+            rotation=R,
+            axes=(*[none for _ in along], none, a, v),
+            shift=shift if self.hinged else shift + ALONG * a,
+            moves=(*along, w, a.cross(shift), none),
+        )
+
+    @property
+    def degree(self) -> int:
+        return {0: 0, 1: 16 if self.loose else 12}[len(self.hinged)]
+
+
+@dataclass(frozen=True)
+class TwoHinges(Hinges):
+    """Two hinged legs, which fix the place of a hand sideways, besides two others.
+
+    The target is the height z of the hand, its tilts as those of a tripod, and its twist.
+    """
+
+    pivot: Sequence[Any] = (0, 0, 0)
+
+    what: ClassVar[str] = "two hinged legs"
+
+    @property
+    def degree(self) -> int:
+        return 0
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        return (real("x"), real("y"), *TILTED)
+
+    @property
+    def solved(self) -> dict[sp.Symbol, sp.Matrix]:
+        return dict(zip(self.coordinates[:2], (sp.eye(3).col(0), sp.eye(3).col(1)), strict=True))
+
+    def with_legs(self, name: str, legs: Sequence[Leg | Hinged]) -> TwoHinges:
+        hinged = [(k, h) for k, h in enumerate(legs) if isinstance(h, Hinged)]
+        for _, h in hinged:
+            h.check(name)
+        _check_hinges(name, hinged, most=2, least=2)
+        if not any(h.on_hand for _, h in hinged):
+            one, other = (h.axis for _, h in hinged)
+            if sp.simplify(one[0] * other[1] - one[1] * other[0]) == 0:
+                raise ShapeError(f"{name}: the planes of the hinged legs meet in a horizontal line")
+        return replace(self, hinged=tuple(hinged))
+
+    def frame(self, p: Program) -> Frame:
+        z, a, b, psi = TILTED
+        x, y, up = (sp.eye(3).col(k) for k in range(3))
+        tilted = rotation("y", b) * rotation("x", a)
+        R = p.matrix("R", tilted * rotation("z", psi))
+        none = sp.zeros(3, 1)
+        return Frame(
+            rotation=R,
+            axes=(none, named(p, "a", rotation("y", b) * x), y, R.col(2)),
+            shift=sp.Matrix([0, 0, z]),
+            moves=(up, none, none, none),
+        )
+
+
+def _check_hinges(
+    name: str, hinged: Sequence[tuple[int, Hinged]], *, most: int, least: int = 0
+) -> None:
+    for _, h in hinged:
+        if h.on_hand and not isinstance(h.leg, Stretch):
+            raise ShapeError(
+                f"{name}: a leg with a hinge on the hand must be a Stretch, so that its ball joint "
+                f"stands still"
+            )
+    if not least <= len(hinged) <= most:
+        count = {1: "at most one more leg is", 2: "two legs are"}[most]
+        raise ShapeError(f"{name}: {count} Hinged, not {len(hinged)}")
+
+
+__all__ = ["Hinged", "Hinges", "TurningPlane", "TwoHinges"]

@@ -1,0 +1,132 @@
+"""Recognises legs that revolute joints keep in planes, and what they leave the hand to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint
+from closedform.scaffold.loops.guides import GuideLine
+from closedform.scaffold.loops.legs import Legs, LoopLeg, listed
+
+KIND = "a hand on hinged legs"
+COUNTS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
+FREE = 4
+"""The degrees of freedom of a hand in a plane that turns, or on two hinged legs."""
+TRIPOD = 3
+
+
+def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLine] | None:
+    """The legs and what holds the hand; None if no leg is hinged, or if it may be a tripod."""
+    ends = {leg.joint.name: ends_of(found, leg.joint) for leg in legs}
+    inside = {name: e for name, e in ends.items() if _turns(*e)}
+    on_hand = [name for name, e in ends.items() if name not in inside and _on_hand(*e)]
+    on_ground = [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
+    if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
+        return None
+    others = [*on_hand, *on_ground]
+    _check_count(found, inside, others, len(legs))
+    calls = []
+    for leg in legs:
+        near, far = ends[leg.joint.name]
+        name = leg.joint.name
+        if name not in inside and name not in others:
+            calls.append(leg)
+            continue
+        joint, where = (near, "on_ground") if name in on_ground else (far, "on_hand")
+        assert joint.axis is not None
+        call = f"Hinged({leg.call}, {where}={found.at(joint.axis)})"
+        calls.append(replace(leg, call=call, words=f"{leg.words}, hinged at {joint.name}"))
+    if not inside:
+        words = "Hinges keep two legs in planes."
+        return calls, GuideLine("TwoHinges()", KIND, words)
+    (near, far), *_ = inside.values()
+    _check_plane(found, inside)
+    assert near.axis is not None
+    assert far.axis is not None
+    base = found.point(GROUND, near)
+    foot = (base - near.axis * base.dot(near.axis)).applyfunc(sp.simplify)
+    call = f"TurningPlane({found.at(foot)}, {found.at(near.axis)}, {found.at(far.axis)})"
+    words = (
+        f"The leg{'s' * (len(inside) > 1)} of {listed([*inside])} keep{'s' * (len(inside) == 1)} "
+    )
+    return calls, GuideLine(call, KIND, f"{words}the hand in a plane that turns.")
+
+
+def ends_of(found: Legs, joint: Joint) -> tuple[Joint, Joint]:
+    """The passive joints of a leg: that at its near end, and that on the hand."""
+    loop = found.loop
+    if GROUND in joint.between:
+        body = joint.other(GROUND)
+        (near,) = (j for j in loop.of(body) if j is not joint)
+        rod = near.other(body)
+        far = next(j for j in loop.of(rod) if j is not near)
+        return near, far
+    on = {GROUND in j.between: j for half in joint.between for j in loop.of(half) if j is not joint}
+    return on[True], on[False]
+
+
+def _hinge(joint: Joint) -> bool:
+    return joint.kind == "revolute" and joint.axis is not None
+
+
+def _turns(near: Joint, far: Joint) -> bool:
+    """Whether a leg keeps the hand in a plane that turns."""
+    return near.kind == "universal" and near.axis is not None and _hinge(far)
+
+
+def _on_hand(near: Joint, far: Joint) -> bool:
+    return near.kind == "spherical" and _hinge(far)
+
+
+def _on_ground(near: Joint, far: Joint) -> bool:
+    return _hinge(near) and far.kind == "spherical"
+
+
+def _check_count(
+    found: Legs, inside: Mapping[str, object], others: Sequence[str], driven: int
+) -> None:
+    if inside:
+        by = f"the leg{'s' * (len(inside) > 1)} of {listed([*inside])}, in a plane that turns"
+        by += f", and the hinge of the leg of {listed(others)}" * bool(others)
+        left, most = FREE - len(others), 1
+    else:
+        by = f"the hinge{'s' * (len(others) > 1)} of the leg{'s' * (len(others) > 1)} of "
+        by, left, most = f"{by}{listed(others)}", 6 - len(others), 2
+    by += f" leave{'s' * (len(inside) + len(others) == 1)}"
+    if len(others) > most or (not inside and len(others) < most):
+        raise found.loop.error(
+            f"{by} the hand {COUNTS[left]} degrees of freedom; this is supported for two "
+            f"hinged legs, or one beside legs with universal joints that keep the hand in a plane, "
+            f"or three with hinges on the ground"
+        )
+    if driven != left:
+        raise found.loop.error(
+            f"{by} the hand {COUNTS[left]} degrees of freedom, so {COUNTS[left]} joints are "
+            f"driven, not {driven}"
+        )
+
+
+def _check_plane(found: Legs, inside: Mapping[str, tuple[Joint, Joint]]) -> None:
+    (near, far), *more = inside.values()
+    for other in more:
+        for one, two in zip((near, far), other, strict=True):
+            assert one.axis is not None
+            assert two.axis is not None
+            if any(sp.simplify(e) for e in one.axis.cross(two.axis)):
+                raise found.loop.error(
+                    f"{one.name} and {two.name} need parallel axes, so that both legs keep the "
+                    f"hand in one plane, which turns"
+                )
+    assert near.axis is not None
+    assert far.axis is not None
+    if sp.simplify(near.axis.dot(far.axis)) != 0:
+        raise found.loop.error(
+            f"the axes of {near.name} and {far.name} have to be at right angles where the hand is "
+            f"not turned: both are axes of the universal joint, or parallel to them"
+        )
+
+
+__all__ = ["hinged"]

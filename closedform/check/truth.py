@@ -24,6 +24,7 @@ from closedform.mechanics.lengths import numbers_of_tool
 from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     Bound,
+    Determined,
     Function,
     Let,
     Match,
@@ -199,7 +200,7 @@ class Solutions:
             np.array([bool(free_symbols([e]) & sized) or k in places for k, e in enumerate(m)])
             for m in maps
         ]
-        self._in_numbers = max(numbers_of_tool(derivation), default=0.0)
+        self._in_numbers = max([*numbers_of_tool(derivation), _numbers_of_size(function)])
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         self._matches = [_margins(function, given, signs, Match) for _, signs in function.cases()]
@@ -379,6 +380,16 @@ class Solutions:
         difference = solutions.astype(float) - posture
         turned = np.abs(np.angle(np.exp(1j * difference)))
         return np.asarray(np.where(self.angular, turned, np.abs(difference)).max(axis=-1))
+
+
+def _numbers_of_size(function: Function) -> float:
+    """The lengths of a loop that are numbers, from the sum of all its lengths."""
+    named = {s.symbol: s.value for s in function.body if isinstance(s, Let | Bound)}
+    sizes = [s.size for s in function.body if isinstance(s, Determined)]
+    sums = [substitute(size, named) for size in sizes if size.free_symbols]
+    return max(
+        (float(e.xreplace(dict.fromkeys(e.free_symbols, sp.S.Zero))) for e in sums), default=0.0
+    )
 
 
 def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:

@@ -17,6 +17,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.lemmas.legs import Leg, Slide
+from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
 from closedform.loops.hand import in_space, rate_of, square
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
@@ -62,10 +63,11 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     bars
         how many bars join the halves of a hand: two, as in a Par 4, or one, as in an H4
     """
-    rails = [leg for leg in legs if isinstance(leg, Rail)]
-    if len(rails) == len(legs) == len(d.actuated) == TASK_IN_PLANE:
-        on_rails(d, rails)
-        return
+    for kind, count in ((Rail, TASK_IN_PLANE), (Plane, UPRIGHT)):
+        flat = [leg for leg in legs if isinstance(leg, Rail | Plane) and isinstance(leg, kind)]
+        if len(flat) == len(legs) == len(d.actuated) == count:
+            on_rails(d, flat)
+            return
     m = Platform(d, tuple(legs), bars)
     upright = len(m.legs) == UPRIGHT
     if upright:

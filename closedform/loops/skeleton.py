@@ -74,6 +74,16 @@ class Drawing:
             self.links[f"bar_{first}"] = (first, middle, second)
             self.lengths |= {(first, middle): half, (middle, second): half}
 
+    def add_plane(self, k: int, leg: Plane, far: str) -> None:
+        """The slider and both bars, which have their lengths if the hand is in the plane."""
+        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
+        self.joints[leg.joint] = (base, end)
+        self.lengths[base, end] = leg.joint
+        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
+        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
+            self.lengths[pair], self.closing[pair] = length, off
+        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
+
 
 @dataclass
 class _OnHand(Drawing):
@@ -89,7 +99,7 @@ class _OnHand(Drawing):
             span = m.hand - m.centres[k - 1]
             self._add_rail(k, leg, far, leg.way.dot(span), equation)
         elif isinstance(leg, Plane):
-            self._add_plane(k, leg, far)
+            self.add_plane(k, leg, far)
         else:
             self.add_leg(k, leg, far, equation)
 
@@ -98,16 +108,6 @@ class _OnHand(Drawing):
         self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
         self.lengths |= {(base, end): leg.joint, (end, far): slid}
         self.closing[end, far] = equation**2
-
-    def _add_plane(self, k: int, leg: Plane, far: str) -> None:
-        """The slider and both bars, which have their lengths if the hand is in the plane."""
-        base, end, elbow = f"A{k}", f"B{k}", f"E{k}"
-        self.joints[leg.joint] = (base, end)
-        self.lengths[base, end] = leg.joint
-        off = -leg.aside(ANY) * leg.normal.dot(ANY) ** 2
-        for pair, length in zip(((end, elbow), (elbow, far)), leg.lengths, strict=True):
-            self.lengths[pair], self.closing[pair] = length, off
-        self.links |= {f"bar{k}": (end, elbow), f"rod{k}": (elbow, far)}
 
 
 def draw(m: Hand, hand: sp.Matrix, program: Program, modes: Branches) -> None:

@@ -16,6 +16,8 @@ from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.source import source
 
+UPRIGHT = 4
+"""The number of driven joints of a hand in space that turns about the z axis alone."""
 TURNING = {2: 3, 3: 6}
 """The number of driven joints of a hand that turns, in a plane and in space."""
 
@@ -247,7 +249,8 @@ class Legs:
         second = elbow.other(first)
         far = [j for j in loop.of(second) if j is not elbow]
         turning = [near, elbow, *far]
-        axes = [j.axis for j in turning if j.axis is not None and j.kind == "revolute"]
+        kinds = {"revolute", "universal"} if self.upright_by_planes(far) else {"revolute"}
+        axes = [j.axis for j in turning if j.axis is not None and j.kind in kinds]
         if (
             len(turning) != 3
             or len(axes) != 3
@@ -256,7 +259,8 @@ class Legs:
             raise loop.error(
                 f"{joint.name} moves two rods one after the other; this is supported if three "
                 f"revolute joints with parallel axes join the slider, the rods {first} and "
-                f"{second} and the hand: give each its axis"
+                f"{second} and the hand: give each its axis.  Of four legs whose hand turns about "
+                f"z, the last joint is universal, unless the axes are vertical"
             )
         assert joint.axis is not None
         advance = sp.simplify(axes[0].dot(joint.axis))
@@ -276,6 +280,10 @@ class Legs:
             f"{loop.rods[second]} with parallel axes join to {self.end}",
             place,
         )
+
+    def upright_by_planes(self, far: Sequence[Joint]) -> bool:
+        """Whether a leg of two bars may end in a universal joint: its hand turns about z."""
+        return len(self.driven()) == UPRIGHT and all(j.kind == "universal" for j in far)
 
     def crank(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
         """A driven crank with a rod, which is ``near`` where the crank carries it."""
@@ -466,4 +474,4 @@ def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
-__all__ = ["TURNING", "Legs", "LoopLeg", "listed"]
+__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg", "listed"]

@@ -14,7 +14,7 @@ from closedform.scaffold.inputs.tables import Table, add_joint
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
-from closedform.scaffold.loops.legs import TURNING, Legs, LoopLeg, listed
+from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg, listed
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.slotted import slotted
@@ -22,8 +22,6 @@ from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
 UNSAID = "say what it measures"
-UPRIGHT = 4
-"""The number of driven joints of a hand in space that turns about the z axis alone."""
 DEGREES = {1: 6, 2: 4}
 """Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
 BY_HAND = (

@@ -132,7 +132,7 @@ class Hinges(ABC):
 
     @property
     def degree(self) -> int:
-        """Of the forward problem in general."""
+        """Of the forward problem in general, counted at random numbers."""
         raise NotImplementedError
 
     @property
@@ -301,7 +301,9 @@ class TurningPlane(Hinges):
 
     @property
     def degree(self) -> int:
-        return {0: 0, 1: 16 if self.loose else 12}[len(self.hinged)]
+        if not self.hinged:
+            return 24
+        return 16 if self.loose else 12
 
 
 @dataclass(frozen=True)

@@ -44,13 +44,14 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
 
     Four legs in space keep the hand upright.  Their rods have universal joints with vertical outer
     axes (:class:`~closedform.lemmas.universal.Universal`, or a ``Stretch`` with an ``axis``), or
-    each leg is a :class:`Half`.
+    each leg is a :class:`Half`, or each is a :class:`~closedform.lemmas.planes.Plane`.
 
     It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
     ``jacobian_inverse`` (B^-1*A), ``singularities`` and ``skeleton``, except for six legs
     ``jacobian`` and ``determinant``, for four legs ``constraint``, and ``workspace_contains`` where
-    the reach of the legs is limited.  On three rails in a plane there is also ``fk``, with two
-    assembly modes.
+    the reach of the legs is limited.  On three rails in a plane, and on four
+    :class:`~closedform.lemmas.planes.Plane` legs in space, there is also ``fk``, with two assembly
+    modes.
 
     Parameters
     ----------

@@ -118,6 +118,11 @@ def puu(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return list(np.linalg.norm(p + around(v.c) - ends, axis=1) - v.r)
 
 
+def y_star(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    ends = around(1) * q[:, None]
+    return list(np.linalg.norm(p + around(v.c) - ends, axis=1) - v.r)
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "cylinder": (cylinder, 1),
@@ -135,6 +140,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "spherical_four_bar": (spherical_four_bar, 2),
     "three_slides": (three_slides, 8),
     "tsai": (tsai, 1),
+    "y_star": (y_star, 8),
 }
 TRAVEL = {"cylinder": 0.8, "loader": 2.0, "scotch_yoke": 0.1, "slotted_crank": 3.0}
 """How far joints are tried, if it is not half a metre or half a radian."""

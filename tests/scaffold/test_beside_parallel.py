@@ -189,13 +189,22 @@ AT_RIGHT_ANGLES = {
     "no offset where the elbow ends": [
         (5, 0, 2), (4, 0, 0), (1, pi / 2, 1), (1, pi / 2, 0), (2, pi / 2, 0), (0, 0, 1),
     ],
+    "three parallel axes before two": [
+        (E, 0, 1), (F, 0, 0), (A, pi / 2, D), (B, 0, A), (C, pi / 2, 1), (0, 0, D),
+    ],
+    "three parallel axes after two": [
+        (C, 0, 1), (B, pi / 2, A), (E, 0, 0), (F, 0, D), (D, pi / 2, 1), (0, 0, D),
+    ],
+    "three parallel axes, then two": [
+        (D, pi / 2, 1), (E, 0, 0), (F, 0, D), (B, pi / 2, A), (C, 0, 1), (0, 0, D),
+    ],
 }  # fmt: skip
-"""Arms whose last axis is parallel to the first three if all others are at right angles."""
+"""Arms whose last axis can be parallel to the first ones, or the first axis to the last ones."""
 
 
 @pytest.mark.parametrize("name", AT_RIGHT_ANGLES)
 def test_no_posture_near_right_angles_is_lost(name: str, tmp_path: Path) -> None:
-    """Four parallel axes leave the last joint to the two links, which have to reach."""
+    """A joint that parallel axes leave free has to be where the two links reach."""
     rows = AT_RIGHT_ANGLES[name]
     d, serial = arm(rows)
     solved(d, serial, propose(serial).source)

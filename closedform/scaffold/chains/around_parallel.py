@@ -168,10 +168,9 @@ class AroundParallelMaker(SubproblemMaker):
         self._seen_from_tool(beside.arm)
         toward, (end, _), (level, _) = beside.toward, beside.ends, beside.levels
         offset = beside.height + beside.group[2].shift[2] + toward[2] * a.shift[2]
-        reach = norm(toward[:2, 0]) * norm(a.shift[:2, 0])
-        self.within_reach(beside.place("pair"), offset, source(reach))
+        axis = (beside.group[2].end * a.end * Z).applyfunc(sp.simplify)
         sides = (*turning(beside.seen, end), -level)
-        self._turn(c, sides, "seen_across", scale="1")
+        self._turn(c, sides, self._past_parallel(beside, axis), scale="1")
         third = f"pair{c.number}"
         self.vector("q", beside.place(third))
         self.add(f"M = ik.matrix('M_wrist', {beside.left(third)})")
@@ -179,14 +178,32 @@ class AroundParallelMaker(SubproblemMaker):
         def direction(factor: str) -> str:
             return f"{self.unknown(c)}: {factor}"
 
-        axis = source((beside.group[2].end * a.end * Z).applyfunc(sp.simplify))
-        self._lift(beside, axis, "M[:, 2]", direction)
+        self._lift(beside, source(axis), "M[:, 2]", direction)
         self._links_less(beside, "q", beside.to_end("pair"))
         sides = (*turning(a.shift, toward), sp.Symbol("q[2]") - offset)
         first = self._turn(a, sides, "links")
         self.vector("to_end", beside.to_end(first))
         self._last(beside, first, direction)
         return beside.told("{} and {} parallel")
+
+    def _past_parallel(self, beside: Beside, axis: sp.Matrix) -> str:
+        """Name the goal that two links reach where joint c, which may be free, moves their end."""
+        a, *_ = beside.others
+        third = beside.group[2]
+        centre = third.shift + third.end * (a.shift[2] * Z)
+        constants = {
+            "axis": axis,
+            "about": third.end * Z,
+            "centre": centre.applyfunc(sp.simplify),
+            "radius": norm(a.shift[:2, 0]),
+            "height": beside.height,
+        }
+        place = f"lambda pair: {beside.place('pair')}, {', '.join(beside.lengths)}"
+        aimed = f"aimed=lambda pair: {beside.axis('pair')}"
+        more = [f"{name}={source(value)}" for name, value in constants.items()]
+        named = f"a={self.unknown(a)}, beside={bool(beside.start)}"
+        self.add(f"past = LinksPastParallel({place}, {aimed}, {', '.join(more)}, {named})")
+        return "past"
 
     def _parallel_at_last(self, beside: Beside) -> str:
         """The axes of b and c are parallel: their direction gives joint a, and the height c."""

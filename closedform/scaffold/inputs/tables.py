@@ -50,7 +50,7 @@ CHAIN = (
 )  # fmt: skip
 LINKED = (
     "CoordinateWithin", "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist",
-    "LinksAtHeight", "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
+    "LinksAtHeight", "LinksPastParallel", "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",

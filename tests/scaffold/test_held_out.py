@@ -29,7 +29,7 @@ FOUND = {
 }
 REFUSED = {
     "baxter": "none of its seven joints, if it is given, leaves a spherical wrist or shoulder",
-    "mico": "axes 4, 5 and 6 do not meet in a point",
+    "mico": "no three neighbouring axes meet in a point or are parallel",
     "sawyer": "none of its seven joints, if it is given, leaves a spherical wrist or shoulder",
 }
 DERIVED = ("nao_arm", "nao_leg", "youbot")

@@ -172,7 +172,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
         (
             SIX,
             [(a, pi / 2, 0, x) for x in T],
-            "axes 5 and 6 do not intersect",
+            "no three neighbouring axes meet in a point or are parallel",
         ),
         (
             SIX,
@@ -182,7 +182,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
                 (0, pi / 2, 0, T[4]),
                 (0, 0, g, T[5]),
             ],
-            "axes 4, 5 and 6 do not meet in a point",
+            "no three neighbouring axes meet in a point or are parallel",
         ),
         (
             SIX,

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from closedform.mechanics.arm import Serial
 from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.chains.arm_angle import ArmAngleMaker
-from closedform.scaffold.chains.chainlinks import Single, Singles, singles
+from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, singles
 from closedform.scaffold.chains.decoupled import DecoupledMaker
 from closedform.scaffold.chains.degree import Solutions, is_regular, solutions, solutions_of_few
 from closedform.scaffold.chains.known import KnownMaker
@@ -103,7 +103,7 @@ def _refusal(
         error = _counted(error, solutions(whole.with_given(single.number, GIVEN)), with_it)
     elif n == 6 and not error.degree:
         progress("counting the solutions")
-        error = _counted(error, solutions(whole))
+        error = _counted(error if _has_three(whole) else NO_THREE, solutions(whole))
     elif n == 6 and not any(joint.slides for joint in whole.joints):
         error = NoChainError(error.found, f"{error.needed}  {NUMERIC}", error.degree)
     elif n < 6 and arm.coordinates() is None and not error.degree:
@@ -117,6 +117,21 @@ NEITHER = (
     "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and two "
     "neighbours among the rest that are parallel or meet"
 )
+
+
+NO_THREE = NoChainError(
+    "no three neighbouring axes meet in a point or are parallel",
+    "Nearly all closed forms of six joints need three that meet in a point or are parallel.",
+)
+
+
+def _has_three(whole: Singles) -> bool:
+    """Whether three neighbouring axes meet in a point or are parallel, or a joint slides."""
+    joints = whole.joints
+    return any(j.slides for j in joints) or any(
+        whole.met(k, 3) is not None or (parallel(joints[k]) and parallel(joints[k + 1]))
+        for k in range(len(joints) - 2)
+    )
 
 
 def _counted(error: NoChainError, counted: Solutions | None, given: str = "") -> NoChainError:

@@ -104,3 +104,19 @@ def test_the_steps_of_a_group_are_those_of_its_blocks() -> None:
     assert steps(
         PermutationGroup([Permutation([1, 2, 3, 4, 0]), Permutation([1, 0, 2, 3, 4])])
     ) == (5,)
+
+
+def test_a_point_that_a_given_joint_moves_far_away_is_not_one_where_axes_meet(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Joint 6 can make axes 5 and 7 parallel; the chain divided by the sine of its angle."""
+    monkeypatch.setattr(proposals, "solutions", lambda _: None)
+    a, b = sp.Rational(1, 10), sp.Rational(1, 2)
+    rows = [
+        (0, pi / 2, b), (0, -pi / 2, 0), (a, pi / 2, b), (a, -pi / 2, 0), (0, pi / 2, b),
+        (a, -pi / 2, 0), (0, 0, a),
+    ]  # fmt: skip
+    with pytest.raises(NoChainError) as caught:
+        propose(arm(rows)[1], "t6")
+    reasons = [tried.error.found for tried in caught.value.tried]
+    assert any("can make axes 7 and 5 parallel" in found for found in reasons)

@@ -9,6 +9,7 @@ import sympy as sp
 from closedform.mechanics.arm import Serial
 from closedform.mechanics.frames import homogeneous, inverse, rotation
 from closedform.scaffold.chains.maker import Z
+from closedform.scaffold.source import GIVEN
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,10 @@ class Singles:
         return Singles(tuple(others), self.lead, self.inverted)
 
     def met(self, first: int, count: int) -> Singles | None:
-        """The same with the origins of joints that meet in one point moved there; None if not."""
+        """The same with the origins of joints that meet in one point moved there; None if not.
+
+        The point of axes that a given joint can make parallel counts only if it stays where it is.
+        """
         joints = list(self.joints)
         lead = self.lead
         chosen = joints[first : first + count]
@@ -94,7 +98,10 @@ class Singles:
             across = axis[:2, 0]
             if across.is_zero_matrix:
                 return None
-            beta = sp.simplify(across.dot(shift[:2, 0]) / across.dot(across))
+            square = sp.simplify(across.dot(across))
+            beta = sp.simplify(across.dot(shift[:2, 0]) / square)
+            if square.has(GIVEN) and beta.has(GIVEN):
+                return None
             rest = (shift - beta * axis).applyfunc(sp.simplify)
             if not rest[:2, 0].is_zero_matrix:
                 return None

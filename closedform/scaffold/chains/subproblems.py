@@ -463,6 +463,12 @@ class SubproblemMaker(WristMaker):
         )
         square, p = sp.Symbol("square"), point("p")
         g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
+        self.require(
+            sp.simplify(Z.dot(g.cross(s))) != 0,
+            f"the joint that is given can make axes {one.number} and {two.number} parallel, and "
+            f"they meet elsewhere",
+            "The point where they meet must stay where it is; give another joint.",
+        )
         ellipse = Ellipse.of((one, two, three), square, p[2])
         degree = 2 if ellipse.double == (0, 0) else 4
         if self.degree < degree:

@@ -96,3 +96,14 @@ def test_a_vector_that_is_turned_has_the_sum_of_two_angles() -> None:
     back = turned(b * sp.cos(x) - a * sp.sin(x), a * sp.cos(x) + b * sp.sin(x))
     assert back == sp.atan2(b, a) - x
     assert turned(a * sp.sin(x), b * sp.cos(x)) is None
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_an_angle_that_a_flag_changes_has_no_value_of_another_name(name: str) -> None:
+    """Where the wrist of a UR arm is aligned, phi is not 0, as a name on the way to it is."""
+    _, f, lemmas, unknowns = inverse(name)
+    read = in_angles(f, lemmas, unknowns, LETTERS)
+    values = {s.symbol: s.value for s in read.function.body if isinstance(s, Let)}
+    chosen = {str(u): values[u] for angles in read.chosen.values() for u in angles}
+    assert [*chosen] == (["phi"] if name == "ur_arm" else [])
+    assert not any(value.has(sp.Piecewise) for value in chosen.values())

@@ -78,6 +78,8 @@ class Algorithm:
     """Names that are written as the lemma that made them writes them."""
     replaced: Mapping[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What stands in the function for other names of its program."""
+    chosen: Mapping[sp.Symbol, Sequence[sp.Symbol]] = field(default_factory=dict)
+    """For flags, the angles that are chosen there by other formulas, which are not printed."""
     product: str = ""
     """A product of rotations that stands for the names that are its entries."""
     vectors: InVectors | None = None

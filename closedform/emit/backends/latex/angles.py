@@ -47,6 +47,8 @@ class Turned:
     """The product of rotations that it needs, in LaTeX."""
     letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
     """How the entries of the product are written."""
+    chosen: Mapping[sp.Symbol, Sequence[sp.Symbol]] = field(default_factory=dict)
+    """For flags, the angles that have another value there than the formulas give, and no number."""
 
     def multiplied(self, rotations: Mapping[str, sp.MatrixBase]) -> Turned:
         """The function with one product in place of the rotations joint by joint."""
@@ -75,7 +77,7 @@ def in_angles(
     found = _InAngles(function, lemmas, results, chain(letters, more), named)
     told = found.told()
     angles = {s: e for e, s in found.totals.items() if e.is_Add and len(e.free_symbols) == 1}
-    return Turned(told, found.names, angles)
+    return Turned(told, found.names, angles, chosen=found.chosen)
 
 
 @dataclass
@@ -91,6 +93,8 @@ class _InAngles:
     """What stands for the names that are gone."""
     totals: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
     """Sums of angles that have a symbol."""
+    chosen: dict[sp.Symbol, list[sp.Symbol]] = field(default_factory=dict)
+    """See ``Turned``."""
 
     def __post_init__(self) -> None:
         body = self.function.body
@@ -203,7 +207,8 @@ class _InAngles:
         for unknown, solution in self.solutions.items():
             if followed(solution, self.alias) == followed(arctangent, self.alias):
                 if unknown not in self.known:
-                    self._define(unknown, arctangent)
+                    self._define(unknown, solution)
+                    self._choose(unknown, solution, arctangent)
                 return self._called(sine, cosine, unknown)
             rest = solution - arctangent
             if solution.is_Add and not rest.has(sp.atan2) and (sign := self._half_turn(rest)):
@@ -234,6 +239,13 @@ class _InAngles:
         usual = substitute(value, self.usual)
         if not usual.is_number:
             self.totals.setdefault(usual, unknown)
+
+    def _choose(self, unknown: sp.Symbol, solution: sp.Expr, usual: sp.Expr) -> None:
+        """Note where a flag holds in which other names than the usual ones give an angle."""
+        for flag in self.special:
+            there = self._angle(solution, flag)
+            if not there.is_number and there != self._angle(usual, flag):
+                self.chosen.setdefault(flag, []).append(unknown)
 
     def _sums(self) -> None:
         """State the results that are sums of angles, as soon as these are known."""

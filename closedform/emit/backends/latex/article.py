@@ -148,6 +148,7 @@ class Page(Sheet):
                 model=earlier,
                 letters=letters,
                 replaced=replaced,
+                chosen=turned.chosen if turned else {},
                 product=turned.product if turned else "",
                 vectors=vectors,
             )

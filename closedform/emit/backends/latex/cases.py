@@ -11,6 +11,7 @@ from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
 from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
+from closedform.emit.backends.latex.sources import explained
 from closedform.model.functions import Bound, Determined, Let, Vanishes, substitute
 
 LONGEST = 150
@@ -48,6 +49,7 @@ class Cases:
             with self.algorithm.as_one(twins is not None and flag.symbol in twins.alike):
                 told = self._told(flag)
                 effect = [e for e in self._effect(flag) if told is None or e not in told]
+                effect += self._chosen(flag)
                 free = flag.free if told is None else ()
                 if not is_rounding(flag) and (effect or free):
                     names = found.setdefault(self._where(flag, effect), [])
@@ -105,6 +107,15 @@ class Cases:
                 made |= needs
         rows = [*made.items(), *changed.items()]
         return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in rows]
+
+    def _chosen(self, flag: Vanishes) -> list[str]:
+        """The angles that are chosen where a flag holds, and the steps that say how."""
+        angles = self.algorithm.chosen.get(flag.symbol, ())
+        names = [f"${self.page.math(a)}$" for a in angles]
+        if not names:
+            return []
+        where = explained(self.page, self.algorithm.function, angles)
+        return [f"{listed(names)} {'are' if len(names) > 1 else 'is'} chosen{where}"]
 
     def _made_for(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr] | None:
         """The names in a value that no line defines, with their values; None if they are long."""

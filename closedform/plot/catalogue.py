@@ -98,8 +98,9 @@ def standard(view: View) -> list[Figure]:
         ),
         Figure(
             "workspace",
-            "How many branches reach each point of a section of the workspace, and where branches "
-            "are singular.",
+            "How many branches reach each point of a section of the workspace. Black lines are "
+            "where branches end; the legend names the factors of the singular set that vanish "
+            "there. Other lines are where a factor of some branch vanishes inside.",
             lambda robot: workspace(
                 robot, view.plane, at=view.at, limits=view.limits, unit=view.unit, given=view.given
             ),
@@ -108,7 +109,8 @@ def standard(view: View) -> list[Figure]:
         Figure(
             "conditioning",
             "The inverse condition number of the Jacobian: 1 where all directions are alike, 0 "
-            "where the mechanism is singular.",
+            "where the mechanism is singular. Between them it depends on the units if the "
+            "Jacobian mixes lengths and angles; the scale then names them.",
             lambda robot: field_map(
                 robot, "condition", view.measured or view.plane, at=view.at,
                 limits=None if view.measured else view.limits, unit=view.unit, given=view.given,

@@ -14,6 +14,7 @@ import numpy as np
 from contourpy import contour_generator
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
 from closedform.plot.postures import spoken
@@ -42,6 +43,10 @@ AREA = 2
 """The coordinates of a plane."""
 SHORT = 25
 """A curve of fewer points than this is taken for noise of the grid."""
+MEASURES = ("manipulability", "condition")
+"""What is measured by the singular values of the Jacobian."""
+OUTLINE = withStroke(linewidth=3.0, foreground="white")
+"""Around a curve on the map of branches, which is as dark as the map if it is printed in grey."""
 
 
 @styled
@@ -128,7 +133,8 @@ def _singular_curves(
             inside = kept[np.isfinite(kept)]
             if inside.size and inside.min() < -1e-9 * scale and inside.max() > 1e-9 * scale:
                 for curve in _lines(grid, np.ma.masked_invalid(kept), 0.0):
-                    ax.plot(*curve.T, color=colour(k + 1), linewidth=1.3, zorder=3)
+                    style = {"color": colour(k + 1), "linewidth": 1.3, "zorder": 3}
+                    ax.plot(*curve.T, path_effects=[OUTLINE], **style)
                     found = True
         if found:
             signs.append(Line2D([], [], color=colour(k + 1), label=_broken(name)))
@@ -233,6 +239,8 @@ def field(
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
     values, label = _quantity(r, q, mode, function)
+    if function in MEASURES and r.mixes_units:
+        label += f"\n({unit or 'unit of length'}, rad)"
     ax = _map_axes(grid) if ax is None else ax
     high, cut = _highest(values)
     image = ax.pcolormesh(*grid.sides, values, cmap="viridis", vmax=high, rasterized=True)
@@ -484,9 +492,9 @@ def _quantity(
     if r.has(function):
         values = np.asarray(r.call(function, q))
         return (in_mode(values) if values.ndim >= q.ndim else values), function
-    if function not in ("manipulability", "condition"):
+    if function not in MEASURES:
         known = dict.fromkeys(
-            ["manipulability", "condition", *(n for n in r.module.__all__ if n.islower())]
+            [*MEASURES, *(n for n in r.module.__all__ if n.islower())]
         )
         raise ValueError(f"{r.name} has no function {function}; there are {', '.join(known)}")
     name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")

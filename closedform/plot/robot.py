@@ -180,6 +180,14 @@ class Robot:
         z = self.points(self.draw(20))[..., 2]
         return bool(np.nanmax(np.abs(z)) <= FLAT * self.size)
 
+    @property
+    def mixes_units(self) -> bool:
+        """Whether the Jacobian has entries of several units: of lengths and angles, or of poses."""
+        task, joints = self.module.TASK, self.module.SKELETON.joints
+        places = {c for c in task if c in POSITION or c[0] == "T"}
+        kinds = {joints[name].kind for name in self.module.JOINTS if name in joints}
+        return "T14" in task or 0 < len(places) < len(task) or len(kinds) > 1
+
     @cached_property
     def centre(self) -> str:
         """The fixed point of a spherical mechanism, or an empty string.

@@ -315,3 +315,25 @@ def test_a_low_section_has_a_low_figure() -> None:
 )
 def test_a_spherical_mechanism_is_recognised_by_its_points(name: str, centre: str) -> None:
     assert Robot.of(module(name)).centre == centre
+
+
+@pytest.mark.parametrize(
+    ("robot", "mixed"),
+    [
+        ("planar_2r", False),
+        ("spherical_wrist", False),
+        ("linear_delta", False),
+        ("scara", True),
+        ("stanford_arm", True),
+        ("three_prs", True),
+    ],
+)
+def test_jacobians_that_mix_lengths_and_angles_are_known(robot: str, mixed: bool) -> None:
+    assert Robot.of(module(robot)).mixes_units is mixed
+
+
+def test_the_scale_of_a_mixed_jacobian_names_its_units() -> None:
+    ax = plot.field(module("scara"), "condition", unit="m", resolution=12)
+    assert ax.collections[0].colorbar.ax.get_ylabel().endswith("(m, rad)")
+    ax = plot.field(module("planar_2r"), "condition", unit="cm", resolution=12)
+    assert "rad" not in ax.collections[0].colorbar.ax.get_ylabel()

@@ -16,8 +16,8 @@ from closedform.plot.postures import branches, mechanism, spoken
 from closedform.plot.robot import Robot
 from closedform.plot.style import new_panels, styled
 
-INVERSE = "inverse"
-"""The section of an article that has figures, beside the steps."""
+INVERSE = "ik"
+"""The function whose section in an article has figures, beside the steps."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Figure:
     """A figure of a mechanism: ``draw`` takes its generated module and returns axes.
 
     ``step`` is the title of the step of the derivation that it belongs to; ``INVERSE``
-    stands for that section.  Other figures belong to the description of the mechanism.
+    stands for the section of that function.  Other figures belong to the description of the mechanism.
     """
 
     name: str

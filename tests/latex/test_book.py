@@ -221,7 +221,7 @@ def test_figures_that_were_drawn_are_included() -> None:
 
 
 def test_figures_stand_at_their_steps() -> None:
-    places = {"toy-a": "The loop", "toy-b": "inverse", "toy-c": "The loop"}
+    places = {"toy-a": "The loop", "toy-b": "ik", "toy-c": "The loop"}
     captions = dict.fromkeys(["toy-a", "toy-b", "toy-c", "toy-d"], "A")
     text = figures.pages(captions, [*captions], places)["toy"]
     shown = {
@@ -229,7 +229,7 @@ def test_figures_stand_at_their_steps() -> None:
         for where, part in re.findall(r"\\figures{([^{}]*)}{(See.*?})}\n", text, re.DOTALL)
     }
     assert shown == {
-        "step-the-loop": ["toy-a", "toy-c"], "inverse": ["toy-b"], "mechanism": ["toy-d"],
+        "step-the-loop": ["toy-a", "toy-c"], "ik": ["toy-b"], "mechanism": ["toy-d"],
     }  # fmt: skip
     assert r"See Figures~\ref{figure:toy-a} and \ref{figure:toy-c}." in text
 

@@ -371,3 +371,11 @@ def test_half_an_angle_in_a_line_has_brackets() -> None:
     """A distance in a table was 2 r |sin b/2|."""
     assert flat(r"2 r |\sin \frac{\beta_{1}}{2}|") == r"2 r |\sin(\beta_{1}/2)|"
     assert flat(r"\cos \frac{a - b}{2} + \frac{1}{2}") == r"\cos((a - b)/2) + 1/2"
+
+
+def test_figures_stand_beside_what_they_show() -> None:
+    """The mechanism above the tables of its letters; the branches of ik at ik, not at fk."""
+    text = render("latex/robot.tex.jinja", context("slider_crank"))
+    assert text.index(r"\figuresof{slider_crank}") < text.index("Parameter & Name")
+    (at_ik,) = (m.start() for m in re.finditer(r"\\figuresat{ik}\n\n\\topic", text))
+    assert at_ik > text.index(r"\subsection{Function \texttt{ik}}")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-SECTIONS = ("", "inverse")
-"""The sections that have figures; without a name it is that of the mechanism."""
+SECTIONS = ("", "ik")
+"""The sections that have figures: that of the mechanism, without a name, and that of ``ik``."""
 
 
 def place(step: str) -> str:

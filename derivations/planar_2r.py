@@ -64,7 +64,7 @@ A2 = denavit_hartenberg(l2, 0, 0, theta2)
 pose = chain([A1, A2])
 by_frames = d.step(
     "Pose by Denavit-Hartenberg",
-    "Table I has a = l1, l2 and no twist or offset.  The last column of the product of the two "
+    "Table I of the paper has the lengths l1 and l2, and no twist or offset.  The last column of the product of the two "
     "matrices is the position found by geometry.",
     {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
     published=("(6)", "(7)", "(8)", "Table I"),
@@ -89,6 +89,7 @@ d.explain(
         "r_{max}": "outer radius of the workspace",
         "r_{min}": "inner radius of the workspace",
         "S": "area of the workspace",
+        "J_{xy}": "the rows of x and y of J",
     }
 )
 phi = theta1 + theta2
@@ -248,8 +249,8 @@ d.step(
 )
 d.step(
     "Inverse: the shoulder",
-    "The direction of the first link is that of the hand minus alpha, the angle of the triangle at "
-    "the base.  Along the first link and across it, the hand is r cos(alpha) and r sin(alpha) from "
+    "The direction of the first link is beta - alpha, where beta = atan2(p_y, p_x) is that of the "
+    "hand and alpha the angle of the triangle at the base.  Along the first link and across it, the hand is r cos(alpha) and r sin(alpha) from "
     "the base.  With N and M, the sine and the cosine of theta2 are 2 sigma_elbow sqrt(M N) and M "
     "- N, each divided by M + N.  The hand can be on the base axis only if l1 = l2.  Then every "
     "theta1 is a solution; we return 0.",
@@ -321,9 +322,10 @@ s1 = f.let("s1", choose(no_first, 0, elbow_y / l1))
 full = linear_pair(theta2, n[1] * c1 - n[0] * s1, n[0] * c1 + n[1] * s1)
 d.step(
     "Inverse from the full pose",
-    "The first column n of T is the direction of the last link, so the elbow is at p - l2 n, which "
-    "gives theta1.  Then the first column of A_1^{-1} T = A_2 gives theta2.  The other entries of "
-    "eq. (9) are conditions on the pose.",
+    "The target T has the rotation R and the position p.  The first column of R is the direction "
+    "of the last link, so the elbow is at p minus l2 times this column, which gives theta1.  Then "
+    "the first column of A_1^{-1} T = A_2 gives theta2.  The other entries of this equation, (9) "
+    "of the paper, are conditions on the pose.",
     {
         r"\theta_1": atan2(origin[1] - l2 * n[1], origin[0] - l2 * n[0]),
         r"\theta_2": full[theta2],

@@ -76,8 +76,9 @@ A6 = denavit_hartenberg(0, 0, d6, theta6)
 pose = chain([A4, A5, A6])
 d.step(
     "Pose by Denavit-Hartenberg",
-    "Table II has twists of -90 and +90 degrees; the offset d6 is the only length.  The rotation "
-    "is that of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
+    "Table II of the paper has twists of -90 and +90 degrees; the offset d6 is the only length.  "
+    "The rotation is that of the Euler angles, which the paper calls phi, theta and varphi: they "
+    "are theta4, theta5 and theta6.",
     {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
     published=("(14)", "(15)", "Table II"),
     proves="The rotation of T is R, and T is R followed by the offset d6 along z.",
@@ -124,7 +125,7 @@ d.step(
     "Both determinants are the same, because the frames differ by a rotation.  They vanish "
     "exactly if theta5 is 0 or pi: then the first and the last axis coincide, and the hand cannot "
     "turn about the normal to axes 4 and 5.",
-    {r"\det J": det},
+    {r"\det J_s = \det J_b": det},
     proves="Both determinants are the stated one.",
     equal=[(space.det(), det), (body.det(), det)],
 )

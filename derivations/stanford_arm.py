@@ -55,10 +55,16 @@ arm = from_dh(
     ],
 )
 forward = arm.export(d, {"shoulder": sin(theta2), "boom": d3, "wrist": sin(theta5)})
+d.explain(
+    {
+        "J_{11}": "block of J: the position of the hand, the joints of the arm",
+        "J_{22}": "block of J: the rotation of the hand, the joints of the wrist",
+    }
+)
 d.step(
     "Factors",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
-    "wrist.  It vanishes where the boom is vertical (shoulder), where it is drawn in so far that "
+    "wrist, the two blocks on the diagonal of J.  It vanishes where the boom is vertical (shoulder), where it is drawn in so far that "
     "the wrist is on the axis of the shoulder (boom), and where axes 4 and 6 coincide (wrist).",
     {
         r"\det J_{11}": determinant(arm.geometric[:3, :3]),

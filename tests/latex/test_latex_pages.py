@@ -379,3 +379,29 @@ def test_figures_stand_beside_what_they_show() -> None:
     assert text.index(r"\figuresof{slider_crank}") < text.index("Parameter & Name")
     (at_ik,) = (m.start() for m in re.finditer(r"\\figuresat{ik}\n\n\\topic", text))
     assert at_ik > text.index(r"\subsection{Function \texttt{ik}}")
+
+
+def test_a_symbol_without_an_equation_of_its_own_is_in_the_notation() -> None:
+    """A block of a matrix, of which a determinant is shown, and the parts of a target."""
+    known = dict(context("franka_arm")["symbols"])
+    assert known[r"J_{\hat{7}}"] == r"$J$ without the column of $\theta_{7}$"
+    assert known["R"] == "rotation in $T$" and known["p"] == "position in $T$"
+    assert "R_{ij}" in known
+    assert dict(context("puma560")["symbols"])["p"].startswith("centre of the wrist")
+
+
+def test_an_argument_is_not_called_as_a_coordinate() -> None:
+    """x of ik(x) is not the coordinate x."""
+    (first, _) = context("planar_2r")["inverses"]
+    assert first["given"] == r"$\displaystyle \mathtt{x} = (p_{x},\ p_{y})$"
+    (there,) = first["continua"]
+    assert there["locus"].startswith(r"$\displaystyle p_{x} = 0$, $\displaystyle p_{y} = 0$")
+
+
+def test_a_continuum_says_what_is_arbitrary_and_what_holds() -> None:
+    text = render("latex/robot.tex.jinja", context("spherical_wrist"))
+    assert r"is free where, for some $\psi$," in text
+    assert r"All solutions share $\theta_4+\theta_6$" in text
+    assert r"All solutions satisfy $\theta_2 = \pi$" in render(
+        "latex/robot.tex.jinja", context("planar_2r")
+    )

@@ -206,7 +206,8 @@ class Solves(Check):
         counted = Count(self.equations, tuple(self.formulas), None, self.given).found()
         given_values = len({tuple(b.values()) for b, _ in branches}) // self._cases()
         if counted is not None and given_values >= counted:
-            text = f"all {counted} solutions" if counted > 1 else "the only solution"
+            few = {1: "the only solution", 2: "both solutions"}
+            text = few.get(counted, f"all {counted} solutions")
             return Verdict(PROVED, (text,))
         many = "infinitely many" if counted is None else str(counted)
         text = f"right, but it gives {given_values} of {many} solutions"

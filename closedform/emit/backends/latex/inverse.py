@@ -14,7 +14,7 @@ from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.listing import lines_kept, whole
-from closedform.emit.backends.latex.prose import escape, upright
+from closedform.emit.backends.latex.prose import escape, symbols_declared, upright
 from closedform.emit.backends.latex.sheet import Sheet, block, blocks
 from closedform.emit.backends.latex.sources import explained_as_a_whole
 from closedform.emit.backends.latex.stages import Stages
@@ -93,9 +93,10 @@ class Told:
         return ", and ".join(texts)
 
     def argument(self, array: Array) -> list[Equation]:
-        """An argument and its entries; in the font of the code if it is called as one of them."""
+        """An argument and its entries; in the font of the code if it is called as a coordinate."""
         page = self.page
-        if page.written(array.name) in map(page.math, array.entries):
+        coordinates = {page.written(name) for name in page.derivation.task}
+        if page.written(array.name) in {*map(page.math, array.entries), *coordinates}:
             return page.equations(rf"\mathtt{{{array.name}}}", list(array.entries))
         return page.assigned(array, {})
 
@@ -138,9 +139,17 @@ class Told:
             "flag": page.prose(self.algorithm.flags[case.flags[0]].meaning),
             "locus": ", ".join(whole(rows)) if narrow else "",
             "blocks": [] if narrow else blocks(rows),
+            "any": listed([f"${page.math(s)}$" for s in self.varied(case)]),
             "convention": f"{page.math(case.free)} = {page.math(convention)}",
+            "shared": "satisfy" if "=" in case.relation else "share",
             "relation": upright(case.relation),
         }
+
+    def varied(self, case: Degenerate) -> list[sp.Symbol]:
+        """The symbols that parametrise a locus, and stand for nothing else."""
+        there = {s for e in case.locus.values() for s in sp.sympify(e).free_symbols}
+        known = {*self.function.symbols, *self.parameters, *symbols_declared(self.page.derivation)}
+        return sorted(there - known, key=str)
 
     def located(self, array: Array, locus: Mapping[sp.Symbol, Any]) -> list[tuple[str, str]]:
         """The part of an argument that the locus fixes; a rotation is a matrix."""
@@ -150,7 +159,7 @@ class Told:
             rows = page.equations("R", sp.Matrix(3, 3, [locus[e] for e in rotation]))
             rest = [e for e in array.entries if e in locus and e not in rotation]
             return rows + [r for e in rest for r in page.equations(e, locus[e])]
-        if array.shape == (4, 4):
+        if array.shape == (4, 4) or len(array.shape) == 1:
             return [r for e in array.entries if e in locus for r in page.equations(e, locus[e])]
         return page.assigned(array, locus)
 

@@ -164,7 +164,8 @@ def table(
     taken = {_form(derivation, name) for name in declared}
     said = dict(_summaries(derivation))
     explained = derivation.explained.items()
-    said |= {without_power(canonical(upright(n))): m for n, m in explained}
+    in_words = {without_power(canonical(upright(n))): m for n, m in explained}
+    said |= in_words
     for form, label in numbers.defined.items():
         of_a_listed_matrix = form not in rows and _matrix_of(form) in numbers.defined
         if form not in taken and not of_a_listed_matrix:
@@ -172,6 +173,9 @@ def table(
                 said[form] = "abbreviation"
             told = rows.setdefault(form, [prose(said[form])] if form in said else [])
             told.append(f"see {reference([label])}")
+    # such as a block of a matrix, of which an equation gives the determinant
+    for form in in_words.keys() - rows.keys() - taken:
+        rows[form] = [prose(in_words[form])]
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
     return sorted(((f, t) for f, t in cells if t), key=lambda row: (_place(row[0]), row))
 
@@ -208,12 +212,26 @@ def _inputs(derivation: Derivation, math: Printed) -> Iterator[tuple[str, str]]:
                 continue
             whole = _form(derivation, array.name)
             if len(array.shape) > 1:
-                yield f"{whole}_{{ij}}", f"entry of ${whole}$ in row $i$, column $j$"
+                yield _entry(whole)
+                if array.shape == (4, 4) and math(array.entries[0]).startswith("R_"):
+                    yield _entry("R")
+                    yield from _parts_of_pose(derivation, whole)
                 continue
             of = "the target" if function.has_status else f"${whole}$"
             for entry in array.entries:
                 form = without_power(canonical(math(entry)))
                 yield form, f"coordinate of {of}" if form != whole else "argument"
+
+
+def _entry(whole: str) -> tuple[str, str]:
+    return f"{whole}_{{ij}}", f"entry of ${whole}$ in row $i$, column $j$"
+
+
+def _parts_of_pose(derivation: Derivation, whole: str) -> Iterator[tuple[str, str]]:
+    """The rotation and the position in a pose, unless the derivation says what they are."""
+    for name, what in (("R", "rotation"), ("p", "position")):
+        if name not in derivation.explained:
+            yield name, f"{what} in ${whole}$"
 
 
 def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:

@@ -8,15 +8,18 @@ Importing this module registers its printers with :mod:`closedform.model.display
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.formulas import Printer
+from closedform.emit.backends.latex.prose import symbols_of, upright
+from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.escape import markdown_text
 from closedform.emit.markup import Markdown, number, plain
 from closedform.model.claims import Claim, Erratum
-from closedform.model.derivation import Derivation
+from closedform.model.derivation import Derivation, Paper
 from closedform.model.display import prints
 from closedform.model.lemma import Lemma, Theorem
 from closedform.model.step import Step
@@ -24,6 +27,8 @@ from closedform.proof.prove import Proof
 
 MAPS = ("fk", "ik")
 INDENT = "&emsp;"
+NUMBERED = re.compile(r"theta\d")
+"""An angle whose number tells it from others."""
 
 
 class _Cell(Markdown):
@@ -80,11 +85,26 @@ def erratum(erratum: Erratum) -> str:
 
 @prints(Step, "markdown")
 def step(step: Step) -> str:
-    """A step: its reason, its equations, and what is proved of them."""
-    rows = [(left, _math(value)) for left, value in step.shown]
-    parts = [f"**{step.title}.** {step.reason}", _aligned(rows), _table(step.rows)]
+    """A step as an article tells it: its reason, its equations, and what is proved of them."""
+    alone = Derivation("step", step.title, Paper("none", "None", ()), "", steps=[step])
+    for symbol in sorted(symbols_of(step), key=str):
+        if NUMBERED.fullmatch(symbol.name):  # its sine and cosine have short names
+            alone.joint(symbol.name)
+    sheet, cell = Sheet(alone), _Cell()
+
+    def text(sentences: str) -> str:
+        return cell(sheet.prose(sentences))
+
+    rows = [row for left, value in step.shown for row in sheet.equations(upright(left), value)]
+    parts = [
+        f"**{step.title}.** {text(step.reason)}",
+        _aligned(rows),
+        _table(step.rows, text),
+    ]
+    if legend := sheet.legend():
+        parts.append(f"Here {', '.join(f'${short} = {full}$' for short, full in legend)}.")
     if step.proves:
-        parts.append(f"*Proved:* {step.proves}")
+        parts.append(f"*Proved:* {text(step.proves)}")
     return "\n\n".join(filter(None, parts))
 
 
@@ -110,19 +130,19 @@ def theorem(theorem: Theorem) -> str:
     return "\n\n".join([*parts, f"*Proof.* {theorem.proof}"])
 
 
-def _table(rows: Sequence[Sequence[Any]]) -> str:
+def _table(rows: Sequence[Sequence[Any]], text: Callable[[str], str]) -> str:
     """The rows of a step below the first one, which is the head."""
-    lines = [f"| {' | '.join(map(_entry, row))} |" for row in rows]
+    lines = [f"| {' | '.join(_entry(e, text) for e in row)} |" for row in rows]
     return "\n".join([*lines[:1], "|---" * len(rows[0]) + "|", *lines[1:]]) if rows else ""
 
 
-def _entry(value: Any) -> str:
+def _entry(value: Any, text: Callable[[str], str]) -> str:
     """An entry of a table: words, an expression or an increasing chain of them."""
     if isinstance(value, str):
-        return _text(value)
+        return text(value)
     chain = value if isinstance(value, tuple) else (value,)
-    text = r" \le ".join(map(_math, chain)).replace("|", r"\vert ")
-    return f"${text}$"
+    formula = r" \le ".join(map(_math, chain)).replace("|", r"\vert ")
+    return f"${formula}$"
 
 
 def _aligned(rows: list[tuple[str, str]]) -> str:

@@ -25,7 +25,8 @@ class Figure:
     """A figure of a mechanism: ``draw`` takes its generated module and returns axes.
 
     ``step`` is the title of the step of the derivation that it belongs to; ``INVERSE``
-    stands for the section of that function.  Other figures belong to the description of the mechanism.
+    stands for the section of that function.  Other figures belong to the description of the
+    mechanism.
     """
 
     name: str

@@ -493,9 +493,7 @@ def _quantity(
         values = np.asarray(r.call(function, q))
         return (in_mode(values) if values.ndim >= q.ndim else values), function
     if function not in MEASURES:
-        known = dict.fromkeys(
-            [*MEASURES, *(n for n in r.module.__all__ if n.islower())]
-        )
+        known = dict.fromkeys([*MEASURES, *(n for n in r.module.__all__ if n.islower())])
         raise ValueError(f"{r.name} has no function {function}; there are {', '.join(known)}")
     name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")
     J = np.asarray(r.call(name, q))

@@ -274,6 +274,17 @@ def test_claims_and_errors_show_themselves_in_a_notebook() -> None:
     assert erratum._repr_markdown_() == "**It is $x$.** Since 5 % are lost.\n\nUse."
 
 
+@pytest.mark.parametrize("name", ["planar_2r", "puma560", "delta"])
+def test_steps_show_themselves_in_a_notebook_as_in_the_article(name: str) -> None:
+    for step in derived(name)[0].steps:
+        text = step._repr_markdown_()
+        words = re.sub(r"\$\$.*?\$\$|\$.*?\$", "", text, flags=re.DOTALL)
+        assert not re.search(r"theta\d|_[ijs]\b|\\", words), words
+        assert (
+            max(map(len, text.splitlines())) < 1500
+        )  # a matrix as wide as its columns is not read
+
+
 def test_without_proof_nothing_is_called_proved() -> None:
     derivation, _ = derived("planar_2r")
     assert "roved" not in show(derivation, None)

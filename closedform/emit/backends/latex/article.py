@@ -173,10 +173,6 @@ class Page(Sheet):
         shown = [pair for step in self.derivation.steps for pair in step.shown]
         return {n: v for n, v in shown if isinstance(v, sp.MatrixBase) and v.shape == (3, 3)}
 
-    def legend(self) -> list[tuple[str, str]]:
-        """The abbreviated sines and cosines that have been printed so far."""
-        return sorted(self.printer.legend.items(), key=lambda e: (len(e[1]), e[0][9:], e[0]))
-
     def joint(self, joint: Joint) -> tuple[str, str, str, str]:
         role = "passive: the others move it" if joint.passive else "actuated"
         if joint.coupling is not None:

@@ -53,6 +53,10 @@ class Sheet:
         """The LaTeX of a symbol that is known by its name."""
         return written_name(self.derivation, name)
 
+    def legend(self) -> list[tuple[str, str]]:
+        """The abbreviated sines and cosines that have been printed so far."""
+        return sorted(self.printer.legend.items(), key=lambda e: (len(e[1]), e[0][9:], e[0]))
+
     @property
     def free_angles(self) -> list[str]:
         """The letters for angles that mean nothing else."""

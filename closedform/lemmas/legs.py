@@ -243,7 +243,8 @@ class Crank:
             signs=(sigma,),
             roles=(
                 (r"\theta", q),
-                *(("l", l), ("r", r), ("a", a), ("b", b), ("p", sp.Abs(aside)), ("s", s)),
+                *(("l", l), ("r", r), ("a", a), ("b", b)),
+                *((("p", sp.Abs(aside)), ("s", s)) if aside != 0 else ()),
             ),
             letters=triangle.letters
             | {ahead: indexed("X", chain.tag), beyond: indexed("Y", chain.tag)}

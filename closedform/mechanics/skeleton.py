@@ -7,7 +7,7 @@ hand is that of the forward map.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -18,7 +18,11 @@ from closedform.mechanics.frames import rotation
 from closedform.mechanics.links import Group
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Function, Program
+from closedform.model.names import listed
 from closedform.model.skeleton import Skeleton
+
+FEW = 3
+"""So many links of one kind are told apart; where there are more, their points say which."""
 
 
 def skeleton(
@@ -98,7 +102,7 @@ def skeleton(
     own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
-    distances: dict[sp.Expr, list[str]] = {}
+    distances: dict[sp.Expr, list[tuple[str, str]]] = {}
     bounds: list[sp.Expr] = []
     for at, limits, held in _cases(function, tuple(places), pairs, at_posture):
         bounds += [b for b in limits if b not in bounds]
@@ -109,9 +113,8 @@ def skeleton(
             if length is None:
                 length = sp.sqrt(sp.factor(_still(square, function)))
             equal.append((square, sp.expand(length**2) + rest.get(pair, 0)))
-            between = " to ".join(map(_spoken, pair))
-            if between not in distances.setdefault(length, []):
-                distances[length].append(between)
+            if pair not in distances.setdefault(length, []):
+                distances[length].append(pair)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
     closed = (
@@ -121,12 +124,19 @@ def skeleton(
     )
     d.step(
         "Skeleton",
-        "The links are drawn through these points.  No link changes its length when the joints "
-        f"move, and the hand is at {position}.{closed}",
+        f"The links are drawn through these points.  {_placed(drawn)}  No link changes its length "
+        f"when the joints move, and the hand is at {position}.{closed}",
         {},
         rows=[
-            ("Points", "Distance"),
-            *((", ".join(ends), size) for size, ends in distances.items()),
+            ("Link", "Points", "Distance"),
+            *(
+                (
+                    _links_of(drawn, ends),
+                    ", ".join(" to ".join(map(_spoken, e)) for e in ends),
+                    size,
+                )
+                for size, ends in distances.items()
+            ),
         ],
         proves=(
             "The squared distance of each pair of neighbouring points is the square of the length"
@@ -141,6 +151,42 @@ def skeleton(
 def _spoken(point: str) -> str:
     """The name of a point in words: ``corner 1`` for ``corner1``."""
     return re.sub(r"(?<=[a-z]{2})(?=\d)", " ", point.replace("_", " "))
+
+
+def _between(pair: tuple[str, str]) -> str:
+    return " to ".join(map(_spoken, pair))
+
+
+def _placed(drawn: Skeleton) -> str:
+    """Which points are on the base, where the joints are, and which point is the hand."""
+    ground = [_spoken(p) for p in drawn.ground if p != "base"]
+    at: dict[str, list[str]] = {}
+    for joint, points in drawn.joints.items():
+        first, last = _spoken(points[0]), _spoken(points[-1])
+        slides = drawn.kinds[joint] == "prismatic"
+        line = f"from {first} to {last}" if slides else f"on the line of {first} and {last}"
+        at.setdefault(line if len(points) > 1 else f"at {first}", []).append(joint)
+    joints = listed([f"{listed(names)} {place}" for place, names in at.items()])
+    hand = "" if drawn.hand == "hand" else f"; the hand is at {_spoken(drawn.hand)}"
+    s = "s" * (len(ground) > 1)
+    fixed = f"The base has the point{s} {listed(ground)}.  " if ground else ""
+    return f"{fixed}The joints are {joints}{hand}."
+
+
+def _links_of(drawn: Skeleton, pairs: Iterable[tuple[str, str]]) -> str:
+    """The links and the joints that lead from point to point: ``crank 1, 2, 3``."""
+    found: dict[str, list[str]] = {}
+    for pair in pairs:
+        links = [name for name, link in drawn.links.items() if pair in {*pairwise(link)}]
+        for name in links or [joint for joint, at in drawn.joints.items() if at == pair]:
+            word, _, number = _spoken(name).partition(" ")
+            numbers = found.setdefault(word if links else name, [])
+            if links and number not in numbers and word != "hand":
+                numbers.append(number)
+    return "; ".join(
+        f"{word} {', '.join(numbers)}".rstrip() if len(found) == 1 and len(numbers) <= FEW else word
+        for word, numbers in found.items()
+    )
 
 
 def _segments(drawn: Skeleton) -> list[tuple[str, str]]:

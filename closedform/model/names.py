@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 C_WORDS = frozenset({
     "alignas", "alignof", "asm", "auto", "bool", "break", "case", "catch", "char", "class",
@@ -240,6 +240,11 @@ def check_robot(name: str) -> None:
         raise ValueError(f"the name {name} is taken; choose another, such as {name}_0")
 
 
+def listed(texts: Sequence[str]) -> str:
+    """Texts in a sentence: ``a, b and c``."""
+    return " and ".join(filter(None, [", ".join(texts[:-1]), *texts[-1:]]))
+
+
 __all__ = [
     "check_argument",
     "check_function",
@@ -254,4 +259,5 @@ __all__ = [
     "in_c",
     "in_javascript",
     "in_python",
+    "listed",
 ]

@@ -162,3 +162,20 @@ def test_wrong_names_are_refused(links: dict[str, Any], joint: str, message: str
     points = {"base": (0, 0, 0), "hand": (1, 0, 0)}
     with pytest.raises(ValueError, match=message):
         skeleton(d, points, links=links, joints={q: (joint,)}, hand="hand")
+
+
+def test_the_points_are_introduced_before_their_table() -> None:
+    """A student read "A0 to A1" without having heard of either."""
+    d = import_module("closedform.derivations.spherical_five_bar").d
+    (step,) = (s for s in d.steps if s.title == "Skeleton")
+    assert "The base has the points A0, A1 and A2." in step.reason
+    assert "theta1 at A1 and theta2 at A2; the hand is at P" in step.reason
+    kinds = {row[1]: row[0] for row in step.rows}
+    assert kinds["A1 to B1"] == "crank 1" and kinds["B2 to P"] == "rod 2"
+
+
+def test_a_slide_has_the_name_of_its_joint() -> None:
+    d = import_module("closedform.derivations.orthoglide").d
+    (step,) = (s for s in d.steps if s.title == "Skeleton")
+    assert "rho1 from A1 to B1" in step.reason
+    assert ("rho1", "A1 to B1") in {row[:2] for row in step.rows}

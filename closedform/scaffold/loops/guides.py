@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint
-from closedform.scaffold.loops.legs import Legs, listed
+from closedform.scaffold.loops.legs import Legs
 
 SPACE = 3
 DRIVEN = {"universal": 2, "spherical": 3}

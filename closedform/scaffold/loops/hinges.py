@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint
 from closedform.scaffold.loops.guides import GuideLine
-from closedform.scaffold.loops.legs import Legs, LoopLeg, listed
+from closedform.scaffold.loops.legs import Legs, LoopLeg
 
 KIND = "a hand on hinged legs"
 COUNTS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}

@@ -7,11 +7,12 @@ several points and are not parallelograms, needs three driven joints in a plane 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.source import source
@@ -464,14 +465,8 @@ class Legs:
         return pin.on_bar - hand
 
 
-def listed(names: Sequence[str]) -> str:
-    """``a, b and c``."""
-    *first, last = names or [""]
-    return f"{', '.join(first)} and {last}" if first else last
-
-
 def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
-__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg", "listed"]
+__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg"]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.mechanics.assur import Dyad, Order, freedoms, order
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
-from closedform.scaffold.loops.legs import listed
 from closedform.scaffold.source import literal, source
 
 FEW = {1: 3, 2: 4}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint
-from closedform.scaffold.loops.legs import Legs, LoopLeg, listed
+from closedform.scaffold.loops.legs import Legs, LoopLeg
 from closedform.scaffold.source import source
 
 

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.algebra.formulas import number
+from closedform.model.names import listed
 from closedform.scaffold.inputs.tables import Table, add_joint
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
-from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg, listed
+from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.slotted import slotted

@@ -23,7 +23,6 @@ from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
     canonical,
-    listed,
     names_in,
     reference,
     runs,
@@ -50,6 +49,7 @@ from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
 from closedform.model.inverse import Combination, Inverse, Rank
 from closedform.model.lemma import Lemma
+from closedform.model.names import listed
 from closedform.model.step import Step
 from closedform.proof.prove import Proof
 
@@ -424,7 +424,7 @@ def tied(title: str) -> str:
 def column(cells: Sequence[Any]) -> str:
     """The type of a column of a table: long sentences are broken into lines."""
     longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
-    return r"L{0.56\linewidth}" if longest > SENTENCE else "l"
+    return r"L{0.5\linewidth}" if longest > SENTENCE else "l"
 
 
 def indexed(title: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.prose import escape
+from closedform.model.names import listed
 from closedform.model.paper import Paper, Work
 
 

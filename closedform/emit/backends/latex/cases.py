@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
-from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
 from closedform.emit.backends.latex.sources import explained
 from closedform.model.functions import Bound, Determined, Let, Vanishes, substitute
+from closedform.model.names import listed
 
 LONGEST = 150
 """A condition with more operations is written with names that the algorithm does not print."""

@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from closedform.model.names import listed
+
 GREEK_OR_LETTER = r"\\(?!text|mathrm|left|right|[bB]ig|quad|frac|sqrt)[A-Za-z]+|[A-Za-z]"
 SCRIPT = r"[_^](?:\{(?:[^{}]|\{[^{}]*\})*\}|\\[A-Za-z]+|\w)|'"
 NAME = re.compile(
@@ -165,8 +167,3 @@ def reference(labels: Iterable[str]) -> str:
 def _place(label: str) -> int:
     """The number of an equation in its document."""
     return int(label.rpartition(":")[2])
-
-
-def listed(texts: Sequence[str]) -> str:
-    """Texts in a sentence: ``a, b and c``."""
-    return " and ".join(filter(None, [", ".join(texts[:-1]), *texts[-1:]]))

@@ -13,9 +13,9 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.places import SECTIONS, place
 from closedform.emit.backends.latex.prose import mixed
+from closedform.model.names import listed
 
 
 def pages(

@@ -11,7 +11,6 @@ import sympy as sp
 from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.cases import Cases
-from closedform.emit.backends.latex.equations import listed
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.listing import lines_kept, whole
 from closedform.emit.backends.latex.prose import escape, symbols_declared, upright
@@ -28,6 +27,7 @@ from closedform.model.functions import (
     real,
 )
 from closedform.model.inverse import Combination, Degenerate, Inverse
+from closedform.model.names import listed
 from closedform.proof.inverse import InverseResult
 
 

@@ -9,11 +9,12 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.emit.backends.latex.equations import canonical, listed, skeleton
+from closedform.emit.backends.latex.equations import canonical, skeleton
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.lemma import Lemma
+from closedform.model.names import listed
 
 LETTER = re.compile(
     r"\\(?:operatorname|text|begin|end)\{[^}]*\}|\\math[a-z]+ ?(?:\{[^}]*\}|[A-Za-z])"

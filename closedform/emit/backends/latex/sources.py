@@ -8,12 +8,13 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.emit.backends.latex.equations import canonical, listed, reference, skeleton
+from closedform.emit.backends.latex.equations import canonical, reference, skeleton
 from closedform.emit.backends.latex.prose import upright
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
+from closedform.model.names import listed
 from closedform.model.step import Step
 
 

@@ -16,7 +16,6 @@ from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.cases import Cases, are_free
 from closedform.emit.backends.latex.equations import (
     Numbered,
-    listed,
     reference,
     runs,
 )
@@ -43,6 +42,7 @@ from closedform.model.functions import (
     free_symbols,
     substitute,
 )
+from closedform.model.names import listed
 
 FEW = 4
 """More parts of the target than that are not listed."""

@@ -312,7 +312,7 @@ d.step(
     "With bars of lengths L3 and L4 over D only the last rows change.  From here on L1 = L3 and "
     "L2 = L4.  Then the triangle over CD is isosceles, L2^2 is a common factor of A*A^T, which the "
     "condition number uses, and the two hollow spheres of the workspace have the same size.",
-    {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
+    {r"B_{33}(L_3, L_4)": L3 * L4 * sin(theta5 - theta3)},
     proves="The last rows of A and B are those of the bars L3 and L4.",
     equal=[
         (general[:, :3], bar(L4, theta5).T),

@@ -405,3 +405,17 @@ def test_a_continuum_says_what_is_arbitrary_and_what_holds() -> None:
     assert r"All solutions satisfy $\theta_2 = \pi$" in render(
         "latex/robot.tex.jinja", context("planar_2r")
     )
+
+def test_a_note_of_many_functions_is_printed_once() -> None:
+    """Seven functions of a delta robot repeated the same sentence."""
+    text = render("latex/robot.tex.jinja", context("delta"))
+    assert text.count("NaN for an assembly mode that does not exist.") == 1
+    line = next(line for line in text.splitlines() if "mode that does not exist" in line)
+    assert r"\texttt{jacobian\_serial}" in line and r"\texttt{fk}" not in line
+
+
+def test_a_singular_entry_refers_to_its_matrix_and_not_to_a_special_design() -> None:
+    """B_33 led to the equation for unequal legs, and B_22 to none."""
+    rank = [formula for _, formula in context("hybrid_five_bar")["singular"]["rank"]]
+    places = [re.findall(r"\\eqref\{[^}]*\}", f) for f in rank if "B_" in f]
+    assert len(places) == 2 and places[0] and places[0] == places[1]

@@ -376,7 +376,8 @@ class Page(Sheet):
         """Where the name is defined whose vanishing is a formula."""
         name = canonical(vanishing.removesuffix(" = 0"))
         any_leg = re.sub(r"\d(?=\d?\}$)", INDEX, name)
-        label = self.numbers.defined.get(name) or self.numbers.defined.get(any_leg)
+        known = self.numbers.defined
+        label = known.get(name) or known.get(any_leg) or known.get(symbols.matrix_of(name))
         joints = {canonical(self.math(j.symbol)) for j in self.derivation.joints}
         return f", see {reference([label])}" if label and name not in joints else ""
 
@@ -467,6 +468,15 @@ def formulas(texts: Sequence[str]) -> str:
     return ", ".join(rf"$\displaystyle {t}$" for t in texts)
 
 
+def shared_notes(functions: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """The notes that several functions have, which are printed once, with their names."""
+    having: dict[str, list[str]] = {}
+    for function in functions:
+        for note in function["notes"] if not function["key"] else ():
+            having.setdefault(note, []).append(rf"\texttt{{{function['name']}}}")
+    return {note: listed(names) for note, names in having.items() if len(names) >= FEW}
+
+
 def source_of_all(derivation: Derivation, text: Callable[[str], str]) -> str:
     """Where all defaults come from, if that is one source."""
     sources = {text(p.source) for p in derivation.parameters}
@@ -477,7 +487,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     """The context of ``latex/robot.tex.jinja``."""
     page = Page(derivation, proof)
     text = page.prose
-    context = {
+    context: dict[str, Any] = {
         "name": derivation.name,
         "title": escape(derivation.title),
         "heading": tied(escape(derivation.title)),
@@ -506,6 +516,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     notation = symbols.joined(symbols.table(derivation, page.numbers, text, page.math))
     return context | {
+        "shared_notes": shared_notes(context["functions"]),
         "legend": [f"{short} = {full}" for short, full in legend],
         "symbols": notation,
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),

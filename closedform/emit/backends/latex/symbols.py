@@ -167,7 +167,7 @@ def table(
     in_words = {without_power(canonical(upright(n))): m for n, m in explained}
     said |= in_words
     for form, label in numbers.defined.items():
-        of_a_listed_matrix = form not in rows and _matrix_of(form) in numbers.defined
+        of_a_listed_matrix = form not in rows and matrix_of(form) in numbers.defined
         if form not in taken and not of_a_listed_matrix:
             if form not in said and AUXILIARY.fullmatch(form):
                 said[form] = "abbreviation"
@@ -185,7 +185,7 @@ def _place(form: str) -> str:
     return re.sub(r"\d+", lambda m: m[0].zfill(3), skeleton(form).lower())
 
 
-def _matrix_of(form: str) -> str:
+def matrix_of(form: str) -> str:
     """``J_{s}`` of ``J_{s,12}`` and ``J`` of ``J_{12}``."""
     entry = re.fullmatch(r"(.+)_\{(?:(.+),)?\d\d\}", form)
     if entry is None:
@@ -334,4 +334,4 @@ def _plural(meaning: str) -> str:
     return re.sub(r"^(task coordinate|branch sign|coordinate)\b", r"\1s", meaning)
 
 
-__all__ = ["clashes", "joined", "require_distinct", "table", "undefined"]
+__all__ = ["clashes", "joined", "matrix_of", "require_distinct", "table", "undefined"]

@@ -31,12 +31,14 @@ L_theta, l_H = real("L_theta"), real("l_H")
 LENGTHS = (L_theta, L_2W, a_3W)
 MEANINGS = {
     "J_o": "derivative of the task with respect to theta1, the virtual arm, yaw, roll and pitch",
-    "J_i": "derivative of these quantities with respect to the joints",
+    "J_i": "derivative of theta1, the virtual arm, yaw, roll and pitch with respect to the joints",
     "P": "derivative of the position with respect to theta1 and the virtual arm",
     "Q": "derivative of the position with respect to the lengths of the virtual arm with the wrist",
-    "H": "derivative of these lengths with respect to yaw, roll and pitch",
-    "H_0": "the same for a wrist of constant length",
-    r"\mathbf w": "derivative of these lengths with respect to that of the wrist",
+    "H": "derivative of the lengths of the virtual arm with the wrist with respect to yaw, roll "
+    "and pitch",
+    "H_0": "what H is for a wrist of constant length",
+    r"\mathbf w": "derivative of the lengths of the virtual arm with the wrist with respect to "
+    "that of the wrist",
     r"\mathbf g": "derivative of the length of the wrist with respect to yaw, roll and pitch",
     "V": "derivative of the virtual arm with respect to the joints of the arms",
     "W": "derivative of yaw and roll with respect to the joints of the arms",

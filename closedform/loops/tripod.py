@@ -38,7 +38,7 @@ VECTORS = {
     "n_i": "normal of the plane of leg i",
     "d_i": "horizontal direction in the plane of leg i",
     "b_i": "near end of rod i, in the plane of the leg",
-    "r_i": "from the near end of rod i to the corner of the hand, in that plane",
+    "r_i": "from the near end of rod i to the corner of the hand, in the plane of the leg",
 }
 """In the step on the velocity."""
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
@@ -90,7 +90,12 @@ def _place(m: Tripod) -> Step:
     d.explain({r"\delta": "amplitude of the equation of the twist", "R": "rotation of the hand"})
     d.explain({"c": "cosine of the twist", "s": "sine of the twist"})
     d.explain({r"\mathbf p": "position of the point of the hand"})
-    d.explain({rf"\mathbf h_{k}": "from there to the corner of a leg" for k, _ in m.numbered})
+    d.explain(
+        {
+            rf"\mathbf h_{k}": "from the point of the hand to the corner of a leg"
+            for k, _ in m.numbered
+        }
+    )
     step = d.step(
         "Pose of the hand",
         "The hand is twisted by psi about its own z axis and tilted.  Its position is p, and "

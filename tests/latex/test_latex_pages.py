@@ -419,3 +419,16 @@ def test_a_singular_entry_refers_to_its_matrix_and_not_to_a_special_design() -> 
     rank = [formula for _, formula in context("hybrid_five_bar")["singular"]["rank"]]
     places = [re.findall(r"\\eqref\{[^}]*\}", f) for f in rank if "B_" in f]
     assert len(places) == 2 and places[0] and places[0] == places[1]
+
+
+def test_a_symbol_that_no_equation_defines_is_in_the_notation() -> None:
+    """The condition number was a quotient of two letters that nothing introduced."""
+    meanings = dict(context("spherical_five_bar")["symbols"])
+    assert meanings[r"\varsigma_{1}"] == "largest singular value of $Q$"
+
+
+@pytest.mark.parametrize("name", ["h6ar", "h6ar_loop_closed", "three_prs", "hybrid_five_bar"])
+def test_a_row_of_the_notation_does_not_lean_on_its_neighbours(name: str) -> None:
+    """The rows are sorted by letter: these, the same and there mean nothing in them."""
+    leaning = re.compile(r"\b(these|those lengths|the same|from there|that plane)\b")
+    assert not [m for _, m in context(name)["symbols"] if leaning.search(m)]

@@ -175,7 +175,8 @@ def table(
             told.append(f"see {reference([label])}")
     # such as a block of a matrix, of which an equation gives the determinant
     for form in in_words.keys() - rows.keys() - taken:
-        rows[form] = [prose(in_words[form])]
+        if matrix_of(form) not in numbers.defined:
+            rows[form] = [prose(in_words[form])]
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
     return sorted(((f, t) for f, t in cells if t), key=lambda row: (_place(row[0]), row))
 

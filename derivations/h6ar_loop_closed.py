@@ -150,7 +150,7 @@ leaning = d.step(
     "The base line of the wrist is along the y axis after roll and yaw, R_z(phi) R_x(psi) e_y.  "
     "Half of it, of length b, has the component d across the mid-plane.  So b is "
     "d / (cos(psi) cos(phi)), which replaces d / cos(psi) in (8).  The other components give "
-    "tan(phi) = -x / d and tan(psi) = cos(phi) z / d.",
+    "tan(phi) = -Delta_x / d and tan(psi) = cos(phi) Delta_z / d.",
     {r"b\,R_z(\phi) R_x(\psi)\,\mathbf e_y": half_line},
     published=("(3)", "(4)", "(8)"),
     proves="The turned y axis times half the base line has the components -d tan(phi), d and d "
@@ -397,7 +397,6 @@ d.function(
     {"J": J},
     program=p,
     equation="J",
-    source="derivative of the forward map",
     notes=(*notes, STEEP),
 )
 p = Program()

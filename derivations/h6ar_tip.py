@@ -95,8 +95,8 @@ def bent_step(d: Derivation, m: Dimensions, q: Joints, tips: tuple[sp.Matrix, sp
     fore = sqrt(m.L2**2 + m.a3**2)
     d.step(
         "How far the virtual arm is bent",
-        "The square of the reach R of the virtual arm is the mean of the squares for both arms, "
-        "minus the square of half the distance of the tips.  So N = (L1 + f)^2 - R^2 of the "
+        "The square of the reach R_I of the virtual arm is the mean of the squares for both arms, "
+        "minus the square of half the distance of the tips.  So N = (L1 + f)^2 - R_I^2 of the "
         "virtual arm is a sum of terms that are not negative.  No digits cancel if the arms are "
         "straight.",
         {

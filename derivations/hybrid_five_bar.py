@@ -347,8 +347,8 @@ d.step(
     "parallel singularity, det(A) = 0, either C, D, P are in line or C = D: P can move although "
     "the motors stand still, at right angles to CP or on a circle about D.  At a serial "
     "singularity, det(B) = 0, a motor turns and P stands still.  For theta1 this happens with P on "
-    "AB (rho = 0), which section 2.6 does not mention; for theta2 with A, C, P in line; for theta3 "
-    "with B, D, P in line.  In the last two cases a leg is stretched or folded.",
+    "AB (rho = 0), which section 2.6 of the paper does not mention; for theta2 with A, C, P in "
+    "line; for theta3 with B, D, P in line.  In the last two cases a leg is stretched or folded.",
     {
         r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) A^{-1}": (
             A_inverse * product

@@ -77,8 +77,8 @@ def conditioning(
         "range of CD, the first is possible if and only if L0 <= 2*L1, and the second if and only "
         "if 2*L2 is in the range.  If 2*L2 is below the range, the loop never closes.  So a "
         "linkage that can be assembled has no parallel singularity if and only if both conditions "
-        "below hold.  Section 3.2 has two conditions.  The first, 2*L1 > L0, ensures the opposite "
-        "of its purpose: C can meet D.  The other, 2*L2 - 2*L1 > L0, is the second one below: C, "
+        "below hold.  Section 3.2 of the paper has two conditions.  The first, 2*L1 > L0, ensures "
+        "the opposite of its purpose: C can meet D.  The other, 2*L2 - 2*L1 > L0, is the second one below: C, "
         "P, D are never in line, but C may still meet D.",
         {
             r"\text{C and D stay apart}": sp.Gt(L0, 2 * L1),
@@ -401,7 +401,14 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         "Workspace: the regimes meet",
         "At each seam the volumes of both regimes agree, and so do their derivatives with respect "
         "to L0.  So the formula holds for all lengths, including the limits.",
-        {"L_0": [seam for _, _, seam in SEAMS]},
+        {},
+        rows=[
+            ("inner balls", "inner balls", "seam"),
+            *(
+                (*(n.removeprefix("inner balls ") for n in (a, b)), sp.Eq(L0, by_radii(at)))
+                for a, b, at in SEAMS
+            ),
+        ],
         proves="The volumes of neighbouring regimes, and their derivatives, agree at each seam.",
         equal=[
             (g(found[a].volume).subs(L0, at), g(found[b].volume).subs(L0, at))

@@ -136,7 +136,7 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         program=p,
         branches=choices,
         result="Solutions",
-        source="solved from eq. (13); the paper does not give the inverse",
+        source="eq. (13), which is solved here; the paper does not give the inverse",
         notes=(
             "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= "
             "0, with rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at "

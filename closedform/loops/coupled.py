@@ -293,8 +293,8 @@ def _inverse(loop: _Loop) -> None:
             *["UNREACHABLE: the rod does not reach."] * bool(inside.body),
             *where_free([found]),
             "SINGULAR also near the parallel singularity, where the rod is at right angles to the "
-            "path of the follower: the loop closes, but one ulp of the driver moves the follower "
-            "by more than 1e-12.",
+            "path of the follower: the loop closes, but a unit in the last place of the driver "
+            "moves the follower by more than 1e-12.",
         ),
     )
     export_reach(d, inside, {"p": (x,)}, "the follower")

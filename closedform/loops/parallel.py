@@ -530,8 +530,8 @@ def _inverse(m: Hand, loop: Step) -> None:
         f"UNREACHABLE: a rod does not reach{off_sphere}.",
         [
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
-            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.  "
-            f"{MISSED}",
+            "closes, but a unit in the last place of the joints moves the hand by more "
+            f"than 1e-12 of the lengths.  {MISSED}",
             *left_out(m),
         ],
     )

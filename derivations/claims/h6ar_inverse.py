@@ -169,7 +169,7 @@ def errors(d: Derivation) -> None:
         "A sign in the second equation before (14)",
         Gravity.MISPRINT,
         why="The fore-arm is added to the projection of the upper arm: $L_1 s_3^A + L_{2W}$.",
-        use="None: (14) uses the right sign.",
+        use="Nothing: (14) uses the right sign.",
     )
 
 

@@ -540,11 +540,13 @@ FIGURES = (
            optimal_section, step="Workspace: where it is largest"),
     Figure("fig9", "The joint space for $L_0 = 0$ and $L_1 = L_2$ (Figure 9).", optimal_joints,
            step="Workspace: where it is largest"),
-    Figure("fig10", "A section of the workspace without parallel singularities, for the lengths "
-           "5, 2, 5 (Figure 10).", avoiding_section, step="Designs without parallel singularities"),
-    Figure("fig11", "The joint space without parallel singularities, for the lengths 5, 2, 5 "
-           "(left), and with the two points where $C$ and $D$ meet, for the lengths 4, 5, 8, which "
-           "satisfy both conditions of section 3.2 as they are printed (right; Figure 11).",
+    Figure("fig10", "A section of the workspace without parallel singularities, for "
+           "$L_0 = 5$, $L_1 = 2$, $L_2 = 5$ (Figure 10).", avoiding_section,
+           step="Designs without parallel singularities"),
+    Figure("fig11", "The joint space without parallel singularities, for $L_0 = 5$, $L_1 = 2$, "
+           "$L_2 = 5$ (left), and with the two points where $C$ and $D$ meet, for $L_0 = 4$, "
+           "$L_1 = 5$, $L_2 = 8$, which satisfy both conditions of section 3.2 of the paper as "
+           "they are printed (right; Figure 11).",
            avoiding_joints, step="Designs without parallel singularities"),
     Figure("fig12", "One place of $P$ in two working modes: singular in the convex one, regular in "
            "the non-convex one (Figure 12).", mode_and_singularity,
@@ -561,7 +563,7 @@ FIGURES = (
     Figure("isotropic", "An isotropic posture: $CP$ and $DP$ are at a right angle.", isotropic,
            step="Isotropy"),
     Figure("volume", "The volume of the workspace for bars of the same total length: it is "
-           "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 says.", volume,
+           "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 of the paper says.", volume,
            step="Workspace: where it is largest"),
 )  # fmt: skip
 

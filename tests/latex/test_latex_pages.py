@@ -432,3 +432,18 @@ def test_a_row_of_the_notation_does_not_lean_on_its_neighbours(name: str) -> Non
     """The rows are sorted by letter: these, the same and there mean nothing in them."""
     leaning = re.compile(r"\b(these|those lengths|the same|from there|that plane)\b")
     assert not [m for _, m in context(name)["symbols"] if leaning.search(m)]
+
+
+def test_a_continuum_says_where_in_coordinates_and_for_which_angles() -> None:
+    """``x = (0, 0, 0)`` had the coordinate x for the target, and beta was nowhere introduced."""
+    at_pivot = [c["locus"] for i in context("hybrid_five_bar")["inverses"] for c in i["continua"]]
+    assert "x = 0$" in at_pivot[1] and "(0" not in at_pivot[1]
+    over = [c["locus"] for i in context("irb260")["inverses"] for c in i["continua"]]
+    assert over[1].endswith(r" for any $\beta$") and "any" not in over[0]
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "hybrid_five_bar", "irb260", "h6ar"])
+def test_a_section_of_the_paper_is_not_taken_for_one_of_the_book(name: str) -> None:
+    """Section 2.6 was that of the paper, but a chapter of the book has a section 2.6 too."""
+    told = [step["reason"] for step in context(name)["steps"]]
+    assert not [t for t in told if re.search(r"[Ss]ection \d(?!.{0,8}of the paper)", t)]

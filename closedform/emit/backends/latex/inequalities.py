@@ -100,6 +100,8 @@ def equality(page: Sheet, value: sp.Expr) -> str:
         return f"${page.math(value)} = 0$"
     if isinstance(value, sp.Abs) or (value.is_Pow and value.exp.is_positive):
         return equality(page, value.args[0])
+    if value.is_Mul:  # a number does not vanish
+        value = value.as_coeff_Mul()[1]
     terms = page.printer._as_ordered_terms(value) if value.is_Add else [value]
     if len(terms) > 1 and all(t.is_Pow and t.exp.is_even for t in terms):
         bases = [t.base for t in terms]

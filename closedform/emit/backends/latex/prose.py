@@ -257,9 +257,14 @@ class Prose:
 
         self.angles: dict[str, str] = {}
         """Angles of an inverse whose names are words, in LaTeX."""
+        drawn = derivation.skeleton.points if derivation.skeleton else ()
         labels = [label for f in functions if f.branches for label in f.branches.labels]
         self.parts_of_branches = {part for label in labels for part in label.split("_")} - names
         """The words of the names of branches."""
+        letters = {n for n in drawn if re.fullmatch("[A-Z]", n)}
+        self.lines = re.compile(rf"[{''.join(sorted(letters)) or '?'}]{{2,}}")
+        """Lines and triangles through points that have letters: ``AC``, ``BDP``."""
+        self.parts_of_branches -= {p for p in self.parts_of_branches if self.lines.fullmatch(p)}
         self.code = ({f.name for f in functions if f.has_status} | {"fk", "ik"}) - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
         bold = set(BOLD.findall(" ".join(shown)))
@@ -267,7 +272,6 @@ class Prose:
         """The letters that are vectors wherever a sentence has them."""
         self.indexed = bold
         """The letters that are vectors where they have an index."""
-        drawn = derivation.skeleton.points if derivation.skeleton else ()
         bold_too = any(POINT.fullmatch(left) for left in shown)
         self.points = {
             n: (rf"\mathbf{{{n[0]}}}" if bold_too else n[0]) + f"_{{{n[1:]}}}"
@@ -311,6 +315,8 @@ class Prose:
         """A formula, or text; parentheses with words in them may contain formulas."""
         if text in self.points:
             return f"${self.points[text]}$"
+        if self.lines.fullmatch(text):
+            return rf"$\mathit{{{text}}}$"
         if not self._is_symbol(text) and (text in self.code or CODE.fullmatch(text)):
             return rf"\texttt{{{escape(text)}}}"
         if self._is_formula(text):

@@ -78,8 +78,8 @@ def conditioning(
         "if 2*L2 is in the range.  If 2*L2 is below the range, the loop never closes.  So a "
         "linkage that can be assembled has no parallel singularity if and only if both conditions "
         "below hold.  Section 3.2 of the paper has two conditions.  The first, 2*L1 > L0, ensures "
-        "the opposite of its purpose: C can meet D.  The other, 2*L2 - 2*L1 > L0, is the second one below: C, "
-        "P, D are never in line, but C may still meet D.",
+        "the opposite of its purpose: C can meet D.  The other, 2*L2 - 2*L1 > L0, is the second "
+        "one below: C, P, D are never in line, but C may still meet D.",
         {
             r"\text{C and D stay apart}": sp.Gt(L0, 2 * L1),
             r"\text{C, P, D are never in line}": sp.Gt(2 * L2, L0 + 2 * L1),

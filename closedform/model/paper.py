@@ -37,6 +37,8 @@ class Paper:
     """What the claims leave out: the first and last words of each passage, and the reason."""
     year: str = ""
     """The date of publication, or what is known of it."""
+    sections: tuple[str, ...] = ()
+    """The sections in the order of the paper, if its claims are judged in another one."""
     works: tuple[Work, ...] = ()
     """The books and papers that this source stands for, if it is a collection of them."""
 
@@ -50,6 +52,7 @@ class Paper:
         check_text("reference of the paper", self.reference)
         check_text("source of the paper", self.source)
         check_formulas("source of the paper", self.source)
+        check_text("sections of the paper", *self.sections)
         check_text("passage of the paper", *(part for p in self.out_of_scope for part in p))
 
     @property

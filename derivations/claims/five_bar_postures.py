@@ -363,4 +363,7 @@ def implies(
 
 def closed_and(posture: Plane, **more: sp.Expr) -> Holds:
     """A posture is closed, and further relations hold at it."""
-    return Holds({**posture.closed(), **{k.replace("_", " "): v for k, v in more.items()}})
+    relations = {**posture.closed(), **{k.replace("_", " "): v for k, v in more.items()}}
+    names = ("L0", "L1", "L2", "y", "rho")
+    values = map(sp.sympify, (*posture.lengths, *posture.P))
+    return Holds(relations, dict(zip(map(real, names), values, strict=True)))

@@ -142,7 +142,9 @@ def condition_number(d: Derivation, bar: FiveBar) -> None:
         cosine = Abs(bar.gram[1, 2])
         return Every(
             {
-                f"{i} and {i + 1}": ForAll(relation.subs(cosine, size))
+                f"{'so are ' * (i > 1)}{i} and {i + 1}{' are in order' * (i == 1)}": ForAll(
+                    relation.subs(cosine, size)
+                )
                 for i, relation in enumerate(relations(chain), 1)
             }
         )

@@ -149,16 +149,18 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
     whole = sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)
     near = bar.volumes["inner balls inside, overlapping"].volume
     falls = {
-        f"in regime {i} the volume falls": Identity(*pair)
+        f"{'the volume falls ' * (i == 1)}in regime {i}": Identity(*pair)
         for i, pair in enumerate(decrease(bar.volumes), 1)
     }
     claim(
-        "largest for L0 = 0",
+        "largest for L_0 = 0",
         "“Therefore, the workspace is maximum when $L_0$ is equal to {0}”",
         lambda variable, value: Every(
             {
                 **falls,
-                "with its limit": Identity(near.subs(variable.left, value), whole),
+                "there it is that of the hollow ball": Identity(
+                    near.subs(variable.left, value), whole
+                ),
             }
         ),
         phrases=[{"0": sp.S.Zero, "1": sp.S.One}],
@@ -182,7 +184,7 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
         )
 
     claim(
-        "largest for L1 = L2",
+        "largest for L_1 = L_2",
         "“by extrapolating the results from [7], when $L_1$ is equal to $L_2$”",
         largest,
     )

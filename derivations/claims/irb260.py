@@ -323,7 +323,9 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
         "temporarily.”",
         lambda rotations, axis: Every(
             {
-                name: Identity(twist_of(arm.pose.diff(angle) * inverse(arm.pose))[3:, :], axis)
+                f"{name} turns about it": Identity(
+                    twist_of(arm.pose.diff(angle) * inverse(arm.pose))[3:, :], axis
+                )
                 for name, angle in rotations.items()
             }
         ),

@@ -420,7 +420,12 @@ def products(d: Derivation, arm: Palletiser) -> None:
         "use of eq. (10)",
         r"“$e^{\hat{\xi}_i \theta_i}$ can be computed according to {the Equation (10)}”",
         lambda f, found: Every(
-            {f"joint {i}": Identity(f.left.at(i), found.at(i)) for i in f.left.indices}
+            {
+                f"{'it gives the motion ' * (i == 1)}of joint {i}": Identity(
+                    f.left.at(i), found.at(i)
+                )
+                for i in f.left.indices
+            }
         ),
         means={
             r"e^{\hat{\xi}_i \theta_i}": each(about),

@@ -443,7 +443,7 @@ def point(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         r"90^\circ$, with the turret turning, this velocity is along $x$ instead of $y$.",
     )
     claim(
-        "q5, before eq. (23)",
+        "q_5, before eq. (23)",
         "“The velocity of the origin of the end-effector $q_5$ relative to the spatial (inertial) "
         "frame is then given by”",
         lambda f: Agree(

@@ -89,7 +89,7 @@ def verification(d: Derivation, arm: Palletiser) -> None:
     )
     speeds = {rf"\omega_{i}": rate for i, rate in zip((1, 2, 3, 5), arm.rates, strict=True)}
     claim(
-        "omega5",
+        "ω_5",
         r"“$\omega_5 = 0$ (because it has {no effect} on the $v_{q_5}^s$)”",
         lambda f, still, v: stated(still, Identity(v.left.subs(f.left, f.right), v.left)),
         means={**speeds, "v_{q_5}^s": (arm.V * arm.pose[:, 3])[:3, :]},

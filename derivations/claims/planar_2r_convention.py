@@ -269,7 +269,7 @@ def forward(d: Derivation, arm: Arm, known: Notation) -> None:
         },
     )
     claim(
-        "c12, after eq. (8)",
+        "c_12, after eq. (8)",
         r"$c_{12} = c_1 + c_2$",
         means={"c_{12}": (A1 * A2)[0, 0]},
         corrected=r"$c_{12} = \cos(\theta_1 + \theta_2)$",

@@ -16,6 +16,17 @@ RAO_RAJU = Paper(
     ("Sachit Rao", "Jagannath Raju"),
     "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
     year="2011",
+    sections=(
+        "Abstract",
+        "1 Introduction",
+        "2 Description of the H6AR",
+        "3.1 Tips of the fore-arms",
+        "3.2 Invariant point-forward kinematics",
+        "3.3 Equivalent serial mechanism",
+        "3.4 Wrist",
+        "4 Inverse Kinematics",
+        "5 Conclusions",
+    ),
     source="The text was read from a scan by optical character recognition, without the figures.  "
     "The order of the axes of the wrist is taken from (9), because Fig. 4 is not legible "
     "there.  Errors of the scan may affect signs and indices: eq. (3), whose sign is "

@@ -26,6 +26,7 @@ from closedform.mechanics import by_axes
 from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import real
+from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import Proof
 
 t1, t2 = (real(f"theta{k}") for k in (1, 2))
@@ -447,3 +448,22 @@ def test_a_section_of_the_paper_is_not_taken_for_one_of_the_book(name: str) -> N
     """Section 2.6 was that of the paper, but a chapter of the book has a section 2.6 too."""
     told = [step["reason"] for step in context(name)["steps"]]
     assert not [t for t in told if re.search(r"[Ss]ection \d(?!.{0,8}of the paper)", t)]
+
+
+def test_lines_through_points_are_written_as_the_points_are() -> None:
+    """The bars AC and BD were upright, P and A slanted, and CD was once a name of the code."""
+    prose = Prose(derivation("hybrid_five_bar"))
+    assert prose("to the left of CD: a turn about AB") == (
+        r"to the left of $\mathit{CD}$: a turn about $\mathit{AB}$"
+    )
+
+
+def test_the_claims_follow_the_sections_of_the_paper() -> None:
+    """The conclusions stood between the introduction and section 2."""
+    d = derivation("h6ar")
+    assert {c.where for c in d.claims} <= {*d.paper.sections}
+    late = next(c for c in d.claims if c.where.startswith("5"))
+    assert d.claims.index(late) < len(d.claims) - 1  # it is judged earlier
+    results = tuple(ClaimResult(c.label, c.where, "", "proved", "", "") for c in d.claims)
+    rows = Claims(d, Proof(d.name, d.paper.key, (), 0, (), claims=results), []).rows()
+    assert [r["where"] for r in rows if r["heading"]] == [*map(escape, d.paper.sections)]

@@ -23,7 +23,7 @@ FAULTY = {
     "eq. (19)": (REFUTED, "moved-twice"),
     "eq. (20)": (REFUTED, "moved-twice"),
     "hat in eq. (20)": (INCONSISTENT, "hat-under-ad"),
-    "q5, before eq. (23)": (INCONSISTENT, "two-points-q5"),
+    "q_5, before eq. (23)": (INCONSISTENT, "two-points-q5"),
 }
 ASSUMED = {
     "equivalent, abstract": "assembly",
@@ -94,7 +94,7 @@ def test_all_errata_are_shown_and_only_these_claims_show_them(
         ("actuated joints", "{1, 2, 3, and 5}", "{1, 2, 3, and 4}"),
         ("zero-pitch screw", "{zero}", "{one}"),
         ("five revolute joints", "{revolute}", "{prismatic}"),
-        ("omega5", r"$\omega_5 = 0", r"$\omega_2 = 0"),
+        ("ω_5", r"$\omega_5 = 0", r"$\omega_2 = 0"),
         ("parallel translation", "{only obtain the parallel translation}",
          "{also obtain a rotation}"),
     ],

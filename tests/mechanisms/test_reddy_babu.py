@@ -10,7 +10,7 @@ ERRATA = {
     "planar_2r": {
         "folded": (Gravity.OMISSION, {"one solution": "incomplete"}),
         "tan-alpha": (Gravity.MISPRINT, {"tan α, before eq. (4)": "refuted"}),
-        "sum-of-cosines": (Gravity.MISPRINT, {"c12, after eq. (8)": "refuted"}),
+        "sum-of-cosines": (Gravity.MISPRINT, {"c_12, after eq. (8)": "refuted"}),
         "last-row": (
             Gravity.MISPRINT, {"eq. (9), second factor": "refuted", "eq. (9)": "refuted"},
         ),

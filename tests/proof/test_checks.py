@@ -491,6 +491,8 @@ def test_relations_between_constants() -> None:
     holds = Holds({"less": sp.Lt(two, 2, evaluate=False), "equal": sp.Eq(two**2, 2)})
     assert holds.judge() == Verdict(PROVED, ("less, equal",))
     nested = sqrt(5 + 2 * sqrt(6)) - sqrt(2) - sqrt(3)
+    shown = Holds({"less": sp.Lt(1, 2, evaluate=False)}, point={x: sp.S.One}).judge()
+    assert shown.evidence == ("at ", {x: 1})  # "AC = L1, regular" said nothing to a reader
     assert Holds({"nested": sp.Eq(nested, 0, evaluate=False)}).judge().kind == PROVED
     wrong = Holds({"less": sp.true, "more": sp.Ge(two, 3, evaluate=False)}).judge()
     assert wrong == Verdict(REFUTED, ("not so: more",))

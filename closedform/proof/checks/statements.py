@@ -100,10 +100,12 @@ def _in_words(value: Any) -> str:
 class Holds(Check):
     """Named relations between constants: the statement is proved if all hold, else refuted.
 
-    Enclosures decide inequalities; the exact zero test decides equations.
+    Enclosures decide inequalities; the exact zero test decides equations.  If the constants are
+    those of a ``point``, a reader is told this point instead of the names.
     """
 
     relations: Mapping[str, Expr]
+    point: Point | None = None
 
     def judge(self) -> Verdict:
         if not self.relations:
@@ -111,7 +113,9 @@ class Holds(Check):
         failed = [name for name, relation in self.relations.items() if not holds(relation)]
         if failed:
             return Verdict(REFUTED, (f"not so: {', '.join(failed)}",))
-        return Verdict(PROVED, (", ".join(self.relations),))
+        return Verdict(
+            PROVED, ("at ", dict(self.point)) if self.point else (", ".join(self.relations),)
+        )
 
 
 @dataclass(frozen=True)
@@ -203,7 +207,9 @@ class Not(Check):
             return verdict
         if verdict.kind == PROVED:
             return Verdict(REFUTED, _opposite(verdict.evidence))
-        return Verdict(PROVED, verdict.evidence)
+        return Verdict(
+            PROVED, ("the opposite does not hold: ", *verdict.evidence) if verdict.evidence else ()
+        )
 
 
 @dataclass(frozen=True)

@@ -510,6 +510,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "errata": page.claims.errata(),
         "paper_source": mixed(derivation.paper.source),
         "claims": page.claims.rows(),
+        "claims_numbered": any(c["step"] for c in page.claims.rows()),
         "sources": len(derivation.paper.cited) > 1,
     }  # fmt: skip
     legend = page.legend()

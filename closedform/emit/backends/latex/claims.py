@@ -59,7 +59,7 @@ class Claims:
     def rows(self) -> list[dict[str, Any]]:
         """The rows of the table; ``heading`` is the section of the paper, given once."""
         rows, where = [], ""
-        sections = [claim.where for claim in self.proof.claims]
+        sections = [*self.derivation.paper.sections, *(c.where for c in self.proof.claims)]
         order = sorted(enumerate(self.proof.claims, 1), key=lambda c: sections.index(c[1].where))
         for k, claim in order:
             rows.append({**self.claim(claim), "number": k, "heading": claim.where != where})

@@ -154,7 +154,8 @@ class Tripod:
     def placed(self, p: Program, *, guarded: bool = False) -> Placed:
         """Name the hand at a target in a program; ``guarded`` where the twist is free.
 
-        There the twist is taken as zero, instead of being undefined.
+        There the twist is taken as zero, instead of being undefined.  It is free only where delta
+        is exactly zero: nearby a rod may reach with the twist of the target, and not with zero.
         """
         side = sp.Integer(self.side)
         f = p.let("f", side * self.balance(turned=False))
@@ -162,7 +163,7 @@ class Tripod:
         delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
         cosine, sine = g / delta, -f / delta
         if guarded:
-            free = p.vanishes("untwisted", delta, self.size, "the twist of the hand is free")
+            free = p.vanishes("untwisted", delta, 0, "the twist of the hand is free")
             cosine, sine = choose(free, 1, cosine), choose(free, 0, sine)
         c, s = p.let("c", cosine), p.let("s", sine)
         first, second, third = (self.tilted.col(k) for k in range(3))

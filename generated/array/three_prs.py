@@ -10,8 +10,8 @@
 #   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
 #   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
 #   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 94 compare and select, 242 add, 53 divide, 277 multiply, 2 sincos, 8 sqrt
-#   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
+#   ik: 94 compare and select, 242 add, 53 divide, 276 multiply, 2 sincos, 8 sqrt
+#   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
 Three sliders move along columns.  A rod leads from each of them to a corner of the hand.  A
@@ -1109,101 +1109,101 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     g = t7 + c_tilt_x * t4
     t8 = t6 * t6 + g * g
     delta = ops.sqrt(t8)
-    t9 = a * 1.7320508075688772
-    t10 = t9 + a * 2.0
-    untwisted = delta <= ops.vanishing * t10
-    t11 = 1.0 / delta
-    c = ops.select(untwisted, 1.0, g * t11)
-    s = ops.select(untwisted, 0.0, t6 * t11)
-    t12 = s_tilt_x * s
-    R_11 = c_tilt_y * c + s_tilt_y * t12
+    untwisted = delta <= 0.0
+    t9 = 1.0 / delta
+    c = ops.select(untwisted, 1.0, g * t9)
+    s = ops.select(untwisted, 0.0, t6 * t9)
+    t10 = s_tilt_x * s
+    R_11 = c_tilt_y * c + s_tilt_y * t10
     h_11 = a * R_11
     R_21 = c_tilt_x * s
     h_12 = a * R_21
-    t13 = h_12 * 0.5
-    t14 = h_11 * 0.5
-    t15 = s_tilt_x * c
-    R_12 = s_tilt_y * t15 - c_tilt_y * s
-    t16 = t9 * R_12 * 0.5
-    t17 = t14 - t16
+    t11 = h_12 * 0.5
+    t12 = h_11 * 0.5
+    t13 = a * 1.7320508075688772
+    t14 = s_tilt_x * c
+    R_12 = s_tilt_y * t14 - c_tilt_y * s
+    t15 = t13 * R_12 * 0.5
+    t16 = t12 - t15
     R_22 = c_tilt_x * c
-    t18 = t9 * R_22
-    t19 = t18 * 0.5
-    t20 = t13 - t19
-    t21 = t13 + (1.7320508075688772 * t17 * 0.5 + t20 * 0.5)
-    px = 1.1547005383792515 * t21
-    t22 = b - h_11 - px
-    t23 = l + t22
-    t24 = l - t22
-    t25 = t17 * 0.5 - 1.7320508075688772 * (h_12 + t20) * 0.5
-    t26 = b + px * 0.5
-    aside_2 = t25 - t26
-    t27 = l - aside_2
-    t28 = l + aside_2
-    t29 = (t3 <= t23) & (t3 <= t24) & (t3 <= t27) & (t3 <= t28)
-    t30 = t14 + t16
-    t31 = 1.7320508075688772 * (h_12 + (t13 + t19)) * 0.5
-    aside_3 = t30 * 0.5 + t31 - t26
-    t32 = l - aside_3
-    t33 = l + aside_3
-    unreachable = ops.opposite(t29 & (t3 <= t32) & (t3 <= t33))
+    t17 = t13 * R_22
+    t18 = t17 * 0.5
+    t19 = t11 - t18
+    t20 = t11 + (1.7320508075688772 * t16 * 0.5 + t19 * 0.5)
+    px = 1.1547005383792515 * t20
+    t21 = b - h_11 - px
+    t22 = l + t21
+    t23 = l - t21
+    t24 = t16 * 0.5 - 1.7320508075688772 * (h_12 + t19) * 0.5
+    t25 = b + px * 0.5
+    aside_2 = t24 - t25
+    t26 = l - aside_2
+    t27 = l + aside_2
+    t28 = (t3 <= t22) & (t3 <= t23) & (t3 <= t26) & (t3 <= t27)
+    t29 = t12 + t15
+    t30 = 1.7320508075688772 * (h_12 + (t11 + t18)) * 0.5
+    aside_3 = t29 * 0.5 + t30 - t25
+    t31 = l - aside_3
+    t32 = l + aside_3
+    unreachable = ops.opposite(t28 & (t3 <= t31) & (t3 <= t32))
     failed = invalid | unreachable
-    t34 = ops.opposite(failed)
-    t35 = t34 & ops.opposite(untwisted)
-    t36 = ops.select(t35, ops.sqrt(ops.select(t35, t8, 1.0)), 1.0)
-    t37 = 1.0 / t36
-    c_2 = ops.select(untwisted, 1.0, g * t37)
-    s_2 = ops.select(untwisted, 0.0, t6 * t37)
-    t38 = s_tilt_x * s_2
-    t39 = a * (s_tilt_y * c_2 - c_tilt_y * t38)
-    m_1 = z - t39
-    h_11_2 = a * (c_tilt_y * c_2 + s_tilt_y * t38)
+    t33 = ops.opposite(failed)
+    t34 = t33 & ops.opposite(untwisted)
+    t35 = ops.select(t34, ops.sqrt(ops.select(t34, t8, 1.0)), 1.0)
+    t36 = 1.0 / t35
+    c_2 = ops.select(untwisted, 1.0, g * t36)
+    s_2 = ops.select(untwisted, 0.0, t6 * t36)
+    t37 = s_tilt_x * s_2
+    t38 = a * (s_tilt_y * c_2 - c_tilt_y * t37)
+    m_1 = z - t38
+    h_11_2 = a * (c_tilt_y * c_2 + s_tilt_y * t37)
     h_12_2 = a * (c_tilt_x * s_2)
-    t40 = h_12_2 * 0.5
-    t41 = h_11_2 * 0.5
-    t42 = s_tilt_x * c_2
-    t43 = t9 * (s_tilt_y * t42 - c_tilt_y * s_2) * 0.5
-    t44 = t41 - t43
-    t45 = t9 * (c_tilt_x * c_2) * 0.5
-    t46 = t40 - t45
-    t47 = t40 + (1.7320508075688772 * t44 * 0.5 + t46 * 0.5)
-    px_2 = 1.1547005383792515 * t47
-    t48 = b - h_11_2 - px_2
-    t49 = ops.max(l + t48, 0.0) * ops.max(l - t48, 0.0)
-    root_1 = ops.sqrt(ops.select(t34, t49, 1.0))
-    t50 = ops.select(failed, ops.nan, m_1 - root_1)
-    t51 = t39 * 0.5
-    t52 = t9 * (c_tilt_y * t42 + s_tilt_y * s_2) * 0.5
-    m_2 = z + (t51 + t52)
-    t53 = t44 * 0.5 - 1.7320508075688772 * (h_12_2 + t46) * 0.5
-    t54 = b + px_2 * 0.5
-    aside_2_2 = t53 - t54
-    t55 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
-    root_2 = ops.sqrt(ops.select(t34, t55, 1.0))
-    t56 = ops.select(failed, ops.nan, m_2 - root_2)
-    m_3 = z + (t51 - t52)
-    t57 = 1.7320508075688772 * (h_12_2 + (t40 + t45)) * 0.5
-    aside_3_2 = (t41 + t43) * 0.5 + t57 - t54
-    t58 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
-    root_3 = ops.sqrt(ops.select(t34, t58, 1.0))
-    t59 = ops.select(failed, ops.nan, m_3 - root_3)
-    t60 = ops.select(failed, ops.nan, m_3 + root_3)
-    t61 = ops.select(failed, ops.nan, m_2 + root_2)
-    t62 = ops.select(failed, ops.nan, m_1 + root_1)
-    t63 = size * ops.vanishing
+    t39 = h_12_2 * 0.5
+    t40 = h_11_2 * 0.5
+    t41 = s_tilt_x * c_2
+    t42 = t13 * (s_tilt_y * t41 - c_tilt_y * s_2) * 0.5
+    t43 = t40 - t42
+    t44 = t13 * (c_tilt_x * c_2) * 0.5
+    t45 = t39 - t44
+    t46 = t39 + (1.7320508075688772 * t43 * 0.5 + t45 * 0.5)
+    px_2 = 1.1547005383792515 * t46
+    t47 = b - h_11_2 - px_2
+    t48 = ops.max(l + t47, 0.0) * ops.max(l - t47, 0.0)
+    root_1 = ops.sqrt(ops.select(t33, t48, 1.0))
+    t49 = ops.select(failed, ops.nan, m_1 - root_1)
+    t50 = t38 * 0.5
+    t51 = t13 * (c_tilt_y * t41 + s_tilt_y * s_2) * 0.5
+    m_2 = z + (t50 + t51)
+    t52 = t43 * 0.5 - 1.7320508075688772 * (h_12_2 + t45) * 0.5
+    t53 = b + px_2 * 0.5
+    aside_2_2 = t52 - t53
+    t54 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
+    root_2 = ops.sqrt(ops.select(t33, t54, 1.0))
+    t55 = ops.select(failed, ops.nan, m_2 - root_2)
+    m_3 = z + (t50 - t51)
+    t56 = 1.7320508075688772 * (h_12_2 + (t39 + t44)) * 0.5
+    aside_3_2 = (t40 + t42) * 0.5 + t56 - t53
+    t57 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
+    root_3 = ops.sqrt(ops.select(t33, t57, 1.0))
+    t58 = ops.select(failed, ops.nan, m_3 - root_3)
+    t59 = ops.select(failed, ops.nan, m_3 + root_3)
+    t60 = ops.select(failed, ops.nan, m_2 + root_2)
+    t61 = ops.select(failed, ops.nan, m_1 + root_1)
+    t62 = size * ops.vanishing
     least = a * a * (l * l * l)
-    t64 = least * delta
-    t65 = s_tilt_y * c - c_tilt_y * t12
+    t63 = least * delta
+    t64 = t13 + a * 2.0
+    t65 = s_tilt_y * c - c_tilt_y * t10
     t66 = a * t65
-    R_32 = c_tilt_y * t15 + s_tilt_y * s
-    t67 = t9 * R_32 * 0.5
-    t68 = ops.select(untwisted, 1.0, t11)
-    twist_tilt_y = t68 * (t7 * t15 + t5 * s)
-    t69 = t9 * R_11
+    R_32 = c_tilt_y * t14 + s_tilt_y * s
+    t67 = t13 * R_32 * 0.5
+    t68 = ops.select(untwisted, 1.0, t9)
+    twist_tilt_y = t68 * (t7 * t14 + t5 * s)
+    t69 = t13 * R_11
     t70 = t69 * 0.25
     t71 = a * 1.5
     t72 = t71 * R_22
-    t73 = t9 * R_21
+    t73 = t13 * R_21
     t74 = t73 * 0.5
     t75 = a * R_12
     t76 = a * 0.75
@@ -1212,45 +1212,45 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t79 = t75 * 0.25 - 1.7320508075688772 * t78 / 3.0
     t80 = t70 - 1.7320508075688772 * (t72 - t74) * 0.5 - t79
     t81 = aside_3 * (t67 - twist_tilt_y * t80)
-    t82 = t9 * t65 * 0.5
+    t82 = t13 * t65 * 0.5
     t83 = a * R_32
     t84 = t83 * 0.5
     t85 = t82 + t84
-    t86 = t30 - twist_tilt_y * t85
+    t86 = t29 - twist_tilt_y * t85
     t87 = t66 * 0.5
     h_33 = t87 - t67
     m_3_2 = z + h_33
-    root_3_2 = ops.sqrt(ops.max(t32, 0.0) * ops.max(t33, 0.0))
+    root_3_2 = ops.sqrt(ops.max(t31, 0.0) * ops.max(t32, 0.0))
     slide_3 = m_3_2 - root_3_2
     t88 = m_3_2 - slide_3
     t89 = t81 + t86 * t88
-    t90 = s_tilt_y * t18
+    t90 = s_tilt_y * t17
     t91 = t90 * 0.25
-    t92 = t9 * t15
+    t92 = t13 * t14
     t93 = t92 * 0.5
-    t94 = t71 * t12
+    t94 = t71 * t10
     t95 = s_tilt_y * h_12
     t96 = 1.7320508075688772 * (t90 * 0.5 - t95 * 0.5) * 0.5
-    t97 = t92 * 0.25 - t76 * t12 - t96
+    t97 = t92 * 0.25 - t76 * t10 - t96
     t98 = t95 * 0.25 - 1.7320508075688772 * t97 / 3.0
     t99 = t91 + 1.7320508075688772 * (t93 - t94) * 0.5 - t98
-    twist_tilt_x = t68 * (t5 * R_22 + t4 * t12)
+    twist_tilt_x = t68 * (t5 * R_22 + t4 * t10)
     t100 = t70 - 1.7320508075688772 * (t72 + t74) * 0.5 + t79
     t101 = aside_2 * (t99 - twist_tilt_x * t100)
-    t102 = c_tilt_y * t18 * 0.5
+    t102 = c_tilt_y * t17 * 0.5
     t103 = c_tilt_y * h_12
     t104 = t103 * 0.5
     t105 = t82 - t84
     t106 = t102 - t104 + twist_tilt_x * t105
     h_23 = t87 + t67
     m_2_2 = z + h_23
-    root_2_2 = ops.sqrt(ops.max(t27, 0.0) * ops.max(t28, 0.0))
+    root_2_2 = ops.sqrt(ops.max(t26, 0.0) * ops.max(t27, 0.0))
     slide_2 = m_2_2 - root_2_2
     t107 = m_2_2 - slide_2
     t108 = t101 - t106 * t107
     t109 = t89 * t108
     t110 = twist_tilt_y * aside_2 * t100
-    t111 = t17 + twist_tilt_y * t105
+    t111 = t16 + twist_tilt_y * t105
     t112 = t110 + t107 * t111
     t113 = t91 - 1.7320508075688772 * (t93 + t94) * 0.5 + t98
     t114 = aside_3 * (t113 - twist_tilt_x * t80)
@@ -1260,16 +1260,16 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t118 = t66 * t109 - z * t109 + (t66 * t117 - z * t117)
     t119 = t75 + 1.1547005383792515 * t78
     t120 = t95 + twist_tilt_x * t119 + 1.1547005383792515 * t97
-    t121 = t22 * t120
+    t121 = t21 * t120
     t122 = t103 + twist_tilt_x * t83
     m_1_2 = z - t66
-    root_1_2 = ops.sqrt(ops.max(t23, 0.0) * ops.max(t24, 0.0))
+    root_1_2 = ops.sqrt(ops.max(t22, 0.0) * ops.max(t23, 0.0))
     slide_1 = m_1_2 - root_1_2
     t123 = m_1_2 - slide_1
     t124 = t121 - t122 * t123
     t125 = t89 * t124
     t126 = z * t124
-    t127 = t22 * (t67 + t71 * t65 - t119 * twist_tilt_y)
+    t127 = t21 * (t67 + t71 * t65 - t119 * twist_tilt_y)
     t128 = h_11 - t83 * twist_tilt_y
     t129 = t127 - t128 * t123
     t130 = t116 * t129
@@ -1280,11 +1280,11 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t135 = h_33 * t133 + t112 * t126 - (h_33 * t134 + t108 * t131)
     t136 = t118 + t132 - t135 + slide_3 * t133 - slide_2 * t125
     t137 = t136 - slide_3 * t134 - slide_2 * t130 + slide_1 * t109
-    t138 = ops.min(t64, t10 * ops.abs(-(t137 + slide_1 * t117)))
-    t139 = ops.max(0.0, ops.abs(t22) - l) + ops.max(0.0, ops.abs(-aside_2) - l)
-    t140 = t63 + (t139 + ops.max(0.0, ops.abs(-aside_3) - l))
-    t141 = ops.determined * (t10 * least) * t140
-    t142 = ops.status(invalid, unreachable, t63 * t138 <= t141)
+    t138 = ops.min(t63, t64 * ops.abs(-(t137 + slide_1 * t117)))
+    t139 = ops.max(0.0, ops.abs(t21) - l) + ops.max(0.0, ops.abs(-aside_2) - l)
+    t140 = t62 + (t139 + ops.max(0.0, ops.abs(-aside_3) - l))
+    t141 = ops.determined * (least * t64) * t140
+    t142 = ops.status(invalid, unreachable, t62 * t138 <= t141)
     slide_3_plus_plus_minus = m_3_2 + root_3_2
     t143 = m_3_2 - slide_3_plus_plus_minus
     t144 = t81 + t86 * t143
@@ -1298,7 +1298,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t152 = t135 - t148 - t151 - slide_3_plus_plus_minus * t133
     t153 = t152 + slide_2 * t149 + slide_3_plus_plus_minus * t134
     t154 = t153 + slide_2 * t150 - slide_1 * t145 - slide_1 * t147
-    t155 = t63 * ops.min(t64, t10 * ops.abs(t154)) <= t141
+    t155 = t62 * ops.min(t63, t64 * ops.abs(t154)) <= t141
     slide_2_plus_minus_plus = m_2_2 + root_2_2
     t156 = m_2_2 - slide_2_plus_minus_plus
     t157 = t101 - t106 * t156
@@ -1312,15 +1312,15 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t165 = t132 + t161 - t164 + slide_3 * t162 - slide_2_plus_minus_plus * t125
     t166 = t165 - slide_3 * t163 - slide_2_plus_minus_plus * t130
     t167 = ops.abs(t166 + slide_1 * t158 + slide_1 * t160)
-    t168 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t167) <= t141)
+    t168 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t167) <= t141)
     t169 = t144 * t157
     t170 = t146 * t159
     t171 = t66 * t169 - z * t169 + (t66 * t170 - z * t170)
     t172 = t151 - t164 + t171 + slide_3_plus_plus_minus * t162
     t173 = t172 - slide_2_plus_minus_plus * t149 - slide_3_plus_plus_minus * t163
     t174 = t173 - slide_2_plus_minus_plus * t150 + slide_1 * t169
-    t175 = ops.min(t64, t10 * ops.abs(t174 + slide_1 * t170))
-    t176 = ops.status(invalid, unreachable, t63 * t175 <= t141)
+    t175 = ops.min(t63, t64 * ops.abs(t174 + slide_1 * t170))
+    t176 = ops.status(invalid, unreachable, t62 * t175 <= t141)
     slide_1_minus_plus_plus = m_1_2 + root_1_2
     t177 = m_1_2 - slide_1_minus_plus_plus
     t178 = t121 - t122 * t177
@@ -1336,7 +1336,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t187 = t118 + t183 - t186 + slide_3 * t184 - slide_2 * t179
     t188 = t187 - slide_3 * t185 - slide_2 * t181 + slide_1_minus_plus_plus * t109
     t189 = ops.abs(t188 + slide_1_minus_plus_plus * t117)
-    t190 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t189) <= t141)
+    t190 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t189) <= t141)
     t191 = t144 * t178
     t192 = t146 * A_13_minus_plus_plus
     t193 = h_23 * t191 + t144 * t180 + (h_23 * t192 + t146 * t182)
@@ -1344,45 +1344,45 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t195 = t194 - slide_2 * t191 - slide_3_plus_plus_minus * t185
     t196 = t195 - slide_2 * t192 + slide_1_minus_plus_plus * t145
     t197 = ops.abs(t196 + slide_1_minus_plus_plus * t147)
-    t198 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t197) <= t141)
+    t198 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t197) <= t141)
     t199 = t159 * t178
     t200 = t157 * A_13_minus_plus_plus
     t201 = h_33 * t199 + t159 * t180 - (h_33 * t200 + t157 * t182)
     t202 = t161 + t183 - t201 + slide_3 * t199 - slide_2_plus_minus_plus * t179
     t203 = t202 - slide_3 * t200 - slide_2_plus_minus_plus * t181
     Delta_minus_minus_plus = t203 + slide_1_minus_plus_plus * t158 + slide_1_minus_plus_plus * t160
-    t204 = ops.min(t64, t10 * ops.abs(Delta_minus_minus_plus))
-    t205 = ops.status(invalid, unreachable, t63 * t204 <= t141)
+    t204 = ops.min(t63, t64 * ops.abs(Delta_minus_minus_plus))
+    t205 = ops.status(invalid, unreachable, t62 * t204 <= t141)
     t206 = t171 + t193 - t201 + slide_3_plus_plus_minus * t199
     t207 = t206 - slide_2_plus_minus_plus * t191 - slide_3_plus_plus_minus * t200
     t208 = t207 - slide_2_plus_minus_plus * t192 + slide_1_minus_plus_plus * t169
     t209 = ops.abs(t208 + slide_1_minus_plus_plus * t170)
-    t210 = ops.status(invalid, unreachable, t63 * ops.min(t64, t10 * t209) <= t141)
+    t210 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t209) <= t141)
     return (
-        t50,
-        t56,
+        t49,
+        t55,
+        t58,
+        t49,
+        t55,
         t59,
-        t50,
-        t56,
+        t49,
         t60,
-        t50,
-        t61,
-        t59,
-        t50,
-        t61,
+        t58,
+        t49,
         t60,
-        t62,
-        t56,
         t59,
-        t62,
-        t56,
-        t60,
-        t62,
         t61,
+        t55,
+        t58,
+        t61,
+        t55,
         t59,
-        t62,
         t61,
         t60,
+        t58,
+        t61,
+        t60,
+        t59,
         t142,
         ops.status(invalid, unreachable, t155),
         t168,
@@ -1462,27 +1462,27 @@ def _workspace_contains(ops, z, tilt_x, tilt_y, b, a, l):
     t6 = t4 * t5
     g = c_tilt_x * t4 + c_tilt_y * t4
     delta = ops.sqrt(t6 * t6 + g * g)
-    t7 = a * 1.7320508075688772
-    untwisted = delta <= ops.vanishing * (t7 + a * 2.0)
+    untwisted = delta <= 0.0
     c = ops.select(untwisted, 1.0, g / delta)
     s = ops.select(untwisted, 0.0, t6 / delta)
     h_11 = a * (c_tilt_y * c + t5 * s)
     h_12 = a * (c_tilt_x * s)
-    t8 = h_12 * 0.5
-    t9 = h_11 * 0.5
-    t10 = t7 * (t5 * c - c_tilt_y * s) * 0.5
-    t11 = t9 - t10
-    t12 = t7 * (c_tilt_x * c) * 0.5
-    t13 = t8 - t12
-    t14 = t8 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5)
+    t7 = h_12 * 0.5
+    t8 = h_11 * 0.5
+    t9 = a * 1.7320508075688772
+    t10 = t9 * (t5 * c - c_tilt_y * s) * 0.5
+    t11 = t8 - t10
+    t12 = t9 * (c_tilt_x * c) * 0.5
+    t13 = t7 - t12
+    t14 = t7 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5)
     px = 1.1547005383792515 * t14
     t15 = b - h_11 - px
     t16 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t13) * 0.5
     t17 = b + px * 0.5
     aside_2 = t16 - t17
     t18 = (-t3 <= l + t15) & (-t3 <= l - t15) & (-t3 <= l - aside_2)
-    t19 = 1.7320508075688772 * (h_12 + (t8 + t12)) * 0.5
-    aside_3 = (t9 + t10) * 0.5 + t19 - t17
+    t19 = 1.7320508075688772 * (h_12 + (t7 + t12)) * 0.5
+    aside_3 = (t8 + t10) * 0.5 + t19 - t17
     t20 = t18 & (-t3 <= l + aside_2) & (-t3 <= l - aside_3)
     failed = ops.opposite(t2) | ops.opposite(t20 & (-t3 <= l + aside_3))
     return (

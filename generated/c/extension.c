@@ -6298,9 +6298,9 @@ const cf_function cf_functions[] = {
       "  returned.\n"
       "- SINGULAR: a crank has no length; theta1, theta2 or theta3 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
-      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
-      "  as a rounding error too.\n"
+      "  closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of\n"
+      "  the lengths. If the target is just outside of the workspace, the length by which the\n"
+      "  answer misses it counts as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -6670,9 +6670,9 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,\n"
-      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target\n"
-      "  is just outside of the workspace, the length by which the answer misses it counts as a\n"
-      "  rounding error too.\n"
+      "  but a unit in the last place of the joints moves the hand by more than 1e-12 of the\n"
+      "  lengths. If the target is just outside of the workspace, the length by which the answer\n"
+      "  misses it counts as a rounding error too.\n"
       ,
       5, five_bar_values, five_bar_fields,
       1, five_bar_ik_in, 2, five_bar_ik_out,
@@ -6976,8 +6976,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta is free, 0 is returned.\n"
       "- SINGULAR also near the parallel singularity, where the rod is at right angles to the path\n"
-      "  of the follower: the loop closes, but one ulp of the driver moves the follower by more\n"
-      "  than 1e-12.\n"
+      "  of the follower: the loop closes, but a unit in the last place of the driver moves the\n"
+      "  follower by more than 1e-12.\n"
       ,
       4, four_bar_values, four_bar_fields,
       1, four_bar_ik_in, 2, four_bar_ik_out,
@@ -7883,8 +7883,6 @@ const cf_function cf_functions[] = {
     { "h6ar_loop_closed.jacobian",
       "Derivative of the task with respect to the joints.\n"
       "\n"
-      "Source: derivative of the forward map.\n"
-      "\n"
       "Parameters\n"
       "----------\n"
       "q : array_like, shape (..., 6)\n"
@@ -8515,10 +8513,10 @@ const cf_function cf_functions[] = {
       "  at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless\n"
       "  L1 = 0.\n"
       "- SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is\n"
-      "  less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of\n"
-      "  the lengths. The length by which the answer misses a target just outside of the workspace\n"
-      "  counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last\n"
-      "  two entries.\n"
+      "  less than 2^-10: the loop closes, but a unit in the last place of the joints moves P by\n"
+      "  more than 1e-12 of the lengths. The length by which the answer misses a target just\n"
+      "  outside of the workspace counts as a rounding error too. If L0 = 0, C coincides with D in\n"
+      "  the branches whose last two signs are equal.\n"
       "- Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but\n"
       "  the loop still closes.\n"
       ,
@@ -9302,7 +9300,7 @@ const cf_function cf_functions[] = {
     { "irb260.ik",
       "All four configurations for a position and a yaw.\n"
       "\n"
-      "Source: solved from eq. (13); the paper does not give the inverse.\n"
+      "Source: eq. (13), which is solved here; the paper does not give the inverse.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -9774,9 +9772,9 @@ const cf_function cf_functions[] = {
       "  minus_minus_minus.\n"
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
-      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
-      "  as a rounding error too.\n"
+      "  closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of\n"
+      "  the lengths. If the target is just outside of the workspace, the length by which the\n"
+      "  answer misses it counts as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -10425,9 +10423,9 @@ const cf_function cf_functions[] = {
       "  minus_minus_minus.\n"
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
-      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
-      "  as a rounding error too.\n"
+      "  closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of\n"
+      "  the lengths. If the target is just outside of the workspace, the length by which the\n"
+      "  answer misses it counts as a rounding error too.\n"
       "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
       "  which the hand is turned.\n"
       ,
@@ -11395,9 +11393,9 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,\n"
-      "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target\n"
-      "  is just outside of the workspace, the length by which the answer misses it counts as a\n"
-      "  rounding error too.\n"
+      "  but a unit in the last place of the joints moves the hand by more than 1e-12 of the\n"
+      "  lengths. If the target is just outside of the workspace, the length by which the answer\n"
+      "  misses it counts as a rounding error too.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,
@@ -11936,8 +11934,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta is free, 0 is returned.\n"
       "- SINGULAR also near the parallel singularity, where the rod is at right angles to the path\n"
-      "  of the follower: the loop closes, but one ulp of the driver moves the follower by more\n"
-      "  than 1e-12.\n"
+      "  of the follower: the loop closes, but a unit in the last place of the driver moves the\n"
+      "  follower by more than 1e-12.\n"
       ,
       3, slider_crank_values, slider_crank_fields,
       1, slider_crank_ik_in, 2, slider_crank_ik_out,
@@ -12243,9 +12241,9 @@ const cf_function cf_functions[] = {
       "- SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
-      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the\n"
-      "  target is just outside of the workspace, the length by which the answer misses it counts\n"
-      "  as a rounding error too.\n"
+      "  closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of\n"
+      "  the lengths. If the target is just outside of the workspace, the length by which the\n"
+      "  answer misses it counts as a rounding error too.\n"
       ,
       6, spherical_five_bar_values, spherical_five_bar_fields,
       1, spherical_five_bar_ik_in, 2, spherical_five_bar_ik_out,

@@ -11,8 +11,8 @@
  *   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
  *   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
  *   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
- *   ik: 73 compare and select, 212 add, 39 divide, 250 multiply, 2 sincos, 4 sqrt
- *   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
+ *   ik: 73 compare and select, 212 add, 39 divide, 249 multiply, 2 sincos, 4 sqrt
+ *   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

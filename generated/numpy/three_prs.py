@@ -10,8 +10,8 @@
 #   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
 #   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
 #   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 73 compare and select, 212 add, 39 divide, 250 multiply, 2 sincos, 4 sqrt
-#   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
+#   ik: 73 compare and select, 212 add, 39 divide, 249 multiply, 2 sincos, 4 sqrt
+#   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
 Three sliders move along columns.  A rod leads from each of them to a corner of the hand.  A
@@ -1328,113 +1328,113 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t4 = c_tilt_y * t1
     g = t4 + c_tilt_x * t1
     delta = np.sqrt(t3 * t3 + g * g)
-    t5 = a * 1.7320508075688772
-    t6 = t5 + a * 2.0
-    untwisted = delta <= _runtime.VANISHING * t6
-    t7 = 1.0 / delta
-    c = _runtime.select(untwisted, 1.0, g * t7)
+    untwisted = delta <= 0.0
+    t5 = 1.0 / delta
+    c = _runtime.select(untwisted, 1.0, g * t5)
     del g
-    s = _runtime.select(untwisted, 0.0, t3 * t7)
+    s = _runtime.select(untwisted, 0.0, t3 * t5)
     del t3
-    t8 = s_tilt_x * s
-    t9 = s_tilt_y * c - c_tilt_y * t8
-    t10 = a * t9
-    m_1 = z - t10
-    R_11 = c_tilt_y * c + s_tilt_y * t8
+    t6 = s_tilt_x * s
+    t7 = s_tilt_y * c - c_tilt_y * t6
+    t8 = a * t7
+    m_1 = z - t8
+    R_11 = c_tilt_y * c + s_tilt_y * t6
     h_11 = a * R_11
     R_21 = c_tilt_x * s
     h_12 = a * R_21
-    t11 = h_12 * 0.5
-    t12 = h_11 * 0.5
-    t13 = s_tilt_x * c
+    t9 = h_12 * 0.5
+    t10 = h_11 * 0.5
+    t11 = a * 1.7320508075688772
+    t12 = s_tilt_x * c
     del s_tilt_x
-    R_12 = s_tilt_y * t13 - c_tilt_y * s
-    t14 = t5 * R_12 * 0.5
-    t15 = t12 - t14
+    R_12 = s_tilt_y * t12 - c_tilt_y * s
+    t13 = t11 * R_12 * 0.5
+    t14 = t10 - t13
     R_22 = c_tilt_x * c
     del c, c_tilt_x
-    t16 = t5 * R_22
-    t17 = t16 * 0.5
-    t18 = t11 - t17
-    t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t19
-    del t19
-    t20 = b - h_11 - px
-    t21 = l + t20
-    t22 = l - t20
-    root_1 = np.sqrt(np.maximum(t21, 0.0) * np.maximum(t22, 0.0))
-    slide_1 = m_1 - root_1
-    t23 = np.isfinite(b) & np.isfinite(a) & np.isfinite(l)
-    t24 = np.isfinite(z) & np.isfinite(tilt_x) & np.isfinite(tilt_y)
-    t25 = t23 & (0.0 <= b) & (0.0 <= a) & (0.0 <= l) & t24
-    del t23, t24
-    invalid = np.logical_not(t25)
-    del t25
-    size = b + a + l + np.abs(z)
-    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t27 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t15 = t11 * R_22
+    t16 = t15 * 0.5
+    t17 = t9 - t16
+    t18 = t9 + (1.7320508075688772 * t14 * 0.5 + t17 * 0.5)
+    px = 1.1547005383792515 * t18
     del t18
-    t28 = b + px * 0.5
+    t19 = b - h_11 - px
+    t20 = l + t19
+    t21 = l - t19
+    root_1 = np.sqrt(np.maximum(t20, 0.0) * np.maximum(t21, 0.0))
+    slide_1 = m_1 - root_1
+    t22 = np.isfinite(b) & np.isfinite(a) & np.isfinite(l)
+    t23 = np.isfinite(z) & np.isfinite(tilt_x) & np.isfinite(tilt_y)
+    t24 = t22 & (0.0 <= b) & (0.0 <= a) & (0.0 <= l) & t23
+    del t22, t23
+    invalid = np.logical_not(t24)
+    del t24
+    size = b + a + l + np.abs(z)
+    t25 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t26 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t17) * 0.5
+    del t17
+    t27 = b + px * 0.5
     del px
-    aside_2 = t27 - t28
-    del t27
-    t29 = l - aside_2
-    t30 = l + aside_2
-    t31 = (t26 <= t21) & (t26 <= t22) & (t26 <= t29) & (t26 <= t30)
-    del t21, t22
-    t32 = t12 + t14
-    del t12, t14
-    t33 = 1.7320508075688772 * (h_12 + (t11 + t17)) * 0.5
-    del t11, t17
-    aside_3 = t32 * 0.5 + t33 - t28
-    del t28, t33
-    t34 = l - aside_3
-    t35 = l + aside_3
-    unreachable = np.logical_not(t31 & (t26 <= t34) & (t26 <= t35))
-    del t26, t31
-    t36 = _runtime.poison(invalid | unreachable)
-    t37 = slide_1 + t36
-    t38 = t10 * 0.5
-    R_32 = c_tilt_y * t13 + s_tilt_y * s
-    t39 = t5 * R_32 * 0.5
-    h_23 = t38 + t39
+    aside_2 = t26 - t27
+    del t26
+    t28 = l - aside_2
+    t29 = l + aside_2
+    t30 = (t25 <= t20) & (t25 <= t21) & (t25 <= t28) & (t25 <= t29)
+    del t20, t21
+    t31 = t10 + t13
+    del t10, t13
+    t32 = 1.7320508075688772 * (h_12 + (t9 + t16)) * 0.5
+    del t16, t9
+    aside_3 = t31 * 0.5 + t32 - t27
+    del t27, t32
+    t33 = l - aside_3
+    t34 = l + aside_3
+    unreachable = np.logical_not(t30 & (t25 <= t33) & (t25 <= t34))
+    del t25, t30
+    t35 = _runtime.poison(invalid | unreachable)
+    t36 = slide_1 + t35
+    t37 = t8 * 0.5
+    R_32 = c_tilt_y * t12 + s_tilt_y * s
+    t38 = t11 * R_32 * 0.5
+    h_23 = t37 + t38
     m_2 = z + h_23
-    root_2 = np.sqrt(np.maximum(t29, 0.0) * np.maximum(t30, 0.0))
-    del t29, t30
+    root_2 = np.sqrt(np.maximum(t28, 0.0) * np.maximum(t29, 0.0))
+    del t28, t29
     slide_2 = m_2 - root_2
-    t40 = slide_2 + t36
-    h_33 = t38 - t39
-    del t38
+    t39 = slide_2 + t35
+    h_33 = t37 - t38
+    del t37
     m_3 = z + h_33
-    root_3 = np.sqrt(np.maximum(t34, 0.0) * np.maximum(t35, 0.0))
-    del t34, t35
+    root_3 = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t34, 0.0))
+    del t33, t34
     slide_3 = m_3 - root_3
-    t41 = slide_3 + t36
+    t40 = slide_3 + t35
     slide_3_plus_plus_minus = m_3 + root_3
     del root_3
-    t42 = slide_3_plus_plus_minus + t36
+    t41 = slide_3_plus_plus_minus + t35
     slide_2_plus_minus_plus = m_2 + root_2
     del root_2
-    t43 = slide_2_plus_minus_plus + t36
+    t42 = slide_2_plus_minus_plus + t35
     slide_1_minus_plus_plus = m_1 + root_1
     del root_1
-    t44 = slide_1_minus_plus_plus + t36
-    del t36
-    t45 = size * _runtime.VANISHING
+    t43 = slide_1_minus_plus_plus + t35
+    del t35
+    t44 = size * _runtime.VANISHING
     del size
     least = a * a * (l * l * l)
-    t46 = least * delta
+    t45 = least * delta
     del delta
-    t47 = _runtime.select(untwisted, 1.0, t7)
-    del t7, untwisted
-    twist_tilt_y = t47 * (t4 * t13 + t2 * s)
+    t46 = t11 + a * 2.0
+    t47 = _runtime.select(untwisted, 1.0, t5)
+    del t5, untwisted
+    twist_tilt_y = t47 * (t4 * t12 + t2 * s)
     del s, t4
-    t48 = t5 * R_11
+    t48 = t11 * R_11
     del R_11
     t49 = t48 * 0.25
     t50 = a * 1.5
     t51 = t50 * R_22
-    t52 = t5 * R_21
+    t52 = t11 * R_21
     del R_21
     t53 = t52 * 0.5
     t54 = a * R_12
@@ -1446,38 +1446,38 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t52, t56
     t58 = t54 * 0.25 - 1.7320508075688772 * t57 / 3.0
     t59 = t49 - 1.7320508075688772 * (t51 - t53) * 0.5 - t58
-    t60 = aside_3 * (t39 - twist_tilt_y * t59)
-    t61 = t5 * t9 * 0.5
+    t60 = aside_3 * (t38 - twist_tilt_y * t59)
+    t61 = t11 * t7 * 0.5
     t62 = a * R_32
     del R_32
     t63 = t62 * 0.5
     t64 = t61 + t63
-    t65 = t32 - twist_tilt_y * t64
-    del t32
+    t65 = t31 - twist_tilt_y * t64
+    del t31
     t66 = m_3 - slide_3
     t67 = t60 + t65 * t66
-    t68 = s_tilt_y * t16
+    t68 = s_tilt_y * t15
     t69 = t68 * 0.25
-    t70 = t5 * t13
-    del t13, t5
+    t70 = t11 * t12
+    del t11, t12
     t71 = t70 * 0.5
-    t72 = t50 * t8
+    t72 = t50 * t6
     t73 = s_tilt_y * h_12
     del s_tilt_y
     t74 = 1.7320508075688772 * (t68 * 0.5 - t73 * 0.5) * 0.5
     del t68
-    t75 = t70 * 0.25 - t55 * t8 - t74
+    t75 = t70 * 0.25 - t55 * t6 - t74
     del t55, t70, t74
     t76 = t73 * 0.25 - 1.7320508075688772 * t75 / 3.0
     t77 = t69 + 1.7320508075688772 * (t71 - t72) * 0.5 - t76
-    twist_tilt_x = t47 * (t2 * R_22 + t1 * t8)
-    del R_22, t1, t2, t47, t8
+    twist_tilt_x = t47 * (t2 * R_22 + t1 * t6)
+    del R_22, t1, t2, t47, t6
     t78 = t49 - 1.7320508075688772 * (t51 + t53) * 0.5 + t58
     del t49, t51, t53, t58
     t79 = aside_2 * (t77 - twist_tilt_x * t78)
     del t77
-    t80 = c_tilt_y * t16 * 0.5
-    del t16
+    t80 = c_tilt_y * t15 * 0.5
+    del t15
     t81 = c_tilt_y * h_12
     del c_tilt_y, h_12
     t82 = t81 * 0.5
@@ -1489,8 +1489,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t87 = t67 * t86
     t88 = twist_tilt_y * aside_2 * t78
     del t78
-    t89 = t15 + twist_tilt_y * t83
-    del t15, t83
+    t89 = t14 + twist_tilt_y * t83
+    del t14, t83
     t90 = t88 + t85 * t89
     del t85
     t91 = t69 - 1.7320508075688772 * (t71 + t72) * 0.5 + t76
@@ -1502,12 +1502,12 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t94 = t92 - t93 * t66
     del t66
     t95 = t90 * t94
-    t96 = t10 * t87 - z * t87 + (t10 * t95 - z * t95)
+    t96 = t8 * t87 - z * t87 + (t8 * t95 - z * t95)
     t97 = t54 + 1.1547005383792515 * t57
     del t54, t57
     t98 = t73 + twist_tilt_x * t97 + 1.1547005383792515 * t75
     del t73, t75
-    t99 = t20 * t98
+    t99 = t19 * t98
     del t98
     t100 = t81 + twist_tilt_x * t62
     del t81, twist_tilt_x
@@ -1515,8 +1515,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t102 = t99 - t100 * t101
     t103 = t67 * t102
     t104 = z * t102
-    t105 = t20 * (t39 + t50 * t9 - t97 * twist_tilt_y)
-    del t39, t50, t9, t97
+    t105 = t19 * (t38 + t50 * t7 - t97 * twist_tilt_y)
+    del t38, t50, t7, t97
     t106 = h_11 - t62 * twist_tilt_y
     del h_11, t62, twist_tilt_y
     t107 = t105 - t106 * t101
@@ -1530,15 +1530,15 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t114 = t96 + t110 - t113 + slide_3 * t111 - slide_2 * t103
     t115 = t114 - slide_3 * t112 - slide_2 * t108 + slide_1 * t87
     del t114
-    t116 = np.minimum(t46, t6 * np.abs(-(t115 + slide_1 * t95)))
+    t116 = np.minimum(t45, t46 * np.abs(-(t115 + slide_1 * t95)))
     del t115
-    t117 = np.maximum(0.0, np.abs(t20) - l) + np.maximum(0.0, np.abs(-aside_2) - l)
-    del aside_2, t20
-    t118 = t45 + (t117 + np.maximum(0.0, np.abs(-aside_3) - l))
+    t117 = np.maximum(0.0, np.abs(t19) - l) + np.maximum(0.0, np.abs(-aside_2) - l)
+    del aside_2, t19
+    t118 = t44 + (t117 + np.maximum(0.0, np.abs(-aside_3) - l))
     del aside_3, t117
-    t119 = _runtime.DETERMINED * (t6 * least) * t118
+    t119 = _runtime.DETERMINED * (least * t46) * t118
     del least, t118
-    t120 = _runtime.status(invalid, unreachable, t45 * t116 <= t119)
+    t120 = _runtime.status(invalid, unreachable, t44 * t116 <= t119)
     del t116
     t121 = m_3 - slide_3_plus_plus_minus
     del m_3
@@ -1548,7 +1548,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t124 = t92 - t93 * t121
     del t121, t92, t93
     t125 = t90 * t124
-    t126 = t10 * t123 - z * t123 + (t10 * t125 - z * t125)
+    t126 = t8 * t123 - z * t123 + (t8 * t125 - z * t125)
     t127 = t102 * t122
     t128 = t107 * t124
     t129 = h_23 * t127 + t104 * t122 + (h_23 * t128 + t109 * t124)
@@ -1558,7 +1558,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t112, t130
     t132 = t131 + slide_2 * t128 - slide_1 * t123 - slide_1 * t125
     del t131
-    t133 = t45 * np.minimum(t46, t6 * np.abs(t132)) <= t119
+    t133 = t44 * np.minimum(t45, t46 * np.abs(t132)) <= t119
     del t132
     t134 = m_2 - slide_2_plus_minus_plus
     del m_2
@@ -1568,7 +1568,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t137 = t88 + t89 * t134
     del t134, t88, t89
     t138 = t94 * t137
-    t139 = t10 * t136 - z * t136 + (t10 * t138 - z * t138)
+    t139 = t8 * t136 - z * t136 + (t8 * t138 - z * t138)
     t140 = t102 * t137
     del t102
     t141 = t107 * t135
@@ -1581,21 +1581,21 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t108, t143
     t145 = np.abs(t144 + slide_1 * t136 + slide_1 * t138)
     del t144
-    t146 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t145) <= t119)
+    t146 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t145) <= t119)
     del t145
     t147 = t122 * t135
     t148 = t124 * t137
-    t149 = t10 * t147 - z * t147 + (t10 * t148 - z * t148)
-    del t10
+    t149 = t8 * t147 - z * t147 + (t8 * t148 - z * t148)
+    del t8
     t150 = t129 - t142 + t149 + slide_3_plus_plus_minus * t140
     del t129, t140, t142
     t151 = t150 - slide_2_plus_minus_plus * t127 - slide_3_plus_plus_minus * t141
     del t127, t141, t150
     t152 = t151 - slide_2_plus_minus_plus * t128 + slide_1 * t147
     del t128, t151
-    t153 = np.minimum(t46, t6 * np.abs(t152 + slide_1 * t148))
+    t153 = np.minimum(t45, t46 * np.abs(t152 + slide_1 * t148))
     del slide_1, t152
-    t154 = _runtime.status(invalid, unreachable, t45 * t153 <= t119)
+    t154 = _runtime.status(invalid, unreachable, t44 * t153 <= t119)
     del t153
     t155 = m_1 - slide_1_minus_plus_plus
     del m_1
@@ -1617,9 +1617,9 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t96
     t166 = t165 - slide_3 * t163 - slide_2 * t159 + slide_1_minus_plus_plus * t87
     del t165, t87
-    t167 = t6 * np.abs(t166 + slide_1_minus_plus_plus * t95)
+    t167 = t46 * np.abs(t166 + slide_1_minus_plus_plus * t95)
     del t166, t95
-    t168 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t167) <= t119)
+    t168 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t167) <= t119)
     del t167
     t169 = t122 * t156
     t170 = t124 * A_13_minus_plus_plus
@@ -1633,7 +1633,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del slide_2, t123, t173
     t175 = np.abs(t174 + slide_1_minus_plus_plus * t125)
     del t125, t174
-    t176 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t175) <= t119)
+    t176 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t175) <= t119)
     del t175
     t177 = t137 * t156
     del t156
@@ -1647,9 +1647,9 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del slide_3, t159, t180
     Delta_minus_minus_plus = t181 + slide_1_minus_plus_plus * t136 + slide_1_minus_plus_plus * t138
     del t136, t138, t181
-    t182 = np.minimum(t46, t6 * np.abs(Delta_minus_minus_plus))
+    t182 = np.minimum(t45, t46 * np.abs(Delta_minus_minus_plus))
     del Delta_minus_minus_plus
-    t183 = _runtime.status(invalid, unreachable, t45 * t182 <= t119)
+    t183 = _runtime.status(invalid, unreachable, t44 * t182 <= t119)
     del t182
     t184 = t149 + t171 - t179 + slide_3_plus_plus_minus * t177
     del t149, t171, t177, t179
@@ -1659,33 +1659,33 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del slide_2_plus_minus_plus, t147, t170, t185
     t187 = np.abs(t186 + slide_1_minus_plus_plus * t148)
     del slide_1_minus_plus_plus, t148, t186
-    t188 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t6 * t187) <= t119)
-    del t119, t187, t45, t46, t6
+    t188 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t187) <= t119)
+    del t119, t187, t44, t45, t46
     return (
-        t37,
+        t36,
+        t39,
         t40,
+        t36,
+        t39,
         t41,
-        t37,
-        t40,
+        t36,
         t42,
-        t37,
-        t43,
-        t41,
-        t37,
-        t43,
-        t42,
-        t44,
         t40,
-        t41,
-        t44,
-        t40,
+        t36,
         t42,
-        t44,
-        t43,
         t41,
-        t44,
+        t43,
+        t39,
+        t40,
+        t43,
+        t39,
+        t41,
         t43,
         t42,
+        t40,
+        t43,
+        t42,
+        t41,
         t120,
         _runtime.status(invalid, unreachable, t133),
         t146,
@@ -1769,23 +1769,23 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     g = c_tilt_x * t5 + c_tilt_y * t5
     del t5
     delta = np.sqrt(t7 * t7 + g * g)
-    t8 = a * 1.7320508075688772
-    untwisted = delta <= _runtime.VANISHING * (t8 + a * 2.0)
+    untwisted = delta <= 0.0
     c = _runtime.select(untwisted, 1.0, g / delta)
     del g
     s = _runtime.select(untwisted, 0.0, t7 / delta)
     del delta, t7, untwisted
     h_11 = a * (c_tilt_y * c + t6 * s)
     h_12 = a * (c_tilt_x * s)
-    t9 = h_12 * 0.5
-    t10 = h_11 * 0.5
-    t11 = t8 * (t6 * c - c_tilt_y * s) * 0.5
+    t8 = h_12 * 0.5
+    t9 = h_11 * 0.5
+    t10 = a * 1.7320508075688772
+    t11 = t10 * (t6 * c - c_tilt_y * s) * 0.5
     del c_tilt_y, s, t6
-    t12 = t10 - t11
-    t13 = t8 * (c_tilt_x * c) * 0.5
-    del c, c_tilt_x, t8
-    t14 = t9 - t13
-    t15 = t9 + (1.7320508075688772 * t12 * 0.5 + t14 * 0.5)
+    t12 = t9 - t11
+    t13 = t10 * (c_tilt_x * c) * 0.5
+    del c, c_tilt_x, t10
+    t14 = t8 - t13
+    t15 = t8 + (1.7320508075688772 * t12 * 0.5 + t14 * 0.5)
     px = 1.1547005383792515 * t15
     del t15
     t16 = b - h_11 - px
@@ -1798,10 +1798,10 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     del t17
     t19 = (-t4 <= l + t16) & (-t4 <= l - t16) & (-t4 <= l - aside_2)
     del t16
-    t20 = 1.7320508075688772 * (h_12 + (t9 + t13)) * 0.5
-    del h_12, t13, t9
-    aside_3 = (t10 + t11) * 0.5 + t20 - t18
-    del t10, t11, t18, t20
+    t20 = 1.7320508075688772 * (h_12 + (t8 + t13)) * 0.5
+    del h_12, t13, t8
+    aside_3 = (t9 + t11) * 0.5 + t20 - t18
+    del t11, t18, t20, t9
     t21 = t19 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3)
     del aside_2, t19
     failed = np.logical_not(t3) | np.logical_not(t21 & (-t4 <= l + aside_3))

@@ -7,7 +7,7 @@ several points and are not parallelograms, needs three driven joints in a plane 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp

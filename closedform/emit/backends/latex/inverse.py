@@ -133,14 +133,11 @@ class Told:
         _, signs = next(function.cases())
         values = function.at(signs, dict.fromkeys(case.flags, True), case.locus)
         convention = without_turns(dict(zip(inverse.unknowns, values, strict=True))[case.free])
-        known = {*function.symbols, *self.parameters}
-        free = {s for e in case.locus.values() for s in sp.sympify(e).free_symbols} - known
-        chosen = listed([f"${page.math(s)}$" for s in sorted(free, key=str)])
         narrow = all(measure(a + b) < FITS / 2 and r"\begin" not in b for a, b in rows)
         return {
             "free": page.math(case.free),
             "flag": page.prose(self.algorithm.flags[case.flags[0]].meaning),
-            "locus": ", ".join(whole(rows)) + f" for any {chosen}" * bool(free) if narrow else "",
+            "locus": ", ".join(whole(rows)) if narrow else "",
             "blocks": [] if narrow else blocks(rows),
             "any": listed([f"${page.math(s)}$" for s in self.varied(case)]),
             "convention": f"{page.math(case.free)} = {page.math(convention)}",

@@ -76,6 +76,7 @@ from closedform.loops.guides import Ball as Ball
 from closedform.loops.guides import Gimbal as Gimbal
 from closedform.loops.guides import Guide as Guide
 from closedform.loops.hinges import Hinged as Hinged
+from closedform.loops.hinges import StandingPlane as StandingPlane
 from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.linkage import Body as Body

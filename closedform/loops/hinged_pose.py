@@ -9,7 +9,7 @@ import sympy as sp
 
 from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
-from closedform.loops.hinges import Hinges, TurningPlane
+from closedform.loops.hinges import Hinges, StandingPlane, TurningPlane
 from closedform.model.derivation import Derivation
 from closedform.model.step import Step
 
@@ -19,6 +19,11 @@ IN_PLANE = (
     "by turn_1, and v is its normal.  The hand turns in the plane, about v, by turn_2.  R is the "
     "rotation of the hand, and w is the direction in the plane at right angles to the axis: the "
     "distance of the hand is measured along it.  "
+)
+ON_AXIS = (
+    "The universal joints on the hand turn it about an axis of its own, v, and about an axis of "
+    "the ground, which is the normal of a plane.  So v stays in this plane.  The hand turns in it "
+    "by turn_1, and about v by turn_2.  R is the rotation of the hand.  "
 )
 TILTS = (
     "The hand is twisted about its own z axis, then turned by tilt_x about the x axis of the base "
@@ -35,7 +40,7 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
     """The step on the pose of the hand, and the function that returns it."""
     p = d.program()
     placed = guide.place(p, places)
-    plane = guide if isinstance(guide, TurningPlane) else None
+    plane = guide if isinstance(guide, TurningPlane | StandingPlane) else None
     them = "its place along the axis" if plane else "its place sideways, x and y"
     d.explain({"R": "rotation of the hand", r"\mathbf p": "position of the point of the hand"})
     shown: dict[str, Any] = {"R": at.rotation, r"\mathbf p": vector(guide.pivot) + at.shift}
@@ -43,12 +48,13 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
     equal: list[tuple[Any, Any]] = [(at.rotation.T * at.rotation, sp.eye(3))]
     if plane:
         a, b, _ = plane.joint.axes
-        v = at.rotation * b
-        d.explain({r"\mathbf v": "normal of the plane", "distance": "of the hand from the axis"})
+        v, turns = at.rotation * b, isinstance(plane, TurningPlane)
+        d.explain({r"\mathbf v": "normal of the plane" if turns else "axis of the hand"})
         shown[r"\mathbf v"] = v
         equal.append((v.dot(a), sp.S.Zero))
-        equal += [((at.shift + at.levers[k]).dot(v), sp.S.Zero) for k in plane.inside]
-        proves += "Its normal is at right angles to the axis, and the legs end in the plane.  "
+        normal = v if turns else a
+        equal += [((at.shift + at.levers[k]).dot(normal), sp.S.Zero) for k in plane.inside]
+        proves += "v is at right angles to the first axis, and the legs end in the plane.  "
     for k, h in guide.hinged:
         normal = at.rotation * h.axis if h.on_hand else h.axis
         span = vector(guide.pivot) + at.arms[k] - h.leg.base
@@ -57,7 +63,8 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
         proves += "The hinged legs are in their planes.  "
     step = d.step(
         "Pose of the hand",
-        (IN_PLANE if plane else TILTS) + HINGED.format(them=them) * bool(guide.hinged),
+        {TurningPlane: IN_PLANE, StandingPlane: ON_AXIS}.get(type(guide), TILTS)
+        + HINGED.format(them=them) * bool(guide.hinged),
         shown,
         proves=proves.rstrip(),
         equal=equal,

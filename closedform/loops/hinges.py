@@ -307,6 +307,87 @@ class TurningPlane(Hinges):
 
 
 @dataclass(frozen=True)
+class StandingPlane(Hinges):
+    """A plane of the ground in which legs keep an axis of the hand.
+
+    Each of these legs has revolute joints whose axes are ``first``, the normal of the plane, and a
+    universal joint on the hand, whose axes are ``first`` and ``second``.  So the hand turns about
+    ``second``, which stays in the plane through ``pivot``.  Both are unit vectors in numbers, at
+    right angles where nothing is turned.  In Python such a leg is ``Hinged(leg,
+    on_ground=first)``, and ends on the line of ``second`` through the point of the hand.
+
+    With three legs one more is hinged.  The target is the distance of the hand from the pivot, in
+    the direction ``first x second``, the turn in the plane, and the turn about ``second``.  With
+    four legs the place of the hand along ``second``, where nothing is turned, comes first.
+    """
+
+    first: Sequence[Any]
+    second: Sequence[Any]
+    inside: tuple[int, ...] = field(default=(), kw_only=True)
+    """The numbers of the legs in the plane; found from the legs."""
+
+    what: ClassVar[str] = "a plane that stands still"
+
+    @property
+    def joint(self) -> Turning:
+        return Turning(self.pivot, self.first, self.second)
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        return (ALONG, DISTANCE, *TURNS)
+
+    @property
+    def solved(self) -> dict[sp.Symbol, sp.Matrix]:
+        return {ALONG: vector(self.second)} if self.hinged else {}
+
+    def with_legs(self, name: str, legs: Sequence[Leg | Hinged]) -> StandingPlane:
+        a, b, _ = self.joint.axes
+        inside, others = [], []
+        for k, h in enumerate(legs):
+            if not isinstance(h, Hinged):
+                continue
+            h.check(name)
+            ends_on_axis = not any(vector(h.leg.on_hand or (0, 0, 0)).cross(b))
+            if not (h.on_ground and ends_on_axis and not any(h.axis.cross(a))):
+                others.append((k, h))
+                continue
+            if sp.simplify((h.leg.base - vector(self.pivot)).dot(a)) != 0:
+                raise ShapeError(f"{name}: the legs in the plane have to begin in it")
+            inside.append(k)
+        if not inside:
+            raise ShapeError(
+                f"{name}: no leg keeps the hand in the plane; at least one is Hinged with the "
+                f"normal of the plane on_ground, and ends on the axis of the hand"
+            )
+        _check_hinges(name, others, most=1)
+        for _, h in others:
+            if h.on_ground and sp.simplify(h.axis.dot(b)) == 0:
+                raise ShapeError(
+                    f"{name}: the hinge of {h.leg.joint} does not fix the place of the hand along "
+                    f"its axis"
+                )
+        return replace(self, hinged=tuple(others), inside=tuple(inside))
+
+    def frame(self, p: Program) -> Frame:
+        a, b, ahead = self.joint.axes
+        R, v, *_ = self.joint.turned(p, {})
+        none, along = sp.zeros(3, 1), [] if self.hinged else [b]
+        shift = DISTANCE * ahead
+        return Frame(
+            rotation=R,
+            axes=(*[none for _ in along], none, a, v),
+            shift=shift if self.hinged else shift + ALONG * b,
+            moves=(*along, ahead, none, none),
+        )
+
+    @property
+    def degree(self) -> int:
+        if not self.hinged:
+            return 24
+        return 12 if self.loose else 16
+
+
+@dataclass(frozen=True)
 class TwoHinges(Hinges):
     """Two hinged legs, which fix the place of a hand sideways, besides two others.
 
@@ -368,4 +449,4 @@ def _check_hinges(
         raise ShapeError(f"{name}: {count} Hinged, not {len(hinged)}")
 
 
-__all__ = ["Hinged", "Hinges", "TurningPlane", "TwoHinges"]
+__all__ = ["Hinged", "Hinges", "StandingPlane", "TurningPlane", "TwoHinges"]

@@ -13,6 +13,7 @@ from closedform import (
     Hinged,
     Paper,
     Slide,
+    StandingPlane,
     Stretch,
     TurningPlane,
     TwoHinges,
@@ -33,7 +34,14 @@ RPS = EXECHON.replace(
     'c3 = {between = ["piston3", "platform"], at = "C3", axis = [1, 0, 0]}',
     'c3 = {between = ["piston3", "platform"], at = "C3", kind = "spherical"}',
 ).replace('C3 = [0, "e", 0]', 'C3 = [0, "e", "-e"]')  # fmt: skip
-FILES = {"exechon": EXECHON, "rps": RPS, "prs_and_ups": PRS_AND_UPS}
+RPU = EXECHON
+for k in "12":
+    RPU = RPU.replace(
+        f'at = "A{k}", kind = "universal", axis = [1, 0, 0]', f'at = "A{k}", axis = [0, 1, 0]'
+    ).replace(
+        f'at = "C{k}", axis = [0, 1, 0]', f'at = "C{k}", kind = "universal", axis = [1, 0, 0]'
+    )
+FILES = {"exechon": EXECHON, "rps": RPS, "rpu": RPU, "prs_and_ups": PRS_AND_UPS}
 OK, UNREACHABLE, SINGULAR = range(3)
 X, Y, Z = np.eye(3)
 
@@ -71,7 +79,7 @@ def missed(robot: ModuleType, R: np.ndarray, p: np.ndarray, q: np.ndarray) -> np
     ends = np.array([v.c * X, -v.c * X, v.e * Y - (v.e * Z if name == "rps" else 0)])
     rods = p + ends @ R.T - [v.a * X, -v.a * X, v.b * Y]
     third = rods[2] @ (X if name == "rps" else R @ X)
-    plane = [X @ R @ Y, rods[0] @ R @ Y]
+    plane = [Y @ R @ X, rods[0] @ Y] if name == "rpu" else [X @ R @ Y, rods[0] @ R @ Y]
     return np.array([*(np.linalg.norm(rods, axis=1) - q), *plane, third])
 
 
@@ -82,6 +90,10 @@ def target(robot: ModuleType, R: np.ndarray, p: np.ndarray) -> np.ndarray:
         a, b = np.arctan2(-up[1], np.hypot(up[0], up[2])), np.arctan2(up[0], up[2])
         twisted = (about(Y, b) @ about(X, a)).T @ R
         return np.array([p[2], a, b, np.arctan2(twisted[1, 0], twisted[0, 0])])
+    if name_of(robot) == "rpu":
+        turn = np.arctan2(-R[2, 0], R[0, 0])
+        level = about(Y, turn).T @ R
+        return np.array([-p[2], turn, np.arctan2(level[2, 1], level[1, 1])])
     normal = R @ Y
     turn = np.arctan2(normal[2], normal[1])
     level = about(X, turn).T @ R
@@ -149,7 +161,7 @@ def test_the_jacobians_are_differences(robot: ModuleType) -> None:
 def test_the_hinges_of_an_exechon_hold_nothing_at_a_right_angle(robot: ModuleType) -> None:
     status = robot.ik([0.5, 0.2, np.pi / 2, 0.1][: len(robot.TASK)]).status
     assert (status == SINGULAR).all() == (name_of(robot) == "exechon") or status[0] == UNREACHABLE
-    assert ("hinges" in robot.SINGULARITIES) == (name_of(robot) == "exechon")
+    assert ("hinges" in robot.SINGULARITIES) == (name_of(robot) in ("exechon", "rpu"))
 
 
 def test_the_skeleton_is_the_drawing_and_nearest_follows_it(robot: ModuleType) -> None:
@@ -213,6 +225,20 @@ def test_legs_that_do_not_fit_say_why() -> None:
         guided(d, plane, [inside, Hinged(slide, on_hand=x), *free[2:]])
     with pytest.raises(ShapeError, match="q2 moves the leg out of the plane"):
         guided(d, plane, [inside, Hinged(slide, on_ground=x), *free[2:]])
+
+
+def test_legs_that_do_not_keep_the_hand_in_a_standing_plane_say_why() -> None:
+    d, q = toy()
+    o, x, y, z = (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)
+    plane = StandingPlane(o, y, x)
+    free = [Stretch(j, e, on_hand=e) for j, e in zip(q, (x, y, z, (1, 1, 0)), strict=True)]
+    with pytest.raises(ShapeError, match="no leg keeps the hand in the plane"):
+        guided(d, plane, free)
+    with pytest.raises(ShapeError, match="the legs in the plane have to begin in it"):
+        guided(d, plane, [Hinged(Stretch(q[0], y, on_hand=x), on_ground=y), *free[1:]])
+    inside = Hinged(free[0], on_ground=y)
+    with pytest.raises(ShapeError, match="the hinge of q3 does not fix the place"):
+        guided(d, plane, [inside, free[1], Hinged(free[2], on_ground=z)])
 
 
 def test_a_single_leg_keeps_the_hand_in_the_plane() -> None:

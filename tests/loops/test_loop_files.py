@@ -124,10 +124,10 @@ c3 = {between = ["p3", "platform"], at = "C3", axis = [1, 0, 0]}
 """
 
 
-def test_a_leg_that_begins_with_a_hinge_and_ends_with_axes_is_refused(tmp_path: Path) -> None:
+def test_planes_that_turn_and_stand_still_are_told_apart(tmp_path: Path) -> None:
     text = EXECHON.replace('at = "A1", kind = "universal"', 'at = "A1"')
     text = text.replace('at = "C1", axis', 'at = "C1", kind = "universal", axis')
-    with pytest.raises(TableError, match="a1 and c1 hold the hand by the axes of a leg"):
+    with pytest.raises(TableError, match="in a plane that turns, and those of q1 in one that"):
         script_of("exechon", text, tmp_path)
 
 

@@ -67,6 +67,7 @@ USED |= {
     "Plane",
     "Rail",
     "Slide",
+    "StandingPlane",
     "Stretch",
     "Strut",
     "TurningPlane",

@@ -23,6 +23,13 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     """The legs and what holds the hand; None if no leg is hinged, or if it may be a tripod."""
     ends = {leg.joint.name: ends_of(found, leg.joint) for leg in legs}
     inside = {name: e for name, e in ends.items() if _turns(*e)}
+    standing = {name: e for name, e in ends.items() if _stands(*e)}
+    if inside and standing:
+        raise found.loop.error(
+            f"the legs of {listed([*inside])} keep the hand in a plane that turns, and those of "
+            f"{listed([*standing])} in one that stands still; one or the other is supported"
+        )
+    inside = inside or standing
     on_hand = [name for name, e in ends.items() if name not in inside and _on_hand(*e)]
     on_ground = [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
     if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
@@ -36,7 +43,8 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
         if name not in inside and name not in others:
             calls.append(leg)
             continue
-        joint, where = (near, "on_ground") if name in on_ground else (far, "on_hand")
+        by_near = name in on_ground or name in standing
+        joint, where = (near, "on_ground") if by_near else (far, "on_hand")
         assert joint.axis is not None
         call = f"Hinged({leg.call}, {where}={found.at(joint.axis)})"
         calls.append(replace(leg, call=call, words=f"{leg.words}, hinged at {joint.name}"))
@@ -47,13 +55,15 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     _check_plane(found, inside)
     assert near.axis is not None
     assert far.axis is not None
-    base = found.point(GROUND, near)
+    motion = "stands still" if standing else "turns"
+    base = _near_end(found, near)
     foot = (base - near.axis * base.dot(near.axis)).applyfunc(sp.simplify)
-    call = f"TurningPlane({found.at(foot)}, {found.at(near.axis)}, {found.at(far.axis)})"
+    at, kind = (base - foot, "StandingPlane") if standing else (foot, "TurningPlane")
+    call = f"{kind}({found.at(at)}, {found.at(near.axis)}, {found.at(far.axis)})"
     words = (
         f"The leg{'s' * (len(inside) > 1)} of {listed([*inside])} keep{'s' * (len(inside) == 1)} "
     )
-    return calls, GuideLine(call, KIND, f"{words}the hand in a plane that turns.")
+    return calls, GuideLine(call, KIND, f"{words}the hand in a plane that {motion}.")
 
 
 def ends_of(found: Legs, joint: Joint) -> tuple[Joint, Joint]:
@@ -69,6 +79,12 @@ def ends_of(found: Legs, joint: Joint) -> tuple[Joint, Joint]:
     return on[True], on[False]
 
 
+def _near_end(found: Legs, near: Joint) -> sp.Matrix:
+    """A point of the ground, or of a driven body, from which a leg begins."""
+    body = next((b for b in near.between if near.at in found.loop.bodies[b]), GROUND)
+    return found.point(GROUND if GROUND in near.between else body, near)
+
+
 def _hinge(joint: Joint) -> bool:
     return joint.kind == "revolute" and joint.axis is not None
 
@@ -76,6 +92,11 @@ def _hinge(joint: Joint) -> bool:
 def _turns(near: Joint, far: Joint) -> bool:
     """Whether a leg keeps the hand in a plane that turns."""
     return near.kind == "universal" and near.axis is not None and _hinge(far)
+
+
+def _stands(near: Joint, far: Joint) -> bool:
+    """Whether a leg keeps an axis of the hand in a plane of the ground."""
+    return _hinge(near) and far.kind == "universal" and far.axis is not None
 
 
 def _on_hand(near: Joint, far: Joint) -> bool:
@@ -90,7 +111,7 @@ def _check_count(
     found: Legs, inside: Mapping[str, object], others: Sequence[str], driven: int
 ) -> None:
     if inside:
-        by = f"the leg{'s' * (len(inside) > 1)} of {listed([*inside])}, in a plane that turns"
+        by = f"the leg{'s' * (len(inside) > 1)} of {listed([*inside])}, in one plane"
         by += f", and the hinge of the leg of {listed(others)}" * bool(others)
         left, most = FREE - len(others), 1
     else:

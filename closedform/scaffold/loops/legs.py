@@ -105,15 +105,8 @@ class Legs:
         if not ends:
             return None
         hinge = next((j for j in (near, far) if j.kind == "revolute" and j.axis is not None), None)
-        if len(ends) == 1 and hinge is far:
-            return None
         if len(ends) == 1 and hinge:
-            raise self.loop.error(
-                f"{hinge.name} and {far.name} hold {self.end} by the axes of a leg; this is "
-                f"supported if the universal joint is on the ground and the revolute one on the "
-                f"hand, as in an Exechon.  A leg with universal joints keeps it from turning if "
-                f'both ends have one; if an end is a ball joint, write kind = "spherical"'
-            )
+            return None
         if len(ends) == 1 or self.loop.dimensions == 2:
             raise self.loop.error(
                 f"{ends[0][0].name} has an axis; universal joints keep {self.end} from turning if "

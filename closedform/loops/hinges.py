@@ -400,7 +400,7 @@ class TwoHinges(Hinges):
 
     @property
     def degree(self) -> int:
-        return 0
+        return 24 if len({bool(h.on_hand) for _, h in self.hinged}) == 2 else 32
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:

@@ -193,6 +193,25 @@ def test_a_file_that_does_not_fit_says_why(
         script_of("exechon", EXECHON.replace(old, other), tmp_path)
 
 
+def test_three_hinges_on_the_hand_are_told_what_to_do(tmp_path: Path) -> None:
+    """A 3-SPR mechanism is a 3-RPS mechanism upside down."""
+    text = """
+hand = "P"
+copies = 3
+[bodies]
+ground = {A1 = [0.4, 0, 0]}
+tube1 = {}
+piston1 = {}
+top = {P = [0, 0, 0], C1 = [0.2, 0, 0]}
+[joints]
+a1 = {between = ["ground", "tube1"], at = "A1", kind = "spherical"}
+q1 = {between = ["tube1", "piston1"], at = "A1", kind = "prismatic", driven = true}
+c1 = {between = ["piston1", "top"], at = "C1", axis = [0, 1, 0]}
+"""
+    with pytest.raises(TableError, match=r"three degrees .* degree 16 .* Describe the ground as"):
+        script_of("spr", text, tmp_path)
+
+
 def toy() -> tuple[Derivation, list]:
     d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
     return d, [d.joint(f"q{k}", "prismatic") for k in (1, 2, 3, 4)]

@@ -13,10 +13,15 @@ from closedform.scaffold.loops.guides import GuideLine
 from closedform.scaffold.loops.legs import Legs, LoopLeg
 
 KIND = "a hand on hinged legs"
-COUNTS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
+COUNTS = {0: "no", 1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 FREE = 4
 """The degrees of freedom of a hand in a plane that turns, or on two hinged legs."""
 TRIPOD = 3
+REVERSE = (
+    ".  Three with hinges on the hand are the reverse of that: the forward problem has degree 16 "
+    "in general, too.  Describe the ground as the hand and the hand as the ground; hand_pose is "
+    "then the pose of the ground, seen from the hand"
+)
 
 
 def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLine] | None:
@@ -35,7 +40,8 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
         return None
     others = [*on_hand, *on_ground]
-    _check_count(found, inside, others, len(legs))
+    reverse = "" if inside or on_ground or len(on_hand) != TRIPOD else REVERSE
+    _check_count(found, (inside, others), len(legs), reverse)
     calls = []
     for leg in legs:
         near, far = ends[leg.joint.name]
@@ -108,21 +114,23 @@ def _on_ground(near: Joint, far: Joint) -> bool:
 
 
 def _check_count(
-    found: Legs, inside: Mapping[str, object], others: Sequence[str], driven: int
+    found: Legs, hinges: tuple[Mapping[str, object], Sequence[str]], driven: int, reverse: str
 ) -> None:
+    """Refuse legs that leave the hand more or fewer degrees of freedom than are driven."""
+    inside, others = hinges
     if inside:
         by = f"the leg{'s' * (len(inside) > 1)} of {listed([*inside])}, in one plane"
         by += f", and the hinge of the leg of {listed(others)}" * bool(others)
-        left, most = FREE - len(others), 1
+        left, most = max(FREE - len(others), 0), 1
     else:
         by = f"the hinge{'s' * (len(others) > 1)} of the leg{'s' * (len(others) > 1)} of "
-        by, left, most = f"{by}{listed(others)}", 6 - len(others), 2
+        by, left, most = f"{by}{listed(others)}", max(6 - len(others), 0), 2
     by += f" leave{'s' * (len(inside) + len(others) == 1)}"
     if len(others) > most or (not inside and len(others) < most):
         raise found.loop.error(
             f"{by} the hand {COUNTS[left]} degrees of freedom; this is supported for two "
             f"hinged legs, or one beside legs with universal joints that keep the hand in a plane, "
-            f"or three with hinges on the ground"
+            f"or three with hinges on the ground{reverse}"
         )
     if driven != left:
         raise found.loop.error(

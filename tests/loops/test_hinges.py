@@ -212,6 +212,25 @@ c1 = {between = ["piston1", "top"], at = "C1", axis = [0, 1, 0]}
         script_of("spr", text, tmp_path)
 
 
+def test_a_hinge_on_the_hand_beside_a_ball_joint_that_moves_is_refused(tmp_path: Path) -> None:
+    """As on the wrist of Canfield, a 3-RSR mechanism."""
+    text = """
+hand = "P"
+copies = 3
+[bodies]
+ground = {A1 = [0.1, 0, 0]}
+arm1 = {B1 = [0.3, 0, 0]}
+far1 = {length = 0.2}
+top = {P = [0, 0, 0], C1 = [0.1, 0, 0]}
+[joints]
+q1 = {between = ["ground", "arm1"], at = "A1", axis = [0, 1, 0], driven = true}
+b1 = {between = ["arm1", "far1"], at = "B1", kind = "spherical"}
+c1 = {between = ["far1", "top"], at = "C1", axis = [0, 1, 0]}
+"""
+    with pytest.raises(TableError, match="q1 moves the ball joint b1 of the same rod"):
+        script_of("wrist", text, tmp_path)
+
+
 def toy() -> tuple[Derivation, list]:
     d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
     return d, [d.joint(f"q{k}", "prismatic") for k in (1, 2, 3, 4)]

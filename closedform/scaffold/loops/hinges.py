@@ -39,6 +39,7 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     on_ground = [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
     if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
         return None
+    _check_balls(found, {name: ends[name] for name in on_hand})
     others = [*on_hand, *on_ground]
     reverse = "" if inside or on_ground or len(on_hand) != TRIPOD else REVERSE
     _check_count(found, (inside, others), len(legs), reverse)
@@ -137,6 +138,18 @@ def _check_count(
             f"{by} the hand {COUNTS[left]} degrees of freedom, so {COUNTS[left]} joints are "
             f"driven, not {driven}"
         )
+
+
+def _check_balls(found: Legs, on_hand: Mapping[str, tuple[Joint, Joint]]) -> None:
+    """Refuse a leg with a hinge on the hand whose ball joint moves."""
+    for name, (near, far) in on_hand.items():
+        if GROUND in found.loop.joints[name].between:
+            raise found.loop.error(
+                f"{far.name} holds {found.turning} by an axis, and {name} moves the ball joint "
+                f"{near.name} of the same rod; this is supported if the ball joint stands still on "
+                f"the ground, as that of a leg that stretches (SPR), or if the two are "
+                f"exchanged (a ball joint on the hand)"
+            )
 
 
 def _check_plane(found: Legs, inside: Mapping[str, tuple[Joint, Joint]]) -> None:
